@@ -17,7 +17,7 @@ std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
 /// Adds to `to` the combinations of keys that are not allowed with a tube or channel.
 void reject_with_tube(const Scene& scene, Rejections& to);
 
-/// Throws UserError, with the lengths that do not fit, if the scene has a tube and the particle does not fit into it.
+/// If the scene has a tube and the particle does not fit into it, throws UserError with the lengths concerned.
 void check_fit(const Scene& scene, const Body& body);
 
 /// Returns the wall around the resting shapes of all particles in `body`. Throws UserError, with the lengths, if the tube is too short for the
@@ -42,7 +42,8 @@ TubeRow tube_row(const coupling::Tube& tube, double amplitude, coupling::Evaluat
 /// pressure drop. Collective.
 TubeRow tube_row(coupling::Tube& tube, double amplitude, const Net& density, double pressure_drop);
 
-/// Returns the smallest axial coordinate of a particle's centroid in a row of the results: x1, or in a channel the coordinate along the centre line.
+/// Returns the smallest axial coordinate among the particles' centroids in a row of the results: x1, or in a channel the coordinate along the centre
+/// line.
 double least_way(const Scene& scene, const Body& body, const Columns& row);
 
 /// Returns a warning if the gap to the wall in a row of the results is smaller than 0.6 of the size of the widest wall element, because the error of

@@ -33,14 +33,14 @@ struct WallOptions {
   /// both directions in the walls. The message is one sentence. `cell`: periodic cell of the scene, if any.
   void check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const;
 
-  void reject(const Scene& scene, Rejections& to) const;  ///< adds the combinations of keys that a wall excludes
+  void reject(const Scene& scene, Rejections& to) const;  ///< adds to `to` the combinations of keys that are not allowed with a wall
 
   std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall if it acts by images, otherwise nothing
   std::vector<stokes::PlaneWall> planes() const;   ///< returns the walls: none, one or two
   std::optional<stokes::Plates> plates() const;    ///< returns the plates if the walls are plates in a periodic cell, otherwise nothing
 
   /// Returns the numbers of elements of a plate along the two periods. By default the length of an element is a twelfth of the distance of the
-  /// plates, or a twelfth of `radius` if there is only one plate, but a period has at most 48 elements.
+  /// plates, or a twelfth of `radius` if there is only one plate, but a period has at least 4 and at most 48 elements.
   std::array<int, 2> elements(const stokes::PeriodicCell& cell, double radius) const;
 
  private:

@@ -138,7 +138,7 @@ constexpr double gauss_x[5] = {0.046910077030668004, 0.230765344947158454, 0.5, 
 constexpr double gauss_w[5] = {0.118463442528094544, 0.239314335249683234, 0.284444444444444444, 0.239314335249683234,
                                0.118463442528094544};
 
-/// Returns an element that is not connected with element 0, or -1 if there is none. Elements are connected by common control points or candidate
+/// Returns an element that is not connected with element 0, or -1 if there is none. Elements are connected if they share control points or candidate
 /// points. `places`: candidate points, as numbered_places() returns them.
 int separate_element(const Space& space, const std::vector<int>& places) {
   Groups connected(space.n_points + places.size());
@@ -152,16 +152,16 @@ int separate_element(const Space& space, const std::vector<int>& places) {
   return -1;
 }
 
-/// Returns a description of the fault if a surface is not closed or not oriented outwards, or has several parts, to be used as the end of an error
-/// message; empty if there is no fault.
+/// If a surface is not closed, is not oriented outwards or has several parts, returns a description of this fault, for the end of an error message.
+/// Otherwise returns an empty text.
 ///
 /// Sides of elements are matched by their end points and midpoints. Sides without a matching side (at T-junctions or holes) must cancel as curves:
 /// the sum of the line integrals of a few smooth fields along them must be 0. If there is a hole, or an element is missing or inverted, the sum is
 /// not 0. The volume must be positive.
 std::string fault_of_closed_surface(const Space& space, const Net& net, const std::vector<int>& places) {
   constexpr int along_edge[4][3] = {{0, 1, 2}, {2, 5, 8}, {8, 7, 6}, {6, 3, 0}};
-  // Sides of elements without a matching side so far, by the indices of their end points and midpoint. The matching side runs in the opposite
-  // direction.
+  // Element sides for which no matching side has been found yet, by the indices of their end points and midpoint. The matching side runs in the
+  // opposite direction.
   std::map<std::array<int, 3>, std::pair<int, int>> open;
   int once = -1, twice = -1;
   for (int k = 0; k < int(space.elements.size()); ++k)

@@ -30,9 +30,9 @@ struct Lattice {
   std::vector<std::array<int, 4>> neighbour;        ///< neighbour of each vertex in direction (slot) k, or -1
   std::vector<std::array<std::uint8_t, 4>> back;    ///< direction at neighbour k that points back to the vertex
   std::vector<std::array<int, 4>> cell;             ///< cell between directions k and k + 1 at each vertex, or -1
-  std::vector<std::array<std::uint8_t, 4>> corner;  ///< [v][k]: corner (0 .. 3) of adjacent cell k at which vertex v lies
+  std::vector<std::array<std::uint8_t, 4>> corner;  ///< [v][k]: index 0 .. 3 of the corner of cell[v][k] that is vertex v
 
-  std::vector<std::array<int, 4>> corners;        ///< vertices (x, y), (x+1, y), (x+1, y+1), (x, y+1) of each cell, outward orientation
+  std::vector<std::array<int, 4>> corners;        ///< vertices (x, y), (x+1, y), (x+1, y+1), (x, y+1) of each cell, counter-clockwise from outside
   std::vector<std::array<std::uint8_t, 4>> slot;  ///< direction (slot) from corner k of each cell to its corner k + 1
 
   std::vector<int> extraordinary;              ///< vertices of valence 3

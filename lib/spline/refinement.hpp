@@ -1,6 +1,6 @@
 #pragma once
-// Local refinement of a T-mesh such that its splines stay linearly independent and their space contains the old one; coarsening; the symmetries of
-// the mesh that refinement and coarsening keep.
+// Local refinement of a T-mesh such that the splines stay linearly independent and the new spline space contains the old one; coarsening; the
+// symmetries of the mesh that refinement and coarsening keep.
 
 #include <optional>
 #include <span>
@@ -66,7 +66,7 @@ struct Refinement {
 /// extraordinary point, all elements of the two inner rings are bisected. Edges are only added. The result depends on the set of marks but not on
 /// their order. If the mesh has the symmetries of `rules.images`, it keeps them, because marks and repairs are applied to all images.
 ///
-/// Source: Scott, Li, Sederberg, Hughes 2012, with a local instead of a global choice of T-junctions, and in addition the rule on overlaps and
+/// Source: Scott, Li, Sederberg, Hughes 2012, with a local instead of a global choice of T-junctions, and with additional rules on overlaps and
 /// extraordinary points.
 Refinement refine(const TMesh& mesh, const std::vector<Mark>& marks, const RepairRules& rules = {});
 

@@ -24,17 +24,17 @@ struct TMesh {
 /// points would overlap) or the lattice is too large: more than 12 levels, or n 2^levels above 1536.
 TMesh cube(int elements_per_side, int levels = 0);
 
-/// Returns the uniform mesh on a sphere with two poles: m elements in azimuth and r from pole to pole. The lattice permits `levels` bisections of
-/// each element. Spline spaces are in polar.hpp. Throws UserError if m < 4, r < 4, or the lattice is too large: more than 12 levels, or m 2^levels or
-/// r 2^levels above 4096.
+/// Returns the uniform mesh on a sphere with two poles: m = `azimuthal_elements` in azimuth and r = `meridional_elements` from pole to pole. The
+/// lattice permits `levels` bisections of each element. Spline spaces are in polar.hpp. Throws UserError if m < 4, r < 4, or the lattice is too
+/// large: more than 12 levels, or m 2^levels or r 2^levels above 4096.
 TMesh polar(int azimuthal_elements, int meridional_elements, int levels = 0);
 
 /// Returns whether the vertex is an anchor, which means that it has a control point: mesh edges of both directions meet there. T-junctions and
 /// extraordinary points are anchors.
 bool is_anchor(const TMesh& mesh, int vertex);
 
-/// Returns the lattice vertices of the control points in ascending order; 6 n^2 + 2 on the uniform cube. Control point i of space(mesh, ...) is at
-/// vertex anchors(mesh)[i].
+/// Returns the lattice vertices of the control points in ascending order: 6 n^2 + 2 vertices on the uniform cube with n^2 elements per face. Control
+/// point i of space(mesh, ...) is at vertex anchors(mesh)[i].
 std::vector<int> anchors(const TMesh& mesh);
 
 /// Returns the inverse of anchors(mesh): the control point at each lattice vertex, or -1.

@@ -17,8 +17,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Largest residual of the least-squares fit for which spaces count as nested, for a field of order 1. It is far above round-off and far below the
-/// residual of spaces that are not nested.
+/// Two spaces count as nested if the residual of the least-squares fit, for a field of order 1, is at most this value. The value is far above
+/// round-off and far below the residual of spaces that are not nested.
 constexpr double nested = 1e-10;
 
 /// Values of the functions of both spaces at one point.

@@ -1,5 +1,5 @@
 #pragma once
-// Measurements on a particle, and its columns in the results.
+// Measurements on a particle, and the columns of a particle in the results.
 
 #include <span>
 
@@ -68,16 +68,17 @@ Eigen::Vector<double, 6> components(const Mat3& tensor);
 /// Returns true if the flow is unbounded and affine with a nonzero rate of strain, so that `intrinsic_viscosity` is defined.
 bool strains(const Scene& scene);
 
-/// Computes the data that follow from the shape x and the velocity `slope` of a capsule or drop. Collective.
+/// Computes the row data of a capsule or drop that follow from its shape x and velocity `slope`. Other data, such as the stresslet, are not set.
+/// Collective.
 DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
                            const Net& slope, const coupling::Ranks& ranks);
 
 /// Sets in `now` the velocity of the centroid and the tank-treading of the surface x, whose material moves at the velocity v.
 void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
 
-/// Computes the Taylor parameter D and the inclination in the plane of the flow, and the extents along x1, x2 and x3. If the flow is not planar, the
-/// plane contains the longest and the shortest axis of inertia. If the middle axis is as long as the longest or the shortest axis, this plane is not
-/// determined, and the inclination is NaN. Ranks share the elements. Collective.
+/// Computes the Taylor parameter D and the inclination in the plane of the flow, and the extents along x1, x2 and x3. If the flow is not planar, uses
+/// the plane of the longest and the shortest axis of inertia instead. If the middle axis is as long as the longest or the shortest axis, this plane
+/// is not determined, and the inclination is NaN. Ranks share the elements. Collective.
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& plane, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks);
 
@@ -99,7 +100,7 @@ double angle_in(const FlowPlane& plane, const Vec3& y);
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
 /// Returns the largest normal velocity |v.n| at the collocation sites `sites`, with v = `slope`, divided by Scene::speed(), or by R_C per unit time
-/// if this speed is 0. v is relative to the velocity of the centroid. It is zero if the shape is steady.
+/// if this speed is 0. v is relative to the velocity of the centroid. The result is zero if the shape is steady.
 double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 

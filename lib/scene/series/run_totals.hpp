@@ -33,7 +33,7 @@ struct RunTotals {
   Warnings::Memory warnings;
   std::vector<PhaseAngle> phase_angle;     ///< phase of each particle
   coupling::Contacts contacts;             ///< contacts that hold particles apart
-  output::Entries<double> seconds;  ///< wall time of the first rank, by phase of the program
+  output::Entries<double> seconds;  ///< wall time of the first rank in each phase of the program
 };
 
 /// Calls act(name, kinds of particles, description, value) for every counter of a run, for example the number of accepted steps. The kinds of

@@ -19,8 +19,8 @@ namespace tanktread {
 struct ProgressRow {
   motion::StepReport step = {};  ///< report of the time step that ended at this row
   double wall_seconds = 0;
-  std::optional<long> evaluations = {};  ///< number of velocity evaluations in a search for steady shapes, summed over the systems for all values of
-                                         ///< the continuation parameters; if not set, the number in `work` is used
+  std::optional<long> evaluations = {};  ///< number of velocity evaluations in a search for steady shapes, summed over all systems (one per value of
+                                         ///< the continuation parameters); if not set, the number in `work` is used
   double time = 0;
   coupling::Work work = {};
   void add_columns(const Scene& scene, Columns& to) const;
@@ -52,7 +52,7 @@ void add_series(const Scene& scene, double time, std::span<const RecordedParticl
 /// Sorts the columns of the program in the order of the manual. The columns of user-defined parts follow in the order in which they were added.
 void put_in_order(Columns& columns);
 
-/// Sorts the columns of a row in the order of the manual and checks them. Throws RunFailure like Columns::check.
+/// Sorts the columns of a row in the order of the manual and checks them. Throws RunFailure if the check fails (see Columns::check).
 void finish(Columns& row);
 
 /// Returns a page in Markdown with the series and fields of the results, the entries of the summary and the derived and dimensionless numbers of a

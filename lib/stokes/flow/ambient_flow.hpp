@@ -38,8 +38,8 @@ class AmbientFlow {
   bool at(double time, double start);
   double next_kink(double time) const;  ///< returns the first time after `time` at which the flow is not smooth in time, or infinity
 
-  /// Returns this flow. If its direction changes in time, returns copies of it in several directions instead. A symmetry of all these copies is a
-  /// symmetry of the flow in every direction.
+  /// Returns this flow. If its direction changes in time, returns copies of it rotated to several directions instead. A symmetry of all these copies
+  /// is a symmetry of the flow in every direction.
   std::vector<AmbientFlow> directions() const;
 
   /// Returns the velocity at a point, units length/time. In a duct, evaluating many points at once is much faster.
@@ -60,8 +60,8 @@ class AmbientFlow {
   /// the gradient `cell_gradient` (2.51).
   Mat3 deformation(double time) const;
 
-  /// Return d and H of the quadratic part of the flow (2.20). They are 0 for an affine flow. They do not include a registered flow, which need not be
-  /// quadratic.
+  /// Returns d (`direction`) and H (`curvature`) of the quadratic part of the flow (2.20). Both are 0 for an affine flow. They do not include a
+  /// registered flow, which need not be quadratic.
   const Vec3& direction() const { return field_.direction; }
   const Mat3& curvature() const { return field_.curvature; }
 

@@ -16,7 +16,7 @@ using surface::Vec2;
 
 constexpr int close_order = 16;
 
-/// Distance from the plane of the cap below which points get adaptive rules, divided by half the length of the longest curve segment of the outline.
+/// At points closer than this to the plane of the cap, the integral is adaptive. Unit: half the length of the longest curve segment of the outline.
 constexpr double close_by = 4;
 
 std::vector<double> breaks(const surface::Outline& outline, int side) {

@@ -31,7 +31,7 @@ class Cap {
   /// Returns the integral c (2.13) at the rows of x; fast for points off the plane of the cap.
   Net integral(const Net& x) const;
 
-  /// Returns the flow rate along x1 through the cap due to a point source of a double layer at y with normal n, for each component j of its strength:
+  /// Returns the flow rate along x1 through the cap due to a double-layer point singularity at y with normal n, for each component j of its strength:
   /// int T_1jk(y, x) n_k dS(x)/(8 pi). Only for points off the plane of the cap.
   Vec3 double_layer_flow(const Vec3& y, const Vec3& n) const;
 

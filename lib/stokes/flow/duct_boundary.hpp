@@ -29,7 +29,7 @@ struct OutlineSite {
 /// Splines in a parameter t on each side of an outline. On a closed side, t is the parameter u of the curve, and the splines are periodic. On a side
 /// between corners, t runs from 0 to 1, and u(t) is graded towards both ends,
 ///   u = u_first + (u_last - u_first) w(t),   w = t^p/(t^p + (1 - t)^r).
-/// The exponent p belongs to the first corner and r to the last corner: 2 if the angle of the corner is at most a right angle, otherwise 3. The
+/// The exponent p belongs to the first corner and r to the last corner: 2 if the angle of the corner is at most about a right angle, otherwise 3. The
 /// splines on a side between corners have fourfold end knots and share no function with the next side. Elements end at the knots of the outline's
 /// spline, so that all functions are smooth on an element.
 class OutlineSpace {

@@ -22,7 +22,7 @@ class DuctEnd {
   /// UserError if a ray from the centroid meets the outline twice.
   DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inward);
 
-  /// Returns the velocity (2.29) that the end causes at each row of x, points in the fluid or on the wall, units length/time.
+  /// Returns the velocity (2.29) that the end causes at each row of x, a point in the fluid or on the wall. Units length/time.
   Net velocities(const Net& x) const;
 
   /// Gauss points of the section: positions and areas.

@@ -45,7 +45,7 @@ struct FlowOptions {
 
   /// Throws UserError if keys contradict each other or are missing.
   void check() const;
-  void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
+  void reject(Rejections& to) const;  ///< adds to `to` the combinations of keys that are not allowed
 
   /// Returns the rate that defines the capillary number Ca, units 1/time, at amplitude 1 if the flow changes in time. By type:
   /// - `linear`: largest singular value of the gradient; `parabolic`: maximum velocity divided by the half width;
