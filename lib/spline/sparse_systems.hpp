@@ -28,7 +28,8 @@ class IncompleteSolver {
   ~IncompleteSolver();
   IncompleteSolver(IncompleteSolver&&) noexcept;
 
-  /// Factors the square matrix A, which must outlive the solver. Returns whether the factorisation succeeded.
+  /// Factors the square matrix A. A must exist as long as solve() is called, because the solver keeps a reference to it. Returns whether the
+  /// factorisation succeeded.
   bool factor(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a);
 
   /// Returns x = A^-1 b with a relative residual of 1e-14; if this is not reached, the result of 30 iterations. The iteration begins at `start`, if
