@@ -16,8 +16,8 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the conditions that a rigid motion of the particles must satisfy so that all their loads move with them (Load::rigid_conditions), one row
-/// per condition.
+/// Returns the linear conditions on a common rigid motion of all particles under which every load moves with its particle (Load::rigid_conditions),
+/// one row per condition.
 membrane::RigidConditions conditions(std::span<const coupling::Particle> particles) {
   membrane::RigidConditions all(0, 6);
   for (const coupling::Particle& particle : particles)
@@ -77,7 +77,7 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
   if (scene.tube.present) return of_loads.col(0).isZero(0) ? std::vector{coupling::unit_motion(0)} : std::vector<coupling::RigidMotion>();
   Net places(4, 3);
   places << size, 0, 0, 0, size, 0, 0, 0, size, size, size, size;
-  // A rotation changes every lattice vector h that is not along its axis.
+  // A rotation changes every lattice vector that is not parallel to the rotation axis.
   const std::vector<Vec3> lattice = lattice_vectors(scene);
   const Net v = flow.velocities(places);
   const std::vector<Mat3> gradients = flow.gradients(places);
@@ -152,8 +152,8 @@ std::vector<motion::Conserved> conserved_quantities(const coupling::Capsule& cap
 
 namespace {
 
-/// Returns the number that the deck sets for the key at `path`. `of`: key with the value `path`, for example Continuation/parameter, for the error
-/// message. Throws UserError if the deck has no such number.
+/// Returns the number that the deck sets for the key at `path`. `of`: name of the key whose value is `path`, for example Continuation/parameter; used
+/// in the error message. Throws UserError if the deck has no such number.
 double number_of(const Scene& scene, const std::string& deck, const std::string& path, const std::string& of) {
   deck::Document read = deck::read_text(deck);
   Scene again = scene;

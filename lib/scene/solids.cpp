@@ -32,7 +32,7 @@ std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell
   return all;
 }
 
-/// Returns the directions in which the mean velocity is not given by the walls, the free directions of (2.46).
+/// Returns the free directions of (2.46), in which the walls do not determine the mean velocity.
 std::vector<Vec3> free_directions(const Scene& scene, const stokes::PeriodicCell& cell) {
   std::vector<Vec3> free;
   if (cell.n() == 3)
@@ -49,7 +49,7 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
   const stokes::PeriodicCell cell = *scene.domain.cell();
   const stokes::AmbientFlow flow(scene.flow);
   std::vector<Solids::Solid> all = plates(scene, cell, flow);
-  // Between plates the flow includes the pressure gradient, which is mu times the Laplacian of the velocity (2.20).
+  // Between plates, the pressure gradient is part of the ambient flow: it is mu times the Laplacian of the ambient velocity (2.20).
   const Vec3 pressure_gradient = scene.wall.solid ? Vec3(2 * scene.flow.viscosity * flow.curvature().trace() * flow.direction())
                                                   : scene.flow.pressure_gradient.value_or(Vec3::Zero());
   for (const Post& post : scene.posts) {

@@ -14,7 +14,7 @@
 
 namespace tanktread {
 
-/// Returns the plates and posts of a scene with factored operators; none if there are none. Collective.
+/// Returns the plates and posts of a scene with the factored operator of their tractions; nothing if the scene has no plates and posts. Collective.
 std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases);
 
 /// Throws UserError if a particle crosses a post at the start.
@@ -27,7 +27,7 @@ std::string solids_line(const Scene& scene, int ranks);
 struct SolidsRow {
   Vec3 wall_force = Vec3::Zero(), second_wall_force = Vec3::Zero();  ///< forces of the fluid on the plates
   std::vector<Vec3> post_forces;                                     ///< forces of the fluid on the posts
-  Vec3 mean_velocity = Vec3::Zero();  ///< mean velocity over the cell, particles and posts included
+  Vec3 mean_velocity = Vec3::Zero();  ///< velocity averaged over the cell, including particles and posts
   double permeability = std::numeric_limits<double>::quiet_NaN();
   void add_columns(const Scene& scene, Columns& to) const;
 };

@@ -16,13 +16,13 @@ namespace tanktread {
 
 /// A scene and the motion of its particles. A branch of steady shapes has one system per value of its parameters.
 struct System {
-  /// `is_to_stop`: see GuardedDynamics.
+  /// `is_to_stop`: function that returns true if this rank is to stop because of a signal or a limit (see GuardedDynamics).
   System(Scene of, coupling::Ranks& ranks, Phases& phases, std::function<bool()> is_to_stop)
       : scene(std::move(of)), particle(deforming(scene, ranks, phases)), told(std::move(is_to_stop)) {
     begin(particle->start());
   }
 
-  /// Sets up the motion and the equations of steady shapes on the current mesh of the particle. `x` is a shape on this mesh.
+  /// Sets up the motion and the equations of steady shapes on the current mesh of the particle. `x`: shape on this mesh from which the search starts.
   void begin(const Net& x) {
     motion.emplace(particle->dynamics(), told);
     motion->at(0, 0);

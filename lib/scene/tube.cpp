@@ -120,7 +120,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   if (!scene.tube.present) return {};
   if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get())) return channel->surface();
   const surface::Outline& outline = body.duct->outline();
-  double first = 0, last = 0;  // smallest and largest x1 relative to the centroid, of the resting and the initial shape
+  double first = 0, last = 0;  // smallest and largest x1, relative to the centroid, in the resting and the initial shape
   for (const Net* net : {&body.rest, &body.initial}) {
     const Eigen::ArrayXd x1 = net->col(0).array() - surface::measures(body.space, *net).centroid[0];
     first = std::min(first, x1.minCoeff()), last = std::max(last, x1.maxCoeff());

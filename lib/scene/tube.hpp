@@ -14,10 +14,10 @@ namespace tanktread {
 /// the pressure drop (2.7). Returns null if there is no tube.
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
 
-/// Adds the choices that contradict a tube or channel, and the choices that require one.
+/// Adds to `to` the combinations of keys that are not allowed with a tube or channel.
 void reject_with_tube(const Scene& scene, Rejections& to);
 
-/// Throws UserError, with the lengths that do not fit, if the scene has a tube and the particle does not fit into it.
+/// If the scene has a tube and the particle does not fit into it, throws UserError with the lengths concerned.
 void check_fit(const Scene& scene, const Body& body);
 
 /// Returns the wall around the resting shapes of all particles in `body`. Throws UserError, with the lengths, if the tube is too short for the
@@ -34,18 +34,20 @@ struct TubeRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the data of the tube (pressure drop, gap) for the particle shapes of `e`. `amplitude`: current factor of the duct flow. Collective.
+/// Returns the data of the tube (pressure drop, gap) for the particle shapes of the evaluation `e`. `amplitude`: current factor of the duct flow.
+/// Collective.
 TubeRow tube_row(const coupling::Tube& tube, double amplitude, coupling::Evaluation& e);
 
 /// Returns the data of the tube (pressure drop, gap) for a rigid body at the position last set in `tube`, from the force density on the fluid and the
 /// pressure drop. Collective.
 TubeRow tube_row(coupling::Tube& tube, double amplitude, const Net& density, double pressure_drop);
 
-/// Returns the smallest axial coordinate of a particle's centroid in a row of the results: x1, or in a channel the coordinate along the centre line.
+/// Returns the smallest axial coordinate among the particles' centroids in a row of the results: x1, or in a channel the coordinate along the centre
+/// line.
 double least_way(const Scene& scene, const Body& body, const Columns& row);
 
-/// Returns a warning if the gap to the wall in a row of the results is smaller than 0.6 of the element size of the wall, because the error of the
-/// wall traction then exceeds 1e-4. Otherwise returns an empty text.
+/// Returns a warning if the gap to the wall in a row of the results is smaller than 0.6 of the size of the widest wall element, because the error of
+/// the wall traction then exceeds 1e-4. Otherwise returns an empty text.
 std::string coarse_wall(const Scene& scene, const Body& body, const Columns& row);
 
 /// Throws RunFailure if the modelled part of the tube is too short for the shape x, because particles have moved apart or become long. Does nothing

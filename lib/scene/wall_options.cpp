@@ -92,7 +92,8 @@ void WallOptions::check_flow(const stokes::FlowOptions& flow, const stokes::Plan
 
 void WallOptions::reject(const Scene& scene, Rejections& to) const {
   if (!present && !to.every()) return;
-  // This row is only for the table of rejected combinations in the documentation. For a given deck, check() throws UserError for such a flow.
+  // This row is only for the table of rejected combinations in the documentation. For a given deck, check() throws UserError if the flow is not along
+  // the wall or not uniform on it.
   if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(along_the_wall));
   to.pair(scene.flow.type == "duct" && !scene.tube.present, "Wall", "Flow/type `duct`",
           "the wall of a duct is given in a section Tube or Channel");

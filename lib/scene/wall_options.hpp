@@ -23,8 +23,8 @@ struct WallOptions {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
   std::optional<double> distance;                 ///< distance of a second plate along the normal
   std::optional<Vec3> velocity, second_velocity;  ///< velocities of the plates; if not set, a plate moves with the ambient flow
-  std::optional<int> elements_per_period;         ///< number of elements of a plate along the longest period
-  bool solid = false;         ///< true if the walls are plates in a periodic cell, solved for by their tractions; false if the wall acts by images
+  std::optional<int> elements_per_period;         ///< number of elements of a plate along the longer of its two periods
+  bool solid = false;         ///< true if the walls are meshed plates in a periodic cell, with unknown tractions; false if the wall acts by images
   double contact_gap = 1e-3;  ///< smallest allowed gap, divided by the radius R_C; the run ends if a gap is smaller
 
   void declare(deck::Section& section);
@@ -33,14 +33,14 @@ struct WallOptions {
   /// both directions in the walls. The message is one sentence. `cell`: periodic cell of the scene, if any.
   void check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const;
 
-  void reject(const Scene& scene, Rejections& to) const;  ///< adds the combinations of keys that a wall excludes
+  void reject(const Scene& scene, Rejections& to) const;  ///< adds to `to` the combinations of keys that are not allowed with a wall
 
   std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall if it acts by images, otherwise nothing
-  std::vector<stokes::PlaneWall> planes() const;   ///< returns the walls, one or two
+  std::vector<stokes::PlaneWall> planes() const;   ///< returns the walls: none, one or two
   std::optional<stokes::Plates> plates() const;    ///< returns the plates if the walls are plates in a periodic cell, otherwise nothing
 
   /// Returns the numbers of elements of a plate along the two periods. By default the length of an element is a twelfth of the distance of the
-  /// plates, or a twelfth of `radius` if there is only one plate, but a period has at most 48 elements.
+  /// plates, or a twelfth of `radius` if there is only one plate, but a period has at least 4 and at most 48 elements.
   std::array<int, 2> elements(const stokes::PeriodicCell& cell, double radius) const;
 
  private:

@@ -6,7 +6,7 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Replaces the values at x of the polynomials of degree k - 1 by those of degree k.
+/// Replaces the values at x of the Bernstein polynomials of degree k - 1 by the values of the Bernstein polynomials of degree k.
 void raise_degree(int k, double x, double* value) {
   const double y = 1 - x;
   double carried = 0;
@@ -80,7 +80,7 @@ Eigen::MatrixXd elevation(int p, int q) {
 }
 
 Eigen::MatrixXd restriction(int p, double a, double b) {
-  // Row i is the blossom (polar form) of the polynomials with i arguments equal to b and p - i equal to a.
+  // Row i is the blossom (polar form) of the Bernstein polynomials with i arguments equal to b and p - i equal to a.
   Eigen::MatrixXd out(p + 1, p + 1);
   for (int i = 0; i <= p; ++i) {
     Eigen::MatrixXd row = Eigen::MatrixXd::Identity(p + 1, p + 1);

@@ -9,9 +9,9 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Returns whether the edge belongs to the uniform rings of elements around the extraordinary point at `corner`. It does if it is on the lattice of
-/// spacing H and within 3 H of the point, for at least one spacing H = h, 2 h, 4 h, ... below the spacing of the initial mesh. h: current spacing at
-/// the point.
+/// Returns whether the edge belongs to the uniform rings of elements around the extraordinary point at `corner`. This is the case if, for at least
+/// one spacing H = h, 2 h, 4 h, ... below the spacing of the initial mesh, the edge is on the lattice of spacing H and within 3 H of the point. h:
+/// current spacing at the point.
 bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
   for (; h < l.base; h *= 2)
     if (e.line() % h == 0 && distances(l, e, corner)[1] <= 3 * h) return true;
@@ -55,8 +55,8 @@ struct Remover {
     return path;
   }
 
-  /// Sets the edges in each row of zero height (repeated end knots): edges that continue a mesh line ending at the row are present, all other edges
-  /// are absent.
+  /// Sets the edges across each row of zero height (repeated end knots at a pole): an edge is present if it continues a mesh line that ends at the
+  /// row, otherwise absent.
   void restore_ends() {
     const Lattice& l = lattice();
     for (int c = 0; c < l.cells(); ++c) {
@@ -67,8 +67,8 @@ struct Remover {
     }
   }
 
-  /// Removes the edges from `start` to the next perpendicular edge, and their images under all symmetries, or removes nothing. Returns whether they
-  /// were removed.
+  /// Removes the edges from `start` to the next perpendicular edge, and their images under all symmetries. If one of these edges must stay, removes
+  /// nothing. Returns whether edges were removed.
   bool remove_images(Ray start) {
     std::vector<Ray> starts{start}, gone;
     for (const LatticeMap& map : images) starts.push_back(image(lattice(), map, start));
@@ -201,7 +201,7 @@ TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairR
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
       const Ray edge = l.side(c, k);
       l.set(removable, edge, true);
-      if (!vertical || !l.pad) continue;  // at a pole, the line has one more edge, in the adjacent row of zero height; the next lines mark it
+      if (!vertical || !l.pad) continue;  // at a pole, a vertical line has one more edge, across the row of zero height; it is marked here
       if (l.height(row) == 0) l.set(removable, {edge.vertex, 3}, true);
       if (l.height(row) != 0 && l.height(row + 1) == l.rows - 2 * l.pad) l.set(removable, {l.neighbour[edge.vertex][1], 1}, true);
     }

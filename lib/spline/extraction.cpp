@@ -103,8 +103,8 @@ TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRu
   // this square is 2^-max(levels, 4) times the element size of the initial mesh. The side does not change if the mesh is refined, so the spaces
   // before and after a refinement are nested.
   const int levels = log2_of(l.base), below_unit = std::max(levels, 4) - levels;
-  // Key: the corner of a mesh element that is the extraordinary point, and the width of the element. Value: the Bezier elements that represent it,
-  // with OneRing indices as control points.
+  // Key: the corner of a mesh element that is the extraordinary point, and the width of the element. Value: the Bezier elements that represent the
+  // mesh element, with OneRing indices as control points.
   std::map<std::pair<int, int>, std::vector<Element>> patterns;
   std::array<int, OneRing::size> numbers;
   std::iota(numbers.begin(), numbers.end(), 0);

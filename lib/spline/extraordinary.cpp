@@ -32,8 +32,8 @@ Row inner(const Row& near, const Row& next, const Row& opposite, const Row& last
   return (4 * near + 2 * next + opposite + 2 * last) / 9;
 }
 
-/// Returns the control point (u, v) of the 4 x 4 net that determines the bicubic patch on face 0, u, v = 0 .. 3. The corners of face 0 are the points
-/// with u, v = 1, 2; (1, 1) is the extraordinary point. Point (0, 0) does not exist, because only three faces meet there.
+/// Returns control point (u, v) of the 4 x 4 net that determines the bicubic patch on face 0, as a unit row; u and v are 0 .. 3. At the corners of
+/// face 0, u and v are 1 or 2; (1, 1) is the extraordinary point. Point (0, 0) does not exist, because only three faces meet there.
 Row net(int u, int v) {
   using R = Ring;
   static const int id[4][4] = {{-1, R::E + 2, R::F + 1, R::B + 1},
@@ -86,7 +86,7 @@ enum { c1, b11, b12, b21, b22, kinds };
 constexpr int unknowns = kinds * N;
 int unknown(int kind, int j) { return kinds * ((j + N) % N) + kind; }
 
-/// Returns the Bezier points of the same surface after degree elevation from 3 to 4, row 5 v + u.
+/// Returns the Bezier points of the surface `bicubic` after degree elevation from 3 to 4. Row 5 v + u is Bezier point (u, v).
 Eigen::MatrixXd raised(const Eigen::MatrixXd& bicubic) {
   const Eigen::MatrixXd up = elevation(3, 4);
   return Eigen::MatrixXd(Eigen::kroneckerProduct(up, up)) * bicubic;

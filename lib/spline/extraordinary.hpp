@@ -25,7 +25,7 @@ Eigen::MatrixXd averaged_bicubic();
 ///
 /// c0 .. c3 are the control points of the cubic c(t) along a spoke (mesh line from the extraordinary point). c0, c2, c3 and all points that determine
 /// the tangent planes on the outer sides of the faces keep their values, so the surface stays C1 there. c1 and the four inner points of each face
-/// change such that across the spoke
+/// change such that the derivatives of the position x on both sides of the spoke satisfy
 ///
 ///   x_,v (right face) + x_,u (left face) = w0 (1 - t)^2 c'(t),   w0 = 2 cos(2 pi / 3)                                     (1.2)
 ///
@@ -46,13 +46,15 @@ struct Piece {
 /// and one averaged bicubic on the square of side 2^-depth at the extraordinary point. Entries of the extraction matrices are >= 0, and their columns
 /// sum to 1.
 ///
-/// Masks (Catmull and Clark 1978): face = mean; edge = (two ends + two face points) / 4; vertex = (Q + 2 R + (N - 3) P) / N, with P the old vertex, N
-/// its valence, Q the mean of the adjacent face points and R the mean of the midpoints of its edges. The surface is C1 at the extraordinary point,
-/// otherwise C2. The spaces of a mesh and of its refinement are nested if the squares with the averaged bicubic have the same size on both meshes. If
-/// `depth` is the same on both meshes instead, the spaces are not nested, and refinement changes the surface by an amount proportional to 0.41^depth.
+/// Masks (Catmull and Clark 1978): face point = mean of the corners; edge point = mean of the two ends and the two adjacent face points; vertex point
+/// = (Q + 2 R + (N - 3) P) / N, with P the old vertex, N its valence, Q the mean of the adjacent face points and R the mean of the midpoints of its
+/// edges. The surface is C1 at the extraordinary point, otherwise C2. The spaces of a mesh and of its refinement are nested if the squares with the
+/// averaged bicubic have the same size on both meshes. If `depth` is the same on both meshes instead, the spaces are not nested, and refinement
+/// changes the surface by an amount proportional to 0.41^depth.
 std::vector<Piece> catmull_clark_pieces(int depth);
 
-/// Returns the matrix of one subdivision: it maps the 19 control points of OneRing to those of the ring with half the spacing. Shape (19, 19).
+/// Returns the matrix of one subdivision: it maps the 19 control points of OneRing to the 19 control points of the ring with half the spacing. Shape
+/// (19, 19).
 Eigen::MatrixXd catmull_clark_subdivision();
 
 }  // namespace tanktread::spline

@@ -37,7 +37,7 @@ class Reader {
     throw UserError("Surface file " + name_ + ", line " + std::to_string(line_) + ": " + what);
   }
 
-  /// Moves to the next line that is not empty. Returns false at the end of the file.
+  /// Moves to the next line that contains more than blanks and a comment. Returns false at the end of the file.
   bool next() {
     std::string text;
     while (std::getline(stream_, text)) {
@@ -111,7 +111,8 @@ Frame frame(const Space& space, const Net& net, const Site& site) {
   return {own.transpose() * b.value, own.transpose() * b.s, own.transpose() * b.t};
 }
 
-/// Returns the point at the fraction x of edge 0 (t = 0), 1 (s = 1), 2 (t = 1) or 3 (s = 0). The edge is traversed with the element on its left.
+/// Returns the point at the fraction x of an edge of `element`: edge 0 (t = 0), 1 (s = 1), 2 (t = 1) or 3 (s = 0). The edge is traversed with the
+/// element on its left.
 Site on_edge(int element, int edge, double x) {
   const auto [s, t] = turned(x, 0., 1., edge);
   return {element, s, t};
@@ -132,12 +133,12 @@ std::vector<int> numbered_places(const Space& space, const Net& net) {
   return numbers;
 }
 
-// Gauss points and weights of order five on [0, 1].
+// Nodes and weights of the five-point Gauss rule on [0, 1].
 constexpr double gauss_x[5] = {0.046910077030668004, 0.230765344947158454, 0.5, 0.769234655052841546, 0.953089922969331996};
 constexpr double gauss_w[5] = {0.118463442528094544, 0.239314335249683234, 0.284444444444444444, 0.239314335249683234,
                                0.118463442528094544};
 
-/// Returns an element that is not connected with element 0, or -1 if there is none. Elements are connected by common control points or candidate
+/// Returns an element that is not connected with element 0, or -1 if there is none. Elements are connected if they share control points or candidate
 /// points. `places`: candidate points, as numbered_places() returns them.
 int separate_element(const Space& space, const std::vector<int>& places) {
   Groups connected(space.n_points + places.size());
@@ -151,16 +152,16 @@ int separate_element(const Space& space, const std::vector<int>& places) {
   return -1;
 }
 
-/// Returns a description of the fault if a surface is not closed or not oriented outwards, or has several parts, to be used as the end of an error
-/// message; empty if there is no fault.
+/// If a surface is not closed, is not oriented outwards or has several parts, returns a description of this fault, for the end of an error message.
+/// Otherwise returns an empty text.
 ///
 /// Sides of elements are matched by their end points and midpoints. Sides without a matching side (at T-junctions or holes) must cancel as curves:
 /// the sum of the line integrals of a few smooth fields along them must be 0. If there is a hole, or an element is missing or inverted, the sum is
 /// not 0. The volume must be positive.
 std::string fault_of_closed_surface(const Space& space, const Net& net, const std::vector<int>& places) {
   constexpr int along_edge[4][3] = {{0, 1, 2}, {2, 5, 8}, {8, 7, 6}, {6, 3, 0}};
-  // Sides of elements without a matching side so far, by the indices of their end points and midpoint. The matching side runs in the opposite
-  // direction.
+  // Element sides for which no matching side has been found yet, by the indices of their end points and midpoint. The matching side runs in the
+  // opposite direction.
   std::map<std::array<int, 3>, std::pair<int, int>> open;
   int once = -1, twice = -1;
   for (int k = 0; k < int(space.elements.size()); ++k)
@@ -208,9 +209,9 @@ std::string fault_of_closed_surface(const Space& space, const Net& net, const st
   return {};
 }
 
-/// Returns a collocation point for each control point, where its function is large. A point is given by its local coordinates on every element that
-/// contains it. Candidate points are assigned in descending order of the value of the function, each to one function. Throws UserError if no
-/// candidate is left for a function.
+/// Returns a collocation point for each control point, at which the basis function of this control point is large. A point is given by its local
+/// coordinates on every element that contains it. Candidate points are assigned in descending order of the value of the function, each to one
+/// function. Throws UserError if no candidate is left for a function.
 std::vector<std::vector<Site>> largest_value_sites(const Space& space, const std::vector<int>& places) {
   std::vector<std::vector<Site>> at_place(places.size());
   struct Candidate {

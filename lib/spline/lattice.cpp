@@ -11,7 +11,7 @@ namespace tanktread::spline {
 namespace {
 
 /// Computes the connectivity of the vertices from the corners of the cells: for each vertex and direction (slot), the neighbour, the cell, and the
-/// slot in which the neighbour points back. The cell between slots 0 and 1 of a vertex is its cell of lowest index.
+/// slot of the neighbour that points back to the vertex. The cell between slots 0 and 1 of a vertex is its cell of lowest index.
 void connect(Lattice& l) {
   const int n = int(l.position.size());
   l.neighbour.assign(n, {-1, -1, -1, -1});

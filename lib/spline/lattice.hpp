@@ -30,9 +30,9 @@ struct Lattice {
   std::vector<std::array<int, 4>> neighbour;        ///< neighbour of each vertex in direction (slot) k, or -1
   std::vector<std::array<std::uint8_t, 4>> back;    ///< direction at neighbour k that points back to the vertex
   std::vector<std::array<int, 4>> cell;             ///< cell between directions k and k + 1 at each vertex, or -1
-  std::vector<std::array<std::uint8_t, 4>> corner;  ///< [v][k]: corner (0 .. 3) of adjacent cell k at which vertex v lies
+  std::vector<std::array<std::uint8_t, 4>> corner;  ///< [v][k]: index 0 .. 3 of the corner of cell[v][k] that is vertex v
 
-  std::vector<std::array<int, 4>> corners;        ///< vertices (x, y), (x+1, y), (x+1, y+1), (x, y+1) of each cell, outward orientation
+  std::vector<std::array<int, 4>> corners;        ///< vertices (x, y), (x+1, y), (x+1, y+1), (x, y+1) of each cell, counter-clockwise from outside
   std::vector<std::array<std::uint8_t, 4>> slot;  ///< direction (slot) from corner k of each cell to its corner k + 1
 
   std::vector<int> extraordinary;              ///< vertices of valence 3
@@ -56,7 +56,7 @@ struct Lattice {
   /// 0.
   int length(int v, int k, int steps) const;
 
-  /// Returns the same edge as a ray from its other end.
+  /// Returns the edge of the ray r as a ray from the other end of this edge.
   Ray reverse(Ray r) const { return {neighbour[r.vertex][r.slot], back[r.vertex][r.slot]}; }
 
   /// Returns the side of cell c from corner k to corner k + 1, as a ray.
@@ -102,13 +102,13 @@ struct Walker {
 Walker forward(const Lattice& l, Walker w, int n);
 Walker left(const Lattice& l, Walker w, int n);
 
-/// Returns the lattice on the surface of the cube [-1, 1]^3: six faces of (n 2^levels)^2 cells, 6 (n 2^levels)^2 + 2 vertices, eight extraordinary
-/// points.
+/// Returns the lattice on the surface of the cube [-1, 1]^3: with n = `elements_per_side`, six faces of (n 2^levels)^2 cells, 6 (n 2^levels)^2 + 2
+/// vertices, eight extraordinary points.
 Lattice cube_lattice(int elements_per_side, int levels);
 
-/// Returns a lattice of one face, periodic in x (azimuth) and not periodic in y (from the south pole at y = 0 to the north pole), with a row of
-/// cells of zero height at each pole for the repeated end knots. It has m 2^levels by r 2^levels + 2 cells. The index of a vertex is x + y m
-/// 2^levels. Positions are on the unit sphere, with the poles on the x3 axis.
+/// Returns a lattice of one face, periodic in x (azimuth) and not periodic in y (from the south pole at y = 0 to the north pole), with a row of cells
+/// of zero height at each pole for the repeated end knots. With m azimuthal and r meridional elements, it has m 2^levels by r 2^levels + 2 cells. The
+/// index of a vertex is x + y m 2^levels. Positions are on the unit sphere, with the poles on the x3 axis.
 Lattice polar_lattice(int azimuthal_elements, int meridional_elements, int levels);
 
 }  // namespace tanktread::spline

@@ -27,7 +27,7 @@ class Places {
   }
 
  private:
-  static double along(const Vec3& x) { return x.dot(Vec3(0.61, 0.53, 0.59)); }  // coordinate in a direction that no mesh is aligned with
+  static double along(const Vec3& x) { return x.dot(Vec3(0.61, 0.53, 0.59)); }  // coordinate along a direction with which no mesh is aligned
 
   std::vector<Vec3> places_;
   double tolerance_;

@@ -39,7 +39,7 @@ struct PolePoint {
   Eigen::Vector2d place;
 };
 
-/// Returns three of the points p around the origin whose triangle has a large area: no exchange of one point makes it larger.
+/// Returns the indices of three of the points p around the origin that form a large triangle: its area cannot be increased by exchanging one point.
 std::array<int, 3> largest_triangle(const std::vector<Eigen::Vector2d>& p) {
   constexpr double clearly = 1e-9;
   std::array<int, 3> best{0, 0, 0};
@@ -68,7 +68,7 @@ std::array<int, 3> largest_triangle(const std::vector<Eigen::Vector2d>& p) {
   return best;
 }
 
-/// Returns the corners of the triangle with these midpoints of its sides. Corner k is opposite midpoint k.
+/// Returns the corners of the triangle whose sides have the midpoints `middle`. Corner k is opposite to midpoint k.
 std::array<Eigen::Vector2d, 3> around(const std::array<Eigen::Vector2d, 3>& middle) {
   const Eigen::Vector2d sum = middle[0] + middle[1] + middle[2];
   return {sum - 2 * middle[0], sum - 2 * middle[1], sum - 2 * middle[2]};

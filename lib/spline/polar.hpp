@@ -43,7 +43,7 @@ std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 /// last. Element::face is 0. Element::origin and Element::size are fractions of the whole domain. The pieces of an element divide its size in
 /// azimuth.
 ///
-/// With PoleRule::plain, a pole is a collapsed side of m elements. Its collocation point is at s = 1/2 on each of them.
+/// With PoleRule::plain, a pole is a collapsed side of m elements. The collocation point of the pole is at s = 1/2 on this side of each element.
 ///
 /// With PoleRule::c1 (after Speleers and Toshniwal 2021), three functions N_k replace the functions N_0j of row 0, at the pole, and N_1j of row 1,
 /// next to it. Let f_j = 2 pi j / m be the azimuths of the functions of a row, d_j = (cos f_j, sin f_j), and l_k the barycentric coordinates in a
@@ -51,9 +51,9 @@ std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 ///
 ///   N_k = l_k(0) sum_j N_0j + sum_j l_k(d_j) N_1j,   k = 0, 1, 2
 ///
-/// Three of the d_j are the midpoints of the sides of the triangle. They are chosen such that the triangle is as large as possible. It then contains
-/// all d_j, so all l_k(d_j) >= 0. The collocation points of the three functions are the generalised Greville points of the N_1j with these three d_j.
-/// The collocation matrix then has the condition number of tensor-product splines.
+/// Three of the d_j are the midpoints of the sides of the triangle. These three d_j are chosen such that the triangle is as large as possible. The
+/// triangle then contains all d_j, so all l_k(d_j) >= 0. The collocation points of the three functions are the generalised Greville points of the
+/// N_1j with these three d_j. The collocation matrix then has the condition number of tensor-product splines.
 Space space(const PolarMesh& mesh);
 
 /// Returns the space on a mesh made by polar() and then refined. It consists of analysis-suitable T-splines with one control point per anchor, except
@@ -93,7 +93,7 @@ const std::array<Corners, 3>& thirds_of_triangle();
 
 /// One of the non-degenerate Bezier elements that replace an element with a side at a pole.
 struct PolePiece {
-  double from = 0, to = 1;     ///< range of the local coordinate v of the degenerate element in the triangle that contains this piece
+  double from = 0, to = 1;     ///< range of the local coordinate v (of the degenerate element) that the triangle of this piece covers
   Corners corners;             ///< corners of the piece, in barycentric coordinates of the triangle that contains it
   Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 

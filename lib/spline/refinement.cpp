@@ -10,8 +10,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// If a path arrives at a pole of a lattice with poles, extends it through the cells of zero height there (repeated end knots), to the border of the
-/// lattice.
+/// If `ray`, with which the path continues, is at a pole, extends the path through the cells of zero height there (repeated end knots) to the border
+/// of the lattice.
 void run_out(const Lattice& l, Ray ray, std::vector<Ray>& path) {
   while (!l.ends(ray.vertex, ray.slot) && l.length(ray.vertex, ray.slot, 1) == 0) {
     path.push_back(ray);
@@ -91,8 +91,8 @@ struct Cut {
 };
 
 /// Returns the representative of a cut (bisection of an element in one direction): the first of the cut and its images under the symmetries, in the
-/// order of elements, then directions. Equivalent cuts have one representative, so that a bisection refused because the lattice is too coarse is
-/// counted once for all of them.
+/// order of elements, then directions. Equivalent cuts have one representative, so that a refused bisection (the lattice is too coarse) is counted
+/// only once.
 Cut first_image(const Cut& cut, const Lattice& lattice, const Tiling& tiling, const std::vector<LatticeMap>& images) {
   Cut first = cut;
   for (const LatticeMap& map : images) {

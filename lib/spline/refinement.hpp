@@ -1,6 +1,6 @@
 #pragma once
-// Local refinement of a T-mesh such that its splines stay linearly independent and their space contains the old one; coarsening; the symmetries of
-// the mesh that refinement and coarsening keep.
+// Local refinement of a T-mesh such that the splines stay linearly independent and the new spline space contains the old one; coarsening; the
+// symmetries of the mesh that refinement and coarsening keep.
 
 #include <optional>
 #include <span>
@@ -30,7 +30,8 @@ struct TileImage {
 };
 TileImage image(const Lattice& lattice, const LatticeMap& map, const Tiling& tiling, int tile);
 
-/// Returns the unique symmetry of the lattice that maps the ray `from` to the ray `to` and is mirrored or not, as given; nothing if there is none.
+/// Returns the unique symmetry of the lattice that maps the ray `from` to the ray `to`: a reflection if `mirrored`, otherwise a rotation; nothing if
+/// there is none.
 std::optional<LatticeMap> lattice_map(const Lattice& lattice, Ray from, Ray to, bool mirrored);
 
 /// Returns the map of the lattice that agrees with a map of Bezier elements; nothing if there is no such map. `element`: for every Bezier element e,
@@ -65,7 +66,7 @@ struct Refinement {
 /// extraordinary point, all elements of the two inner rings are bisected. Edges are only added. The result depends on the set of marks but not on
 /// their order. If the mesh has the symmetries of `rules.images`, it keeps them, because marks and repairs are applied to all images.
 ///
-/// Source: Scott, Li, Sederberg, Hughes 2012, with a local instead of a global choice of T-junctions, and in addition the rule on overlaps and
+/// Source: Scott, Li, Sederberg, Hughes 2012, with a local instead of a global choice of T-junctions, and with additional rules on overlaps and
 /// extraordinary points.
 Refinement refine(const TMesh& mesh, const std::vector<Mark>& marks, const RepairRules& rules = {});
 

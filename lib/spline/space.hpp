@@ -15,7 +15,7 @@ namespace tanktread::spline {
 ///
 ///   N_A(s, t) = sum_b extraction(A, b) B_b(s, t),   b = (p + 1) j + i,  B_b = B_i(s) B_j(t)
 ///
-/// The element is right-handed: x_,s x x_,t points out of a closed surface, and from the wall of a tube into the fluid.
+/// The element is right-handed: the cross product of dx/ds and dx/dt points out of a closed surface, and from the wall of a tube into the fluid.
 struct Element {
   int degree = 3;              ///< degree p in s and t: 3, or 4 around an extraordinary point with `g1`, or 2 to 6 from a file
   std::vector<int> points;     ///< indices of the m control points (16 on a regular element)
@@ -31,8 +31,8 @@ struct Site {
   double s = 0, t = 0;
 };
 
-/// A spline space on a surface with control points 0 .. n_points-1 and one generalised Greville point for each. The surface is closed, except for the
-/// wall of a tube.
+/// A spline space on a surface with control points 0 .. n_points-1 and one generalised Greville point for each control point. The surface is closed,
+/// except for the wall of a tube.
 struct Space {
   int n_points = 0;
   std::vector<Element> elements;

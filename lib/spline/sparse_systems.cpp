@@ -16,7 +16,7 @@ constexpr int fill = 2;
 
 }  // namespace
 
-/// Assembles the matrix column by column: for each unknown, sums its columns in the matrices of all elements that contain it, in a dense vector.
+/// Assembles the matrix column by column: for each unknown, adds up the columns of this unknown in all element matrices, in a dense vector.
 Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& local) {
   struct Place {
     std::size_t element;

@@ -12,7 +12,7 @@ namespace tanktread::spline {
 /// Element matrix: adds factor * values(i, j) to the entry (unknowns[i], unknowns[j]). `unknowns` and `values` must exist until the assembly ends.
 struct LocalMatrix {
   std::span<const int> unknowns;  ///< indices of the m unknowns of the element
-  const Eigen::MatrixXd* values;  ///< symmetric matrix, shape (m, m) or larger
+  const Eigen::MatrixXd* values;  ///< symmetric matrix, shape at least (m, m); rows and columns beyond m are ignored
   double factor = 1;
 };
 
@@ -28,10 +28,12 @@ class IncompleteSolver {
   ~IncompleteSolver();
   IncompleteSolver(IncompleteSolver&&) noexcept;
 
-  /// Factors the square matrix A, to which the solver keeps a reference. Returns whether the factorisation succeeded.
+  /// Factors the square matrix A. A must exist as long as solve() is called, because the solver keeps a reference to it. Returns whether the
+  /// factorisation succeeded.
   bool factor(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a);
 
-  /// Returns x = A^-1 b with a relative residual of 1e-14, or the result of 30 iterations. The iteration begins at `start`, or at 0.
+  /// Returns x = A^-1 b with a relative residual of 1e-14; if this is not reached, the result of 30 iterations. The iteration begins at `start`, if
+  /// given, otherwise at 0.
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
   Eigen::VectorXd solve(const Eigen::VectorXd& b, const Eigen::VectorXd& start) const;
 

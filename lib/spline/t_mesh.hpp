@@ -10,7 +10,7 @@ namespace tanktread::spline {
 /// A checkpoint stores `edges` and `spacing`. To restore the mesh, assign them to the mesh that cube() or polar() returns for the same arguments.
 struct TMesh {
   std::shared_ptr<const Lattice> lattice;
-  /// bit k of entry v is set if the unit edge in direction (slot) k at lattice vertex v exists; stored at both ends
+  /// bit k of entry v is set if the unit edge in direction (slot) k at lattice vertex v exists; each edge is stored at both of its ends
   std::vector<std::uint8_t> edges;
   std::vector<int> spacing;  ///< spacing h at each extraordinary point: within 3 h of it the mesh is a uniform lattice of spacing h
 
@@ -19,22 +19,22 @@ struct TMesh {
   void set(Ray edge, bool present) { lattice->set(edges, edge, present); }
 };
 
-/// Returns the uniform mesh on the surface of a cube with n^2 elements per face, n >= 3. The lattice permits `levels` bisections of each element.
-/// Spline spaces are in extraction.hpp. Throws UserError if n < 3 (the rings of elements around different extraordinary points would overlap) or the
-/// lattice is too large: more than 12 levels, or n 2^levels above 1536.
+/// Returns the uniform mesh on the surface of a cube with n^2 elements per face, n = `elements_per_side` >= 3. The lattice permits `levels`
+/// bisections of each element. Spline spaces are in extraction.hpp. Throws UserError if n < 3 (the rings of elements around different extraordinary
+/// points would overlap) or the lattice is too large: more than 12 levels, or n 2^levels above 1536.
 TMesh cube(int elements_per_side, int levels = 0);
 
-/// Returns the uniform mesh on a sphere with two poles: m elements in azimuth and r from pole to pole. The lattice permits `levels` bisections of
-/// each element. Spline spaces are in polar.hpp. Throws UserError if m < 4, r < 4, or the lattice is too large: more than 12 levels, or m 2^levels or
-/// r 2^levels above 4096.
+/// Returns the uniform mesh on a sphere with two poles: m = `azimuthal_elements` in azimuth and r = `meridional_elements` from pole to pole. The
+/// lattice permits `levels` bisections of each element. Spline spaces are in polar.hpp. Throws UserError if m < 4, r < 4, or the lattice is too
+/// large: more than 12 levels, or m 2^levels or r 2^levels above 4096.
 TMesh polar(int azimuthal_elements, int meridional_elements, int levels = 0);
 
 /// Returns whether the vertex is an anchor, which means that it has a control point: mesh edges of both directions meet there. T-junctions and
 /// extraordinary points are anchors.
 bool is_anchor(const TMesh& mesh, int vertex);
 
-/// Returns the lattice vertices of the control points in ascending order; 6 n^2 + 2 on the uniform cube. Control point i of space(mesh, ...) is at
-/// vertex anchors(mesh)[i].
+/// Returns the lattice vertices of the control points in ascending order: 6 n^2 + 2 vertices on the uniform cube with n^2 elements per face. Control
+/// point i of space(mesh, ...) is at vertex anchors(mesh)[i].
 std::vector<int> anchors(const TMesh& mesh);
 
 /// Returns the inverse of anchors(mesh): the control point at each lattice vertex, or -1.
@@ -44,8 +44,8 @@ std::vector<int> control_points(const TMesh& mesh);
 struct Rectangle {
   int face, x, y, width, height;
 };
-/// Returns the sides of a rectangle as rays from the corners (x, y), (x+w, y), (x+w, y+h) and (x, y+h), each towards the next corner,
-/// counter-clockwise seen from outside.
+/// Returns the sides of a rectangle as rays from the corners (x, y), (x+w, y), (x+w, y+h) and (x, y+h), with the width w and height h of r. Each ray
+/// points to the next corner, counter-clockwise seen from outside.
 std::array<Ray, 4> sides(const Lattice& lattice, const Rectangle& r);
 
 /// Returns whether a side of the rectangle is collapsed to a pole.

@@ -17,8 +17,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Largest residual of the least-squares fit for which spaces count as nested, for a field of order 1. It is far above round-off and far below the
-/// residual of spaces that are not nested.
+/// Two spaces count as nested if the residual of the least-squares fit, for a field of order 1, is at most this value. The value is far above
+/// round-off and far below the residual of spaces that are not nested.
 constexpr double nested = 1e-10;
 
 /// Values of the functions of both spaces at one point.
@@ -28,8 +28,9 @@ struct Sample {
   Eigen::VectorXd old_basis, new_basis;
 };
 
-/// Computes the values of the functions at the 4 x 4 Gauss points of some elements of one space, and finds these points in the other space. The
-/// weights include the parametric area of the element, or are equal for all elements.
+/// Computes the values of the functions at the 4 x 4 Gauss points of some elements of one space (`from` if `of_from`, otherwise `to`), and finds
+/// these points in the other space. If `by_area`, the weights contain the parametric area of the element; otherwise they are the same for all
+/// elements.
 class Sampling {
  public:
   Sampling(const Space& from, const Space& to) : from_(from), to_(to), in_from_(from), in_to_(to) {}

@@ -22,7 +22,8 @@ class Transfer {
 
   struct Result {
     Net net;
-    /// largest |new - old| at the Gauss points of the changed elements; about 1e-13 (round-off) if the spaces are nested and the field is of order 1
+    /// largest |new field - old field| at the Gauss points of the changed elements; about 1e-13 (round-off) if the spaces are nested and the field is
+    /// of order 1
     double residual;
   };
   Result operator()(const Net& field) const;

@@ -51,15 +51,16 @@ void add_centroid(const Vec3& centroid, Columns& to) {
 /// Returns the cosine of the angle between the vector y and the first direction of the plane.
 double ahead(const FlowPlane& plane, const Vec3& y) { return plane.components(y).normalized()[0]; }
 
-/// Returns the site at which the ray from `from` in the first direction of the plane meets an element, by Newton's method from a starting site.
+/// Returns the parametric point at which the ray from `from` along the first direction of the plane meets the element, by Newton's method from the
+/// parametric point `site`.
 spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site site, const Vec3& from, const FlowPlane& plane) {
-  // Limits a Newton step so that the parameters stay inside the element, because at a pole on its boundary the iteration would stop.
+  // Limits a Newton step so that s and t stay inside the element, because the iteration would stop at a pole on the boundary of the element.
   const auto stepped = [](double at, double step) { return std::clamp(at + step, 0.1 * at, 1 - 0.1 * (1 - at)); };
   for (int iteration = 0; iteration < 20; ++iteration) {
     const surface::Jet at = surface::jet(element.patch(), site.s, site.t);
     const Vec3 y = plane.components(at.x - from), ds = plane.components(at.s), dt = plane.components(at.t);
     const double determinant = ds[1] * dt[2] - ds[2] * dt[1];
-    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // also ends the iteration at a pole, where a derivative may be exactly zero
+    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // ends if the Jacobian is singular, as at a pole, where `ds` or `dt` is 0
     site.s = stepped(site.s, -(y[1] * dt[2] - y[2] * dt[1]) / determinant);
     site.t = stepped(site.t, -(ds[1] * y[2] - ds[2] * y[1]) / determinant);
   }
@@ -254,7 +255,7 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
       const spline::Site site{e, (k % intervals + 0.5) / intervals, (k / intervals + 0.5) / intervals};
       if (const double here = of(site); here > nearest + 1e-12) start = site, nearest = here;
     }
-    if (nearest < 0.5) continue;  // skips elements with all points more than about 60 degrees off the direction (0.5 is the cosine)
+    if (nearest < 0.5) continue;  // skips elements whose points are all more than about 60 degrees off the ray (cos 60 degrees = 0.5)
     for (const spline::Site& site : {start, straight_ahead(element, start, from, plane)})
       if (const double here = of(site); here > most + 1e-12) best = site, most = here;
   }
@@ -317,7 +318,7 @@ DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::
                            const Net& slope, const coupling::Ranks& ranks) {
   const std::vector<int> blocks = ranks.share(geometry.n_blocks());
   const std::vector<int> elements = own_elements(geometry, ranks);
-  const std::vector<int>& sites = body.symmetry.fundamental();  // fundamental sites; all other collocation sites are their symmetry images
+  const std::vector<int>& sites = body.symmetry.fundamental();  // collocation sites of which all other sites are symmetry images
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
   const membrane::ElementTensions tensions = membrane.element_tensions(x, elements);

@@ -1,5 +1,5 @@
 #pragma once
-// Measurements on a particle, and its columns in the results.
+// Measurements on a particle, and the columns of a particle in the results.
 
 #include <span>
 
@@ -41,7 +41,7 @@ struct DeformingRow : ParticleRow {
 
 struct RigidRow : ParticleRow {
   Vec3 angular_velocity = Vec3::Zero(), drag = Vec3::Zero(), torque = Vec3::Zero();
-  Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< quaternion of the rotation, the scalar part first
+  Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< quaternion of the rotation since the start, the scalar part first
   double shape_velocity = 0;                             ///< shape velocity (6.8), computed only if Time/steady tolerance is given
   void add_columns(const Scene& one, Columns& to) const override;
 };
@@ -55,7 +55,7 @@ struct Together {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Each of these functions adds one group of columns. Rows of several kinds contain these columns.
+/// Each of these functions adds one group of columns that several kinds of rows contain.
 void add_points(int n_points, Columns& to);
 void add_size(const surface::Measures& measures, Columns& to);
 void add_stresslet(const Mat3& stresslet, Columns& to);
@@ -68,37 +68,39 @@ Eigen::Vector<double, 6> components(const Mat3& tensor);
 /// Returns true if the flow is unbounded and affine with a nonzero rate of strain, so that `intrinsic_viscosity` is defined.
 bool strains(const Scene& scene);
 
-/// Computes the data that follow from the shape x and the velocity `slope` of a capsule or drop. Collective.
+/// Computes the row data of a capsule or drop that follow from its shape x and velocity `slope`. Other data, such as the stresslet, are not set.
+/// Collective.
 DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
                            const Net& slope, const coupling::Ranks& ranks);
 
-/// Sets the velocity of the centroid and the tank-treading of a surface x whose material moves at the velocity v.
+/// Sets in `now` the velocity of the centroid and the tank-treading of the surface x, whose material moves at the velocity v.
 void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
 
-/// Computes the Taylor parameter D and the inclination in the plane of the flow, and the extents along x1, x2 and x3. If the flow is not planar, the
-/// plane contains the longest and the shortest axis of inertia. If the middle axis is as long as the longest or the shortest axis, this plane is not
-/// determined, and the inclination is NaN. Ranks share the elements. Collective.
+/// Computes the Taylor parameter D and the inclination in the plane of the flow, and the extents along x1, x2 and x3. If the flow is not planar, uses
+/// the plane of the longest and the shortest axis of inertia instead. If the middle axis is as long as the longest or the shortest axis, this plane
+/// is not determined, and the inclination is NaN. Ranks share the elements. Collective.
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& plane, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks);
 
-/// Returns S:E/(2 mu V E:E), where S is the stresslet of the row and E the symmetric part of the flow's gradient; 0 if the flow is not affine, and
-/// NaN if E is zero or the amplitude of the flow is zero up to rounding. `flow`: flow at the time of the row.
+/// Returns S:E/(2 mu V E:E), with the stresslet S and volume V of the row, the symmetric part E of the flow's gradient and mu = `viscosity`; 0 if the
+/// flow is not affine, and NaN if E is zero or the amplitude of the flow is zero up to rounding. `flow`: flow at the time of the row.
 double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, const ParticleRow& now);
 
-/// Returns the row of a rigid body at x, which moves by `motion` and has turned by `turn`. `flow`: flow at the time of the row. Drag and torque are
-/// not set. Collective.
+/// Returns the row of a rigid body with the surface x, the velocities `motion` and the rotation `turn` since the start. `flow`: flow at the time of
+/// the row. Drag and torque are not set. Collective.
 RigidRow rigid_row(const Scene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
                    const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
                    const coupling::Ranks& ranks);
 
-/// Returns the angle of y in the plane, in degrees in (-180, 180], from the plane's first direction in the sense of tank-treading.
+/// Returns the angle of y in the plane, in degrees in (-180, 180], from the plane's first direction, positive in the sense of positive tank-treading
+/// (clockwise with x1 to the right and x3 up).
 double angle_in(const FlowPlane& plane, const Vec3& y);
 
 /// Returns the parametric point at which the ray from `from` along the first in-plane direction (a in FlowPlane) meets the surface.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
 /// Returns the largest normal velocity |v.n| at the collocation sites `sites`, with v = `slope`, divided by Scene::speed(), or by R_C per unit time
-/// if this speed is 0. v is relative to the velocity of the centroid. It is zero if the shape is steady.
+/// if this speed is 0. v is relative to the velocity of the centroid. The result is zero if the shape is steady.
 double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 

@@ -14,7 +14,7 @@
 namespace tanktread {
 
 /// Phase of a material point: its angle, which grows beyond 360 degrees after a whole turn, and the mean angular velocity of the surface at the last
-/// step.
+/// step (`rate`, in radians per time).
 struct PhaseAngle {
   double degrees = 0, rate = 0;
 
@@ -33,11 +33,11 @@ struct RunTotals {
   Warnings::Memory warnings;
   std::vector<PhaseAngle> phase_angle;     ///< phase of each particle
   coupling::Contacts contacts;             ///< contacts that hold particles apart
-  output::Entries<double> seconds;  ///< wall time of the first rank, by phase of the program
+  output::Entries<double> seconds;  ///< wall time of the first rank in each phase of the program
 };
 
 /// Calls act(name, kinds of particles, description, value) for every counter of a run, for example the number of accepted steps. The kinds of
-/// particles are those for which the counter is reported. Checkpoints and the summary use these names.
+/// particles are those for which the counter is reported. Checkpoints and the summary store each counter under its name.
 template <class Some, class Act>
 void each_count(Some& totals, const Act& act) {
   constexpr const char *moving = "capsule, drop, free body", *all = "all";

@@ -1,5 +1,5 @@
 #pragma once
-// Series of a run: the columns of its progress, and the order of all columns in a row of the results.
+// Columns (time series) of the results of a run: the columns about its progress, and the order of all columns in a row.
 
 #include <optional>
 #include <span>
@@ -19,8 +19,8 @@ namespace tanktread {
 struct ProgressRow {
   motion::StepReport step = {};  ///< report of the time step that ended at this row
   double wall_seconds = 0;
-  std::optional<long> evaluations = {};  ///< number of velocity evaluations in a search for steady shapes, summed over the systems for all values of
-                                         ///< the continuation parameters; if not set, the number in `work` is used
+  std::optional<long> evaluations = {};  ///< number of velocity evaluations in a search for steady shapes, summed over all systems (one per value of
+                                         ///< the continuation parameters); if not set, the number in `work` is used
   double time = 0;
   coupling::Work work = {};
   void add_columns(const Scene& scene, Columns& to) const;
@@ -34,8 +34,8 @@ struct SteadyRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the columns that each row of a run's results has, in their order and without values. The columns of one of several particles are named
-/// `<particle>/<name>`.
+/// Returns the columns that each row of a run's results has, in the order of the rows and without values. If there are several particles, the columns
+/// of each are named `<particle>/<name>`.
 Columns columns(const Scene& scene);
 
 /// Returns the columns of the run as a whole. If `every`, also returns the columns that this scene does not have, for the manual (see Columns).
@@ -45,14 +45,14 @@ Columns run_columns(const Scene& scene, bool every = false);
 /// this particle does not have, for the manual.
 Columns particle_columns(const Scene& one, bool every = false);
 
-/// Add the columns of registered series: per particle, or of the run.
+/// Adds the columns of user-defined series: the first function for one particle, the second for the whole run.
 void add_series(const Scene& scene, double time, const RecordedParticle& particle, Columns& to);
 void add_series(const Scene& scene, double time, std::span<const RecordedParticle> particles, Columns& to);
 
 /// Sorts the columns of the program in the order of the manual. The columns of user-defined parts follow in the order in which they were added.
 void put_in_order(Columns& columns);
 
-/// Sorts the columns of a row in the order of the manual and checks them. Throws RunFailure like Columns::check.
+/// Sorts the columns of a row in the order of the manual and checks them. Throws RunFailure if the check fails (see Columns::check).
 void finish(Columns& row);
 
 /// Returns a page in Markdown with the series and fields of the results, the entries of the summary and the derived and dimensionless numbers of a

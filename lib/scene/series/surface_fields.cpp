@@ -71,7 +71,7 @@ motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::St
 }
 
 /// Transfers the control net y of a state to the current meshes. `shape`: shape on the current meshes. `before`: the fields on the previous meshes.
-/// The rows of y after the shape are the coefficients of these fields and are transferred from the previous meshes.
+/// The rows of y below the shape are the coefficients of the fields; they are transferred from the previous meshes.
 Net SurfaceFields::transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
   before.motion_->set_fields(y);
   Net now = motion_->start(shape);
@@ -151,7 +151,7 @@ double SurfaceFields::power(const Net& v) const {
   return sum;
 }
 
-/// Adds the values that registered fields and loads write to snapshots. The values are 0 on particles that have no quantity of this name.
+/// Adds the values that registered fields and loads write to snapshots. Each quantity is 0 on particles that do not have it.
 void SurfaceFields::add_registered(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
   std::map<std::string, Eigen::MatrixXd> all;
   const auto add = [&](std::size_t p, const std::vector<membrane::SurfaceValues>& several) {

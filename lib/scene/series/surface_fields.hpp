@@ -25,12 +25,12 @@ struct SurfactantRow {
   void add_columns(Columns& to) const;
 };
 
-/// Returns the scene with the factors of field values in states (`field_length`) that the scene `first` has. States of one branch of steady shapes
-/// thus have the same meaning at all values of a parameter that changes R_C.
+/// Returns `scene` with the `field_length` of each particle, by which field values are multiplied in a state, set to R_C of this particle in the
+/// scene `first`. All states of a branch of steady shapes thus use the same lengths, even if a parameter of the branch changes R_C.
 Scene with_field_lengths_of(const Scene& first, Scene scene);
 
-/// Fields on the current meshes of all members. Without any field, states consist only of the control nets of the shapes, and this object stores
-/// nothing.
+/// Fields on the current meshes of all members (particles). If there is no field, states consist only of the control nets of the shapes, and this
+/// object stores no data.
 class SurfaceFields {
  public:
   /// The objects `members` and `capsule` must outlive this object.
@@ -58,8 +58,8 @@ class SurfaceFields {
   /// `distance` of y.
   void set_state(const Net& y, double distance = 0);
 
-  /// Returns a function that evaluates all fields of particle p, scaled to order 1, in the state set last. The function is empty if there are no
-  /// fields.
+  /// Returns a function that evaluates all fields of particle p, scaled to order 1, at a parametric point in the state set last. The function is
+  /// empty if there are no fields.
   surface::FieldsAt values_at(std::size_t p) const;
 
   /// Adds the contributions of the fields of particle p to the particle's row `now`, and the columns of its fields and registered loads to `to`. `y`
@@ -67,7 +67,8 @@ class SurfaceFields {
   void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
   /// Returns the power of the loads of all fields if the surface material moves at the velocity v.
   double power(const Net& v) const;
-  /// Adds the values that fields and loads write to snapshots at the shape x, and corrects the tensions of interfaces with surfactant.
+  /// Adds the values that fields and loads write to snapshots at the shape x, and replaces the tensions of interfaces with surfactant by their values
+  /// at the local concentration.
   void add_to(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const;
 
  private:

@@ -91,7 +91,8 @@ Mat3 AmbientFlow::deformation(double time) const {
   return history_ ? history_->deformation(steady, time) : exponential(time * steady);
 }
 
-/// Seven angles suffice, because the field is a polynomial of degree three in the sine and cosine of the angle.
+/// If the direction changes in time, returns the flow at seven angles. A symmetry at these angles holds at every angle, because the field is a
+/// polynomial of degree three in the sine and cosine of the angle, which seven values determine.
 std::vector<AmbientFlow> AmbientFlow::directions() const {
   if (!history_ || !history_->angles) return {*this};
   std::vector<AmbientFlow> all;

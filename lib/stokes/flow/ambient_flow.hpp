@@ -23,7 +23,7 @@ namespace tanktread::stokes {
 ///
 /// or a registered flow (UserFlow). Between plates at p and p + D n that move with V1 and V2, with a pressure gradient g along them, the flow is
 ///
-///   v + d1 + (d2 - d1) z/D + g z (z - D)/(2 mu),   z = n.(x - p),   d = V - v on each plate                               (2.48)
+///   v + d1 + (d2 - d1) z/D + g z (z - D)/(2 mu),   z = n.(x - p),   d1 = V1 - v, d2 = V2 - v on the plates                (2.48)
 ///
 /// The amplitude of every flow may change in time, and so may its direction, except in a duct (FlowHistory).
 class AmbientFlow {
@@ -38,8 +38,8 @@ class AmbientFlow {
   bool at(double time, double start);
   double next_kink(double time) const;  ///< returns the first time after `time` at which the flow is not smooth in time, or infinity
 
-  /// Returns this flow. If its direction changes in time, returns copies of it in several directions instead. A symmetry of all these copies is a
-  /// symmetry of the flow in every direction.
+  /// Returns this flow. If its direction changes in time, returns copies of it rotated to several directions instead. A symmetry of all these copies
+  /// is a symmetry of the flow in every direction.
   std::vector<AmbientFlow> directions() const;
 
   /// Returns the velocity at a point, units length/time. In a duct, evaluating many points at once is much faster.
@@ -60,8 +60,8 @@ class AmbientFlow {
   /// the gradient `cell_gradient` (2.51).
   Mat3 deformation(double time) const;
 
-  /// Return d and H of the quadratic part of the flow (2.20). They are 0 for an affine flow. They do not include a registered flow, which need not be
-  /// quadratic.
+  /// Returns d (`direction`) and H (`curvature`) of the quadratic part of the flow (2.20). Both are 0 for an affine flow. They do not include a
+  /// registered flow, which need not be quadratic.
   const Vec3& direction() const { return field_.direction; }
   const Mat3& curvature() const { return field_.curvature; }
 
@@ -70,7 +70,8 @@ class AmbientFlow {
 
   double amplitude() const { return moment_.amplitude; }  ///< amplitude at the time set last
 
-  /// Returns the matrix a Q, amplitude times rotation, at the time set last. Velocities of walls and pressure gradients are multiplied by it.
+  /// Returns the matrix a Q, amplitude times rotation, at the time set last. Velocities of walls and pressure gradients are multiplied by this
+  /// matrix.
   Mat3 change() const { return moment_.amplitude * moment_.turn; }
 
   /// Returns the duct flow; null if there is none.
@@ -88,7 +89,7 @@ class AmbientFlow {
   AmbientFlow turned(const Mat3& q, double a) const;
 
   std::shared_ptr<const DuctFlow> duct_;
-  std::shared_ptr<const UserFlow> user_;  // user-defined flow, null for built-in types. field_ is added to it, and is 0 without plates
+  std::shared_ptr<const UserFlow> user_;  // user-defined flow, null for built-in types. field_ is added to this flow, and is 0 if there are no plates
   std::optional<FlowHistory> history_;
   Field steady_, field_;  // steady_: field at amplitude 1. field_: field at the current time
   FlowHistory::Moment moment_;

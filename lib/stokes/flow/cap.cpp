@@ -16,7 +16,7 @@ using surface::Vec2;
 
 constexpr int close_order = 16;
 
-/// Distance from the plane of the cap below which points get adaptive rules, divided by half the length of the longest curve segment of the outline.
+/// At points closer than this to the plane of the cap, the integral is adaptive. Unit: half the length of the longest curve segment of the outline.
 constexpr double close_by = 4;
 
 std::vector<double> breaks(const surface::Outline& outline, int side) {
@@ -124,7 +124,7 @@ Net Cap::integral(const Net& x) const {
   return c;
 }
 
-/// Returns 6 n_k M_jk / 8 pi with M_jk = int h s_j s_k / s^5 dS and s = x - y. By the divergence theorem in the plane of the cap,
+/// Returns 6 n_k M_jk/(8 pi) with M_jk = int h s_j s_k / s^5 dS and s = x - y. By the divergence theorem in the plane of the cap,
 ///   M_1a = -h^2/3 oint nu_a / s^3,   M_ab = -h/3 oint rho_a nu_b / s^3 + delta_ab W/3,   M_11 = W - M_22 - M_33.
 /// Here h = s_1, rho = (s_2, s_3), nu is the outward normal of the outline in the plane, and a and b are 2 or 3. W is the solid angle of the cap,
 /// sign(h) oint rho.nu / (s (s + |h|)).

@@ -10,7 +10,7 @@ namespace tanktread::stokes {
 
 /// A plane cap across a tube at x1 = `place`. The traction on it is -p e1 with a constant p, and its single layer (2.1) is -p c with the integral
 ///
-///   c(x0) = (1 / 8 pi) int G(x, x0) e1 dS                                                                        (2.13)
+///   c(x0) = 1/(8 pi) int G(x, x0) e1 dS                                                                         (2.13)
 ///
 /// Computes c by a line integral over the outline, which is exact for any section. With rho = (x - x0) in the plane, the outward normal nu of the
 /// outline in the plane, h = place - x0_1 and r^2 = rho^2 + h^2,
@@ -31,8 +31,8 @@ class Cap {
   /// Returns the integral c (2.13) at the rows of x; fast for points off the plane of the cap.
   Net integral(const Net& x) const;
 
-  /// Returns the flow rate along x1 through the cap due to a point source of a double layer at y with normal n, for each component j of its strength:
-  /// int (1 / 8 pi) T_ijk(y, x) n_k dS(x) with the index i of T along x1. Only for points off the plane of the cap.
+  /// Returns the flow rate along x1 through the cap due to a double-layer point singularity at y with normal n, for each component j of its strength:
+  /// int T_1jk(y, x) n_k dS(x)/(8 pi). Only for points off the plane of the cap.
   Vec3 double_layer_flow(const Vec3& y, const Vec3& n) const;
 
   /// Returns the flow rate of the field c (2.13) through the cap, along x1: int c_1 dS over the cap.

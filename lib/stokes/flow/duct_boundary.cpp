@@ -263,7 +263,7 @@ Eigen::VectorXd BoundaryProfile::density(const OutlineSpace& space) const {
   return matrix.partialPivLu().solve(right).head(n);
 }
 
-/// Adds the quadrature nodes of (2.17). Returns, for each node, the flux q times the weight dl of the node, a length along the outline.
+/// Adds the quadrature nodes of (2.17). Returns, for each node, the flux q times the weight dl of the node (dl is a length along the outline).
 Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eigen::VectorXd& sigma) {
   const auto& rule = quadrature::gauss(points);
   Eigen::VectorXd flux(points * n_elements_);

@@ -29,7 +29,7 @@ struct OutlineSite {
 /// Splines in a parameter t on each side of an outline. On a closed side, t is the parameter u of the curve, and the splines are periodic. On a side
 /// between corners, t runs from 0 to 1, and u(t) is graded towards both ends,
 ///   u = u_first + (u_last - u_first) w(t),   w = t^p/(t^p + (1 - t)^r).
-/// The exponent p belongs to the first corner and r to the last corner: 2 if the angle of the corner is at most a right angle, otherwise 3. The
+/// The exponent p belongs to the first corner and r to the last corner: 2 if the angle of the corner is at most about a right angle, otherwise 3. The
 /// splines on a side between corners have fourfold end knots and share no function with the next side. Elements end at the knots of the outline's
 /// spline, so that all functions are smooth on an element.
 class OutlineSpace {
@@ -72,7 +72,7 @@ class OutlineSpace {
 ///   int G sigma dt + kappa = int (v_c - v_c(x0)) dG/dn dl,   int sigma dt = 0,   G = -ln|x - x0|/(2 pi)                     (2.15)
 /// Without kappa and the condition int sigma dt = 0, the matrix is singular if the outline has logarithmic capacity 1, as a unit circle has.
 /// Inside, v_c is the real part of the analytic function F (2.17) with the boundary values v_c + i psi, psi = int q dl. The flow rate is
-///   int u dA = int r^2 x.n/16 dl + int psi x/2.dx                                                                              (2.16)
+///   int u dA = int r^2 x.n/16 dl + int psi/2 x.dx                                                                              (2.16)
 class BoundaryProfile : public DuctProfile {
  public:
   BoundaryProfile(const surface::Outline& outline, int elements);

@@ -54,7 +54,7 @@ class RectangleProfile : public DuctProfile {
  private:
   static constexpr int most_terms = 20000;  // limit on the number of terms; reached only within 1e-3 half sides of a corner
 
-  /// Returns u, u_,y and u_,z. Powers are computed by recurrence.
+  /// Returns u, du/dy and du/dz at (y, z) for the half sides a = A and b = B. Powers are computed by recurrence.
   static std::array<double, 3> series(double a, double b, double y, double z) {
     const double k = pi / (2 * b), near = std::max(0.0, a - std::abs(y)), far = a + std::abs(y), step = 2 * k;
     const int terms = static_cast<int>(std::min<double>(most_terms, 2 + 38 / std::max(step * near, 1e-6)));

@@ -14,8 +14,8 @@ namespace {
 using surface::Vec2;
 
 constexpr int far_around = 24, order_far = 5, order_close = 7;
-constexpr double far = 1.2, smallest = 1e-5;  // far: distance from the plane of the end beyond which the nodes of far_ suffice. smallest: size below
-                                              // which a cell is not divided. Both are divided by the radius of the duct
+constexpr double far = 1.2, smallest = 1e-5;  // far: distance from the plane of the end beyond which the fixed nodes far_ are accurate enough.
+                                              // smallest: size below which a cell is not divided. Both are divided by the radius of the duct
 
 Mat3 axes(const surface::Channel::Section& place) {
   Mat3 axes;
@@ -160,8 +160,8 @@ Net DuctEnd::velocities(const Net& x) const {
 
 DuctEnd::Points DuctEnd::points() const {
   Nodes nodes;
-  for (const Cell& cell : cells_)  // places as many points on the outer quarter of each ray as on the rest, because the collocation error on the wall
-                                   // affects the flow up to about one wall element away
+  for (const Cell& cell : cells_)  // places as many points on the outer quarter of each ray as on its inner three quarters, because the collocation
+                                   // error on the wall affects the flow up to about one wall element away
     for (const auto& [inner, outer] : {std::pair(0., 0.75), std::pair(0.75, 1.)})
       add({cell.side, {cell.t[0], cell.t[1]}, {inner, outer}}, order_close, nodes);
   const auto n = static_cast<Eigen::Index>(nodes.area.size());

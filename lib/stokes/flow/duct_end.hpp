@@ -12,7 +12,7 @@ namespace tanktread::stokes {
 /// Velocity in the fluid due to a plane end of a channel, without the contribution of the pressure at the end. The duct flow u(y2, y3) passes through
 /// the end in the direction `along`:
 ///
-///   P_i(x0) = -1/8 pi int G_ij(x, x0) (n.along) u_,a e_a dS + 1/8 pi int u along_j T_ijk(x, x0) n_k dS,   a = 2, 3            (2.29)
+///   P_i(x0) = -1/(8 pi) int G_ij(x, x0) (n.along) u_,a (e_a)_j dS + 1/(8 pi) int u along_j T_ijk(x, x0) n_k dS,   a = 2, 3  (2.29)
 ///
 /// where n points into the fluid and e_a are the axes of the section. Velocity and traction of the duct flow are exact. The plane is integrated by
 /// Gauss points on rays from the centroid, with cells that are halved near a close target.
@@ -22,7 +22,7 @@ class DuctEnd {
   /// UserError if a ray from the centroid meets the outline twice.
   DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inward);
 
-  /// Returns the velocity (2.29) that the end causes at each row of x, points in the fluid or on the wall, units length/time.
+  /// Returns the velocity (2.29) that the end causes at each row of x, a point in the fluid or on the wall. Units length/time.
   Net velocities(const Net& x) const;
 
   /// Gauss points of the section: positions and areas.

@@ -20,7 +20,7 @@ class DuctProfile {
   virtual double flow_rate() const = 0;  ///< int u dA, units length^4
 };
 
-/// Return profiles in closed form: for an ellipse or circle, and for a rectangle (a series, to round-off), both about the origin.
+/// Returns a profile in closed form, for an ellipse or a rectangle (a series, exact to round-off) with its centre at the origin.
 std::unique_ptr<DuctProfile> ellipse_profile(const surface::Vec2& semi_axes);
 std::unique_ptr<DuctProfile> rectangle_profile(const surface::Vec2& sides);
 

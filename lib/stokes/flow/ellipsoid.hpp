@@ -21,9 +21,9 @@ struct Ellipsoid {
   Vec3 torque(double viscosity, const Vec3& angular_velocity) const;
 
   /// Returns the force per area that the body exerts on the fluid at a point x of the surface, with h = (sum x_i^2/a_i^4)^(-1/2) = n.x:
-  /// f = h/(4 pi abc) (F + 3 (K omega) x x), where the last x is the position and K_3 = T_3 / (omega_3 (a^2 + b^2)), cyclic. Jeffery found that the
-  /// first moment of the term with K equals the first moment of a uniform stress. The antisymmetric part of this moment is the torque; its symmetric
-  /// part follows from the torque by the reciprocal theorem.
+  /// f = h/(4 pi abc) (F + 3 w cross x), where w_i = K_i omega_i and K_3 = T_3 / (omega_3 (a^2 + b^2)), cyclic. Jeffery found that the first moment
+  /// of the term with w equals the first moment of a uniform stress. The antisymmetric part of this moment is the torque; its symmetric part follows
+  /// from the torque by the reciprocal theorem.
   Vec3 force_density(double viscosity, const Vec3& velocity, const Vec3& angular_velocity, const Vec3& x) const;
 
   /// Returns the point of the surface on the ray from the centre through x.

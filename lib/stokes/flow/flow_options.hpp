@@ -34,7 +34,7 @@ struct FlowOptions {
   std::optional<double> maximum_velocity;  ///< velocity of `parabolic` at x2 = x3 = 0, units length/time
   std::optional<double> half_width;        ///< distance from the axis or mid-plane at which the velocity of `parabolic` vanishes, length
   std::optional<Vec3> pressure_gradient;   ///< gradient of the mean pressure over a periodic cell with plates or posts, units force/length^3
-  std::optional<Plates> plates;            ///< plates of the scene, whose motion and pressure gradient change the flow; set by the scene
+  std::optional<Plates> plates;            ///< plates, set by the scene; their motion and the pressure gradient change the flow as in (2.48)
   std::optional<FlowHistory> history;      ///< time dependence of the flow; if not set, the flow is steady
   const UserFlows* registered = nullptr;   ///< user-defined types of flow, with keys in `Flow/<type>`; null if there are none
   std::shared_ptr<const UserFlow> user;    ///< set if the type is user-defined
@@ -45,7 +45,7 @@ struct FlowOptions {
 
   /// Throws UserError if keys contradict each other or are missing.
   void check() const;
-  void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
+  void reject(Rejections& to) const;  ///< adds to `to` the combinations of keys that are not allowed
 
   /// Returns the rate that defines the capillary number Ca, units 1/time, at amplitude 1 if the flow changes in time. By type:
   /// - `linear`: largest singular value of the gradient; `parabolic`: maximum velocity divided by the half width;
