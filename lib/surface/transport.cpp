@@ -15,14 +15,15 @@ namespace tanktread::surface {
 
 namespace {
 
-/// A corner of a grid triangle: position x, velocity v, unstressed position (if the membrane has one), height above the plane x2 = centre_2.
+/// A corner of a grid triangle: position x, velocity v, unstressed position (if the membrane has one), height above the plane x2 = centre_2 through
+/// the centroid.
 struct Corner {
   Vec3 x, v, unstressed;
   double height;
 };
 
-/// Integrals along the section curve over the parts added so far by cut(): circulation, length, weight of the material points (6.6), and angular
-/// velocity times this weight.
+/// Integrals along the section curve over the parts added so far by cut(): circulation, length, weight of the material points (6.6), and (`turned`)
+/// angular velocity times this weight.
 struct Circuit {
   Vec3 centre, of_centre;
   bool elastic;
