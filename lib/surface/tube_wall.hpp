@@ -64,8 +64,8 @@ double tube_length(const TubeOptions& options, double radius, double particle_le
 /// tube that is not periodic.
 int elements_per_period(const TubeOptions& options, double radius, double period, double half_length);
 
-/// Throws UserError if the particle, which extends from x1 = `first` to `last`, is closer than 1.7 tube radii to an end of the wall. At this distance
-/// the neglected disturbance is 1e-5.
+/// Throws UserError if the particle, which extends from x1 = `first` to `last`, is closer than 1.7 tube radii to an end of the wall. At this
+/// distance, the relative error due to the cut-off of the wall is about 1e-5.
 void check_length(const TubeWall& wall, double first, double last);
 
 }  // namespace tanktread::surface

@@ -77,7 +77,8 @@ Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v)
   return 3 * outward.transpose() * from_mean / b.cwiseProduct(from_mean).sum();
 }
 
-/// Returns half the vorticity of v, averaged over the interior, from v at the control points and b = dV/dx. Exact for a rigid rotation.
+/// Returns half the vorticity of v, averaged over the interior, from v at the control points and b = dV/dx. `from_mean`: control points minus their
+/// mean. Exact for a rigid rotation.
 Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
   const Mat3 volume = b.transpose() * from_mean, flux = b.transpose() * (v.rowwise() - v.colwise().mean());
   const Mat3 gradient = volume.partialPivLu().solve(flux).transpose();
@@ -87,9 +88,10 @@ Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
 /// Returns the velocity of the points y in a rotation about the origin.
 Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rotation.transpose()); }
 
-/// Returns the weight g (4.14) of an axis, divided by m. m is about 1.6 D^2, with the Taylor parameter D in the plane normal to the axis.
+/// Returns the weight g (4.14) of an axis, divided by m. m is about 1.6 D^2, with the Taylor deformation D of the drop in the plane normal to the
+/// axis.
 double weight_of_axis(double m) {
-  constexpr double elongated = 0.06;  // D = 20 %: the mesh of such a drop turns with its shape
+  constexpr double elongated = 0.06;  // value of m at the Taylor deformation D = 0.2, from which on g = 1: the mesh turns with the shape of the drop
   const double along = m / elongated;
   return along < 1 ? along * (3 - 2 * along) / elongated : 1 / m;
 }
