@@ -59,9 +59,9 @@ Net subdivided(const spline::Lattice& l, int h, const Net& net) {
   return fine;
 }
 
-/// Returns points of the limit surface of the initial net at vertices of a mesh. They are computed on a coarse mesh with L levels. The result is
-/// exact at the corners of the cube and at distances of at least 2^-L coarse elements from them. L is the smallest number of levels, up to 5, for
-/// which all other vertices are that far from the corners.
+/// Returns points of the limit surface of the initial net at vertices of a mesh. The points are computed on a mesh of 3 x 3 elements per face with L
+/// levels of subdivision. They are exact at the corners of the cube and at distances of at least 2^-L elements of this mesh from the corners. L is
+/// the smallest number of levels, up to 5, for which all other vertices are that far from the corners.
 Net limit_points(const spline::TMesh& mesh, const std::vector<int>& vertices) {
   const spline::Lattice& l = *mesh.lattice;
   int levels = 0;

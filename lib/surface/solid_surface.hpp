@@ -22,7 +22,7 @@ struct SolidSurface {
   /// numbers of equal elements along the two directions of a plate; {0, 0} for other surfaces. Collocation point i grid[1] + j has the indices (i, j)
   std::array<int, 2> grid{0, 0};
 
-  int n_points() const { return static_cast<int>(sites.size()); }  ///< number of control values of a density
+  int n_points() const { return static_cast<int>(sites.size()); }  ///< number of coefficients of a density
 };
 
 /// Returns one period of a plane through `middle`, spanned by two lattice vectors, with `elements` equal elements along each. The normal is along

@@ -14,7 +14,7 @@
 
 namespace tanktread::surface {
 
-/// One of the eight symmetries of the unit square: the coordinates are swapped or not, then reversed or not.
+/// One of the eight symmetries of the unit square: the two coordinates are swapped or not, and each is then reversed or not.
 struct Turn {
   bool exchanged = false, turned[2] = {false, false};
 

@@ -28,7 +28,8 @@ struct Circuit {
   Vec3 centre, of_centre;
   bool elastic;
   double circulation = 0, length = 0, weight = 0, turned = 0;
-  // onwards: true if a part of the section curve moves in its positive direction. backwards: true if a part moves in the opposite direction
+  // onwards: true if a part of the section curve moves along e2 x n, with the outward normal n. backwards: true if a part moves in the opposite
+  // direction
   bool onwards = false, backwards = false;
 
   /// Adds the part of the section curve x2 = centre_2 that lies in a flat triangle, whose corners run counter-clockwise seen from outside.

@@ -29,7 +29,7 @@ class RigidTractions;
 ///
 /// Basic equation, without a wall (2.4), (4.2):
 ///
-///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
+///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by projection P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
 ///
 /// R is the collocation matrix, M0 the mass matrix, v_inf the ambient velocity, E the energy of the membranes and V the volume of a particle. A and D
 /// are the single and the double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface, with the viscosity
@@ -167,7 +167,7 @@ class Capsule : public Dynamics {
     std::optional<stokes::PeriodicCell> cell;
     std::unique_ptr<SolidResponse> solids;
   };
-  /// Tube or channel, and the net of the particles for which it was set up last. `origin`: current x1 of the origin of the frame of a straight
+  /// Tube or channel. `net`: net of the particles for which the tube was set up last. `origin`: current x1 of the origin of the frame of a straight
   /// periodic wall, which moves with the particles. `origin_of_net`: value of `origin` when `net` was set.
   struct Duct {
     std::unique_ptr<Tube> tube;

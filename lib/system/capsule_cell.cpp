@@ -41,8 +41,8 @@ void Capsule::place(const Net& x) {
   duct_.net = x, duct_.origin_of_net = duct_.origin;
 }
 
-/// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is on the x1 axis, at the mean x1 of all control points,
-/// even if the particles are far apart.
+/// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is on the x1 axis, at the mean x1 of all control
+/// points, even if the particles are far apart.
 Vec3 Capsule::cell_origin(const Net& x) const {
   if (!duct_.tube) return Vec3::Zero();
   if (duct_.tube->fixed()) return (duct_.tube->wall().start + duct_.tube->wall().end) / 2 * Vec3::UnitX();

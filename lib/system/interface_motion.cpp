@@ -125,7 +125,8 @@ struct Moving {
   Net places, normals, velocities;
 };
 
-/// Returns the rigid motion W (4.14) of a drop, about the mean of its control points, with which its mesh moves.
+/// Returns the rigid motion W (4.14) with which the mesh of a drop moves. It consists of a velocity and a rotation about the mean of the control
+/// points.
 RigidMotion shared_motion(const Moving& drop) {
   const Eigen::RowVector3d middle = drop.x.colwise().mean();
   const Net from_mean = drop.x.rowwise() - middle, y = drop.places.rowwise() - middle;
