@@ -30,7 +30,7 @@ std::vector<double> chord_ends(const PlaneCurve& curve) {
   return out;
 }
 
-/// Returns an upper bound of |x''| over a part of an ellipse, or of one piece of a cubic curve, on which x'' is linear.
+/// Returns an upper bound of |x''| for begin <= u <= end. On a cubic curve, this range must lie in one piece, where x'' is linear.
 double bend(const PlaneCurve& curve, double begin, double end) {
   if (const auto* ellipse = std::get_if<Ellipse>(&curve)) return ellipse->semi_axes.maxCoeff();
   const double inside = 1e-9 * (end - begin);
@@ -45,7 +45,7 @@ double foot(const Vec2& p, const Vec2& a, const Vec2& b) {
   return std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
 }
 
-/// Returns a common point of two segments, if there is one.
+/// Returns a common point of the segment from a to b and the segment from c to d; nothing if there is none.
 std::optional<Vec2> meeting(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const auto apart = [&](int k) { return std::max(a[k], b[k]) < std::min(c[k], d[k]) || std::max(c[k], d[k]) < std::min(a[k], b[k]); };
   if (apart(0) || apart(1)) return std::nullopt;
@@ -95,8 +95,8 @@ void Outline::measure() {
   length_ = std::accumulate(lengths_.begin(), lengths_.end(), 0.0);
 }
 
-/// Returns a common point of two chords that are not neighbours, if there is one. Sweeps along x2, so only chords with overlapping ranges are
-/// compared.
+/// Returns a common point of two chords that are not neighbours; nothing if there is none. Sweeps along x2, so that only chords whose ranges of x2
+/// overlap are compared.
 std::optional<Vec2> Outline::first_crossing() const {
   const auto low = [](const Chord& c) { return std::min(c.a[0], c.b[0]); };
   const int n = static_cast<int>(chords_.size());
@@ -170,8 +170,8 @@ Nearest Outline::nearest(const Vec2& p) const {
   return best;
 }
 
-/// Returns the point of the outline nearest to p. `x`: a point within the distance r of p. `its`: the point of the outline nearest to x. If a point y
-/// of the outline satisfies |y - x|^2 - |its - x|^2 > 2 r |y - its|, it is farther from p than `its`. Chords that contain only such points are
+/// Returns the point of the outline nearest to p, where p is within the distance r of the point x. `its`: the point of the outline nearest to x. A
+/// point y of the outline with |y - x|^2 - |its - x|^2 > 2 r |y - its| is farther from p than `its`. Chords that contain only such points are
 /// skipped.
 Nearest Outline::nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const {
   Nearest best;
@@ -184,8 +184,8 @@ Nearest Outline::nearest_around(const Vec2& x, const Nearest& its, double r, con
   return best;
 }
 
-/// Returns whether p is inside the outline, which is approximated by the polygon of its chords. If p is so close to the outline that polygon and
-/// curve may differ, the normal at the nearest point of the outline decides instead.
+/// Returns whether p is inside the polygon of the chords, which approximates the outline. If p is so close to the outline that polygon and outline
+/// may differ, returns instead whether p lies behind the outward normal at `nearest`, the point of the outline nearest to p.
 bool Outline::within(const Vec2& p, const Nearest& nearest) const {
   if (nearest.distance <= 2 * sag_) {
     Vec2 out = normal(nearest.side, nearest.u);

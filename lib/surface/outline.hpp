@@ -24,9 +24,10 @@ struct Ellipse {
 };
 
 /// A piecewise cubic curve, twice continuously differentiable: a cubic B-spline.
-///   On piece e, with the local parameter 0 <= s = (u - breaks[e])/(breaks[e+1] - breaks[e]) <= 1:   x(s) = sum_i bezier[e][i] B_i(s)
+///   On piece e, with the local parameter 0 <= s = (u - breaks[e])/(breaks[e+1] - breaks[e]) <= 1 and the cubic Bernstein polynomials B_i:
+///   x(s) = sum_i bezier[e][i] B_i(s)
 struct CubicCurve {
-  /// true for a periodic curve: u = breaks.back() and u = breaks.front() are the same point, with equal derivatives
+  /// true for a periodic curve: u = breaks.back() and u = breaks.front() are the same point, with equal derivatives; false for a curve with two ends
   bool closed = false;
   std::vector<double> breaks;               ///< m + 1 ascending knots
   std::vector<std::array<Vec2, 4>> bezier;  ///< m pieces
@@ -41,18 +42,18 @@ PlaneJet jet(const PlaneCurve& curve, double u);
 
 /// Return the cubic spline with the knots `breaks` that interpolates the points. A closed spline requires points.size() = breaks.size() - 1 and
 /// breaks.size() >= 4. An open spline requires points.size() = breaks.size() >= 2; its third derivative is continuous at the first and last inner
-/// knot (not-a-knot). Two points give a straight line, three a parabola.
+/// knot (not-a-knot). An open spline through two points is a straight line, through three points a parabola.
 CubicCurve interpolate_closed(const std::vector<double>& breaks, const std::vector<Vec2>& points);
 CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector<Vec2>& points);
 
 /// Returns the open cubic spline that interpolates the points and has the given derivatives with respect to u at its two ends.
 CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector<Vec2>& points, const Vec2& first, const Vec2& last);
 
-/// Returns the B-spline control points. A closed curve with m pieces has m points; point i belongs to the B-spline with its middle knot at
-/// breaks[i]. An open curve (end knots fourfold) has m + 3 points.
+/// Returns the B-spline control points. A closed curve with m pieces has m control points; point i belongs to the B-spline whose middle knot is
+/// breaks[i]. An open curve (with fourfold end knots) has m + 3 control points.
 std::vector<Vec2> control_points(const CubicCurve& curve);
 
-/// The point of an outline nearest to a given point, and the side of the outline on which the given point lies.
+/// The point of an outline nearest to a given point, with the index of its side and its parameter u on this side.
 struct Nearest {
   int side = 0;
   double u = 0;
@@ -64,7 +65,7 @@ struct Nearest {
 /// one closed smooth side, or several smooth sides that meet at corners. Each side starts at the end of the previous side.
 class Outline {
  public:
-  /// Throws UserError if sides cross or run clockwise. The message begins with `name`.
+  /// Throws UserError if sides cross or run clockwise. `name`: name of the outline, with which the error message begins.
   explicit Outline(std::vector<PlaneCurve> sides, const std::string& name = "The outline");
 
   int n_sides() const { return static_cast<int>(sides_.size()); }
@@ -90,24 +91,24 @@ class Outline {
   double distance(const Vec2& p) const { return nearest(p).distance; }  ///< positive inside
   bool inside(const Vec2& p) const { return distance(p) > 0; }
 
-  /// Returns the point of the outline nearest to p. p must be within the distance r of x. `its`: the point of the outline nearest to x, which limits
-  /// the search. The distance in the result has no sign.
+  /// Returns the point of the outline nearest to p. p must be within the distance r of x. `its`, the point of the outline nearest to x, limits the
+  /// search. Unlike in nearest(), the distance in the result is not negative outside.
   Nearest nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const;
 
-  /// Returns the number of elements of each side when `elements` are distributed by length, with at least `least` per side and equally many on sides
-  /// of equal length. The sum of these numbers may exceed `elements` slightly.
+  /// Returns the number of elements of each side if `elements` elements are distributed in proportion to the lengths of the sides, with at least
+  /// `least` per side and equally many on sides of equal length. The sum of these numbers may exceed `elements` slightly.
   std::vector<int> shares(int elements, int least = 1) const;
 
   /// Returns the m + 1 knots of m elements on side k, evenly spaced in the parameter of the side.
   std::vector<double> knots(int k, int m) const;
 
-  /// Returns the outline as cubic splines. shares() divides `elements` among the sides, with at least two per side, or three on a smooth outline.
-  /// knots() gives the knots of each side. The splines interpolate the points at the knots and, on open sides, the tangents at the ends. All sides of
-  /// the result are CubicCurves. The error is of order 4 in the element length, and zero for straight sides.
+  /// Returns the outline as cubic splines on `elements` elements. shares() distributes the elements over the sides, with at least two per side, or
+  /// three on a smooth outline; knots() gives the knots of each side. The splines interpolate the points at the knots and, on open sides, the
+  /// tangents at the ends. All sides of the result are CubicCurves. The error is of order 4 in the element length, and zero for straight sides.
   Outline spline(int elements) const;
 
  private:
-  /// A short chord of a side, with a bound on the distance of the curve from it.
+  /// The chord from a to b of a short part of a side, begin <= u <= end. `sag`: upper bound of the distance between the chord and this part.
   struct Chord {
     int side;
     double begin, end;
@@ -131,7 +132,7 @@ class Outline {
 };
 
 /// Returns the cross-section of a tube: the exact circle or ellipse, the four straight sides of a rectangle, or the spline through the points of a
-/// file. Throws UserError.
+/// file. Throws UserError if the file cannot be used.
 Outline outline(const TubeOptions& options);
 
 /// Returns the cross-section of a tube as cubic splines on `elements` elements.

@@ -79,7 +79,8 @@ class File {
   std::vector<Row> rows_;
 };
 
-/// Returns the spline through n + 1 points from rows[first] on (n points if closed), parametrised by chord length.
+/// Returns the spline through the n + 1 points from rows[first] on, parametrised by chord length. If `closed`, there are n points, and the curve
+/// returns to the first one.
 CubicCurve fit(const std::vector<Row>& rows, std::size_t first, std::size_t n, bool closed) {
   std::vector<double> breaks{0};
   std::vector<Vec2> points{rows[first].x};

@@ -65,8 +65,8 @@ std::vector<int> element_owners(Graph graph, int parts, std::span<const double> 
   return {owner.begin(), owner.end()};
 }
 
-/// Assigns each of the control points `shared` to the part that owns most of the elements around it, beginning with the points with the largest
-/// majority. If this part already has its full number of points, the point goes to the adjacent part with the fewest points.
+/// Assigns each of the control points `shared` to the part that owns most of the elements around the point, beginning with the points with the
+/// largest majority. If this part already has its equal share of the points, the point goes to the adjacent part with the fewest points.
 std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, const std::vector<int>& element_owner, int parts,
                               std::span<const int> shared) {
   const int n = static_cast<int>(shared.size());

@@ -20,7 +20,7 @@ struct Factors {
     spline::bernstein(p, at_t, t[0], t[1], t[2]);
   }
 
-  /// Returns the coordinate with the given Bezier coefficients and its derivatives.
+  /// Returns the value and the derivatives of the coordinate whose Bezier coefficients start at `row`.
   CoordinateJet of(const double* row) const {
     CoordinateJet result{};
     for (int j = 0; j <= p; ++j, row += p + 1) {
@@ -81,7 +81,7 @@ double mean_curvature(const Jet& jet) {
 
 namespace {
 
-/// Values at the grid points of the Bernstein polynomials of each degree. Index: degree, polynomial, grid point.
+/// Values of the Bernstein polynomials of each degree at the grid points. Index: degree, polynomial, grid point.
 using Tables = std::array<std::array<std::array<double, cells + 1>, max_degree + 1>, max_degree + 1>;
 Tables grid_tables() {
   Tables tables{};

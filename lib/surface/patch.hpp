@@ -11,7 +11,8 @@
 
 namespace tanktread::surface {
 
-/// View of the Bezier points of one element, stored as a (3, (p+1)^2) array: all x1, then all x2, then all x3; s fastest.
+/// View of the Bezier points of one element of degree p, stored as a (3, (p+1)^2) array: all x1, then all x2, then all x3. The index along s runs
+/// fastest.
 struct Patch {
   int degree = 3;
   const double* points = nullptr;
@@ -20,7 +21,7 @@ struct Patch {
   double coordinate(int c, int b) const { return points[c * n_bezier() + b]; }
 };
 
-/// Position and its derivatives up to second order with respect to the local coordinates.
+/// Position and its derivatives up to second order with respect to the local coordinates s and t, from 0 to 1.
 struct Jet {
   Vec3 x, s, t, ss, st, tt;
 };
@@ -43,12 +44,12 @@ double mean_curvature(const Jet& jet);
 
 constexpr int cells = 6;  ///< number of intervals per direction of the grid on which sample() evaluates an element
 
-/// Positions at the parameters (s, t) = (i, j)/cells of an element, indexed [j][i].
+/// Values at the parameters (s, t) = (i, j)/cells of an element, indexed [j][i]. sample() returns the positions at these parameters.
 template <class Value>
 using Grid = std::array<std::array<Value, cells + 1>, cells + 1>;
 Grid<Vec3> sample(const Patch& patch);
 
-/// Returns coordinate c of these positions.
+/// Returns coordinate c (0, 1 or 2) of the positions on this grid.
 Grid<double> sample(const Patch& patch, int c);
 
 /// The Bezier points of one element of a surface.

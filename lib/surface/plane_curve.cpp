@@ -51,7 +51,8 @@ void join(Rows& rows, int row, const Step& left, const Step& right, const std::a
   rows.value(row, 3 * (left.slope / left.h + right.slope / right.h));
 }
 
-/// Adds the equation that makes the third derivatives on intervals k and k + 1 equal, or the third derivative on interval k zero if `vanishes`.
+/// Adds the equation that makes the third derivatives on intervals k and k + 1 equal. If `vanishes`, makes the third derivative on interval k zero
+/// instead.
 void third_derivative(Rows& rows, int row, const std::vector<Step>& steps, int k, bool vanishes) {
   const Step& a = steps[k];
   const double one = 1 / (a.h * a.h);

@@ -15,8 +15,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Rows of control points on circles about the axis. Control point A is at across[A] times profile[2 k] in the plane normal to the axis, and at the
-/// height profile[2 k + 1], with k = row[A]. across[A] has length 1, except at a C1 pole.
+/// Rows of control points; each row is a circle about the axis. Control point A of row k = row[A] is at profile[2 k] times across[A] in the plane
+/// normal to the axis, and at the height profile[2 k + 1]. across[A] has length 1, except at a C1 pole.
 struct Circles {
   std::vector<int> row;
   std::vector<Eigen::Vector2d> across;
@@ -57,8 +57,8 @@ Eigen::VectorXd first_profile(const spline::PolarMesh& mesh) {
   return Eigen::Map<Eigen::VectorXd>(profile.data(), Eigen::Index(profile.size()));
 }
 
-/// Misfit of a surface to the unit sphere, int |grad eps|^2 + eps^2 dG with eps = (|x|^2 - 1)/2, over one sector between two meridians (all sectors
-/// are equal), with its gradient and Gauss-Newton matrix with respect to the profile.
+/// Misfit of a surface to the unit sphere, with its gradient and Gauss-Newton matrix with respect to the profile. The misfit is the integral of |grad
+/// eps|^2 + eps^2, with eps = (|x|^2 - 1)/2, over one sector between two meridians. All sectors are equal.
 struct Misfit {
   double value = 0;
   Eigen::VectorXd gradient;

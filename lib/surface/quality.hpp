@@ -8,11 +8,11 @@
 
 namespace tanktread::surface {
 
-/// The worst elements of a surface, from 4 x 4 Gauss points of each Bezier element.
+/// The worst elements of a surface, computed at 4 x 4 Gauss points of each Bezier element.
 struct Quality {
-  /// Smallest ratio of (a1 x a2).m to the mean of |a1 x a2| over the points of an element, with a1, a2 the tangents and m the direction of the sum of
-  /// a1 x a2: near 1 on an undistorted element, zero or less on a folded one. The next two members are the element and the position of the smallest
-  /// ratio.
+  /// Smallest value, over all points, of (a1 x a2).m divided by the mean of |a1 x a2| over the points of the element. a1 and a2 are the tangents, and
+  /// m is the unit vector along the sum of a1 x a2 on the element. The value is near 1 on an undistorted element and zero or less on a folded one.
+  /// The next two members are the element and the position with the smallest value.
   double jacobian_ratio = 1;
   int folded_element = 0;
   Vec3 folded_place = Vec3::Zero();
@@ -28,10 +28,10 @@ struct Quality {
 Quality quality(const BezierMap& map, const Net& net);
 Quality quality(const BezierMap& map, const Net& net, std::span<const int> elements);
 
-/// Returns, for each measure, the worse one of its values in a and b.
+/// Returns the worse value of each of the two ratios in a and b, with its element.
 Quality worse(const Quality& a, const Quality& b);
 
-/// Throws RunFailure, with element and position, if an element is folded: its jacobian_ratio is not above `least`.
+/// Throws RunFailure, naming element and position, if an element is folded: if its jacobian_ratio is not above `least`.
 void require_sound(const Quality& quality, double least = 0);
 
 }  // namespace tanktread::surface

@@ -21,7 +21,7 @@ int subdivisions(const spline::TMesh& mesh, int n_points) {
   return 6 * n * n + 2 == n_points && mesh.lattice->units % n == 0 ? level : -1;
 }
 
-/// Returns the initial net of 3 x 3 elements per face, one row per lattice vertex. Only the rows of vertices of this net are used.
+/// Returns the initial net of 3 x 3 elements per face of the cube, in one row per lattice vertex. Only the rows of the net's own vertices are used.
 Net coarse_net(const spline::Lattice& l) {
   constexpr double edge = 1. / 3, inner = 0.26;
   Net net(l.vertices(), 3);
@@ -33,8 +33,8 @@ Net coarse_net(const spline::Lattice& l) {
   return net;
 }
 
-/// Subdivides a net whose vertices are `h` lattice units apart: face points are means of the corners, edge points are means of both ends and of both
-/// adjacent face points. The new vertex is (Q + 2 R + (N - 3) P)/N, with P the vertex, N its valence, Q the mean of the adjacent face points and R
+/// Subdivides a net whose vertices are `h` lattice units apart (Catmull-Clark). Face points are means of the corners; edge points are means of both
+/// ends and of both adjacent face points. A vertex P of valence N moves to (Q + 2 R + (N - 3) P)/N, with Q the mean of the adjacent face points and R
 /// the mean of the midpoints of its edges. Each face adds its part of these means.
 Net subdivided(const spline::Lattice& l, int h, const Net& net) {
   Net fine = Net::Zero(net.rows(), 3);
@@ -59,8 +59,9 @@ Net subdivided(const spline::Lattice& l, int h, const Net& net) {
   return fine;
 }
 
-/// Returns points of the limit surface of the initial net at vertices of a mesh. The surface of a coarse mesh with L levels is exact except within
-/// 2^-L of its elements from a corner of the cube, but is exact at the corner. So L is the smallest, up to 5, that keeps the other vertices outside.
+/// Returns points of the limit surface of the initial net at vertices of a mesh. The points are computed on a mesh of 3 x 3 elements per face with L
+/// levels of subdivision. They are exact at the corners of the cube and at distances of at least 2^-L elements of this mesh from the corners. L is
+/// the smallest number of levels, up to 5, for which all other vertices are that far from the corners.
 Net limit_points(const spline::TMesh& mesh, const std::vector<int>& vertices) {
   const spline::Lattice& l = *mesh.lattice;
   int levels = 0;
@@ -100,7 +101,7 @@ Vec3 red_cell(const Vec3& x) {
 
 namespace {
 
-/// Returns the linear map from the unit sphere, or the red cell of unit radius, to the shape about its centre.
+/// Returns the linear map to the shape, relative to its centre, from the unit sphere or (for a red cell) from the red cell of unit radius.
 Mat3 map_of(const ParticleShape& shape) {
   const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value_or(1));
   return shape.rotation() * semi_axes.asDiagonal();

@@ -14,8 +14,8 @@ namespace tanktread::surface {
 /// Returns a point of the unit sphere for each control point of the mesh, as a start for fits: Catmull-Clark subdivision of a net of 3 x 3 elements
 /// per face of the cube, projected radially onto the sphere. This map from the cube to the sphere is C2, also across the edges of the cube, except at
 /// its eight corners. (An equiangular map has kinks along the cube edges, which smooth splines cannot represent; the error in the normal is ten times
-/// as large.) The initial net divides the cube's edges in thirds. Its inner vertices lie at (0.26, 0.26, 1), which gave the smallest error in the
-/// normal for fitted spheres of 3 to 24 elements per side.
+/// as large.) The initial net divides the cube's edges in thirds. Its inner vertices lie at (0.26, 0.26, 1) before projection. This position gave the
+/// smallest error in the normal for fitted spheres of 3 to 24 elements per side.
 ///
 /// If the mesh is uniform with 3 * 2^k elements per side of the cube, the points are the vertices of the net after k subdivisions. Otherwise they are
 /// points of the limit surface.
@@ -26,9 +26,10 @@ Net smooth_sphere(const spline::TMesh& mesh);
 /// 10 to 40 per cent smaller than if the fits start with the cube projected onto the sphere.
 Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
 
-/// Returns the control net of the unit sphere with its poles on the axis x_{axis+1}; the pole at -1 comes first. `space` is the space of the mesh.
+/// Returns the control net of the unit sphere with its poles on the axis x_{axis+1}. The pole at x_{axis+1} = -1 comes first. `space`: spline space
+/// of the mesh.
 ///
-/// All rows are circles. Their radii and heights minimise (by Gauss-Newton iteration)
+/// Each row of control points is a circle. The radii and heights of the circles minimise (by Gauss-Newton iteration)
 ///
 ///   int |grad eps|^2 + eps^2 dG,   eps = (|x|^2 - 1) / 2,
 ///
@@ -37,22 +38,22 @@ Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits 
 /// and the error in the radius half as large.
 Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int axis = 2);
 
-/// Coefficients c of the half thickness sqrt(1 - r^2)/2 (c0 + c1 r^2 + c2 r^4) of a red cell with unit radius       (Evans & Fung 1972)
+/// Coefficients c0, c1, c2 of the half thickness sqrt(1 - r^2)/2 (c0 + c1 r^2 + c2 r^4) of a red cell with unit radius (Evans & Fung 1972)
 constexpr double red_cell_profile[] = {0.21, 2.0, -1.12};
 
 /// Returns the biconcave disc of a red cell with unit radius and axis x3, as an image of the unit sphere:
 ///   (x1, x2, x3) -> (x1, x2, x3/2 (c0 + c1 r^2 + c2 r^4)),  r^2 = x1^2 + x2^2
 Vec3 red_cell(const Vec3& on_unit_sphere);
 
-/// Returns the resting shape of a deck at its position, from a fitted unit sphere. The result is not rescaled, so its volume has the error of the
-/// fit. Lengths are in the unit of the deck.
+/// Returns the control net of the resting shape `shape` at the centre and orientation set in the deck, from a fitted unit sphere. The result is not
+/// rescaled, so its volume has the error of the fit. Lengths are in the unit of the deck.
 Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape);
 
 /// Returns the resting shape on the cube mesh, or on the structured mesh with its poles on the body-fixed axis x_{axis+1} of the particle.
 Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
 Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape);
 
-/// Repeats the least-squares fit of the resting shape `net` of a sphere or ellipsoid on its current space. Returns any other shape unchanged.
+/// If the shape is a sphere or ellipsoid, fits its resting shape `net` again by least squares on `space`. Returns any other shape unchanged.
 Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape);
 
 /// Converts the resting shape `net` of the particle `from` to the resting shape of the particle `to` on the same mesh. `to` may have another size,

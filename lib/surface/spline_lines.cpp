@@ -85,11 +85,11 @@ RepeatingLine repeating(const std::vector<double>& knots, const std::array<doubl
     open.add_site(u < ends[0] ? u + period : u >= ends[1] ? u - period : u, all, 0, false);
   }
   const int last = static_cast<int>(closed.pieces.size()) - 1;
-  const double seam = (ends[1] - knots.back()) / (cycle.back() - knots.back());  // fraction of the periodic element at the seam that lies before
-                                                                                 // ends[1]
+  const double seam = (ends[1] - knots.back()) / (cycle.back() - knots.back());  // fraction of the periodic element at the seam that lies before the
+                                                                                 // seam ends[1]
   line.open_from_periodic = Eigen::MatrixXd::Zero(open.n, closed.n);
   for (int piece = 0; piece <= last + 1; ++piece) {
-    const bool first_part = piece == last + 1;  // the part before the seam of the last periodic element
+    const bool first_part = piece == last + 1;  // true for the last piece of `open`: the part of the last periodic element before the seam
     const Line::Piece& here = open.pieces[static_cast<std::size_t>(piece)];
     const Line::Piece& there = closed.pieces[static_cast<std::size_t>(piece == 0 ? last : piece - 1)];
     const Eigen::Matrix4d values = there.extraction * spline::restriction(3, piece == 0 ? seam : 0, first_part ? seam : 1).transpose();

@@ -45,7 +45,7 @@ struct RepeatingLine {
 /// period. The part of this element before the seam is the last piece of `open`, and the part after the seam is piece 0.
 RepeatingLine repeating(const std::vector<double>& knots, const std::array<double, 2>& ends);
 
-/// Returns the collocation points of a product of two lines; the index on the second line runs fastest.
+/// Returns the collocation points of the tensor product of two lines; the index on the second line runs fastest.
 std::vector<std::vector<spline::Site>> sites_of(const Line& along, const Line& around);
 
 /// Returns the Kronecker product a x b, without entries that are zero up to round-off.

@@ -19,7 +19,7 @@ struct Meridian {
   double equator;
   std::function<double(double z)> height, slope;  ///< slope: derivative of height with respect to z
 
-  /// Returns int_0^z radius ds, the area between the equator and the parallel divided by 2 pi.
+  /// Returns int_0^z radius ds with the arc length s of the meridian: the area between the equator and the parallel z, divided by 2 pi.
   double area(double z) const {
     constexpr int panels = 8;
     const quadrature::GaussRule& rule = quadrature::gauss(10);
@@ -85,7 +85,8 @@ Meridian spheroid_of(double reduced_volume, double area) {
   return of_ratio((low + high) / 2);
 }
 
-/// Returns the height z' on the unit sphere with other.area(z') = one.area(z), so that both parallels enclose equal areas with the equator.
+/// Returns the height z' on the unit sphere with other.area(z') = one.area(z): the parallels z' of `other` and z of `one` enclose equal areas with
+/// their equators.
 double of_equal_area(const Meridian& one, const Meridian& other, double z) {
   const double sought = one.area(z);
   double found = z;

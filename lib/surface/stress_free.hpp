@@ -7,10 +7,10 @@
 
 namespace tanktread::surface {
 
-/// Returns the control net of a stress-free oblate spheroid (a sphere if the reduced volume is 1) on the mesh of `unit_sphere`. It has the area,
-/// the centre and the axis of the resting `shape`. Each of its points corresponds to the point of the resting shape at the same azimuth, on the
-/// parallel that encloses the same area with the equator. So every part of the membrane has the same area in both shapes, and only its form
-/// differs.
+/// Returns the control net of a stress-free oblate spheroid (a sphere if the reduced volume is 1) on the mesh of `unit_sphere`. The spheroid has the
+/// area, the centre and the axis of the resting `shape`. Each point of the spheroid corresponds to the point of the resting shape at the same
+/// azimuth, on the parallel that encloses the same area with the equator. So every part of the membrane has the same area in both shapes, and only
+/// the form of the part differs.
 ///
 /// The reduced volume v = 6 sqrt(pi) V/A^(3/2) is above 0 and at most 1. The shape must have an axis of revolution: a sphere (axis: body-fixed x3), a
 /// spheroid, a red cell. Otherwise throws UserError.

@@ -30,8 +30,8 @@ class ImageSearch {
         size_((nets[0]->colwise().maxCoeff() - nets[0]->colwise().minCoeff()).maxCoeff()), map_(space), bezier_(space.elements.size()),
         points_(rows(*nets[0]), exact * size_), centres_(centres(), close * size_) {}
 
-  /// Returns the reflection with these signs of the coordinates, and its permutations of points and elements, if it maps the surface onto itself and
-  /// `keeps` accepts it.
+  /// Returns the reflection with these signs of the coordinates, with its permutations of points and elements, if it maps the surface onto itself and
+  /// `keeps` accepts it; otherwise nothing.
   std::optional<Image> image(const Vec3& signs, const Keeps& keeps) {
     image_ = {signs, {}, {}, {}};
     if (!points() || !keeps(image_) || !elements() || !sites()) return {};
@@ -162,8 +162,8 @@ std::vector<Image> identity(std::size_t n_points, std::size_t n_elements) {
   return {{Vec3::Ones(), indices(n_points), indices(n_elements), std::vector<Turn>(n_elements)}};
 }
 
-/// Generators of the group are sought in this order: mirror planes first, because the description should name them; then the point symmetry, then
-/// half turns.
+/// Signs of the reflections, in the order in which they are tried as generators of the group: mirror planes first, because the description should
+/// name them; then the point symmetry, then half turns.
 const std::array<Vec3, 7> candidates = {Vec3(-1, 1, 1),   Vec3(1, -1, 1),  Vec3(1, 1, -1), Vec3(-1, -1, -1),
                                         Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
 

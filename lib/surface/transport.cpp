@@ -15,19 +15,21 @@ namespace tanktread::surface {
 
 namespace {
 
-/// A corner of a grid triangle: position x, velocity v, unstressed position (if the membrane has one), height above the plane x2 = centre_2.
+/// A corner of a grid triangle: position x, velocity v, unstressed position (if the membrane has one), height above the plane x2 = centre_2 through
+/// the centroid.
 struct Corner {
   Vec3 x, v, unstressed;
   double height;
 };
 
-/// Integrals along the section curve over the parts added so far by cut(): circulation, length, weight of the material points (6.6), and angular
-/// velocity times this weight.
+/// Integrals along the section curve over the parts added so far by cut(): circulation, length, weight of the material points (6.6), and (`turned`)
+/// angular velocity times this weight.
 struct Circuit {
   Vec3 centre, of_centre;
   bool elastic;
   double circulation = 0, length = 0, weight = 0, turned = 0;
-  // onwards: true if a part of the section curve moves in its positive direction. backwards: true if a part moves in the opposite direction
+  // onwards: true if a part of the section curve moves along e2 x n, with the outward normal n. backwards: true if a part moves in the opposite
+  // direction
   bool onwards = false, backwards = false;
 
   /// Adds the part of the section curve x2 = centre_2 that lies in a flat triangle, whose corners run counter-clockwise seen from outside.

@@ -15,7 +15,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Returns the number of elements between 0 and x up to a constant factor: the integral of the element density 1 + (g - 1)/(1 + x^4), g = `grading`.
+/// Returns int_0^x (1 + (g - 1)/(1 + y^4)) dy with g = `grading`: up to a constant factor, the number of elements between 0 and x. x is in units of w
+/// (see tube_wall()).
 double count(double x, double grading) {
   const double r = std::numbers::sqrt2;
   const double bell =
@@ -51,8 +52,9 @@ void repeat(TubeWall& wall, const Line& around, const std::vector<double>& knots
   wall.period = wall.end - wall.start;
 }
 
-/// Returns a wall with an empty control net, and the control points of the outline. `knots`: knots of the wall's surface along the wall. `periodic`:
-/// knots of the periodic splines for densities, which lie between the first and the last of `knots`; empty if the wall is not periodic.
+/// Returns a wall whose control net is allocated but not set, and the control points of the outline. `knots`: knots of the wall's surface along the
+/// axis. `periodic`: knots of the periodic splines for densities, which lie between the first and the last of `knots`; empty if the wall is not
+/// periodic.
 std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::vector<double>& knots, int azimuthal_elements,
                                              const std::vector<double>& periodic = {}) {
   Line along, around;
@@ -119,8 +121,8 @@ TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, 
 
 namespace {
 
-/// Returns the control points of the spline that interpolates a quantity of a channel's sections. Its slopes at the ends and at triple knots are
-/// one-sided differences of the quantity.
+/// Returns the control points of the spline along the channel that interpolates the quantity value(section) at the knots. Its slopes at the ends and
+/// at triple knots are one-sided differences of the quantity.
 std::vector<Vec2> through(const Channel& channel, const std::vector<double>& knots, const std::function<Vec2(const Channel::Section&)>& value) {
   const auto at = [&](double u) { return value(channel.at(u)); };
   const double step = 1e-6 * (knots.back() - knots.front());

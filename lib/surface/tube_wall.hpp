@@ -46,25 +46,26 @@ struct TubeWall {
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
 
 /// Returns one period of a periodic wall with the cross-section `section`, approximately for x1 in [-period/2, period/2). It has `elements` elements
-/// along x1, graded as the options require. The geometry is an open spline surface. Densities on it are periodic splines; the matrix E maps their
-/// coefficients to control values on the space. The ends of the wall lie at a quarter of an element of the periodic splines, so that neither a
+/// along x1, graded as the options require. The geometry is an open spline surface. Densities on the wall are periodic splines; the matrix E maps
+/// their coefficients to control values on `space`. The ends of the wall lie at a quarter of an element of the periodic splines, so that neither a
 /// collocation point nor the midpoint of an element lies on an end.
 TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, double period, int elements, double half_length = 0);
 
-/// Returns the wall of a channel (2.31). The centre line C and the scaled axes f2 N and f3 e3 of the cross-section are interpolated by cubic splines
-/// at the channel's knots, in tensor product with the splines of the outline. `start` and `end` are arc lengths along the centre line.
+/// Returns the wall of a channel (2.31). The centre line C and the scaled axes f2 N and f3 e3 of the cross-section (N: unit normal of C; f2, f3:
+/// scale factors) are interpolated by cubic splines at the channel's knots, in tensor product with the splines of the outline. `start` and `end` are
+/// arc lengths along the centre line.
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements);
 
 /// Returns the length given by the options. The default is the larger of 2 pi R_T, with R_T the tube radius, and the particle's length plus 4.6 R_T
 /// (the disturbance decays like exp(-4.5 x1/R_T)).
 double tube_length(const TubeOptions& options, double radius, double particle_length);
 
-/// Returns the number of elements along a period. If the options do not set it, the elements are as dense as around a short particle in a tube that
-/// is not periodic.
+/// Returns the number of elements along a period. If the options do not set this number, the elements are as dense as around a short particle in a
+/// tube that is not periodic.
 int elements_per_period(const TubeOptions& options, double radius, double period, double half_length);
 
-/// Throws UserError if the particle, which extends from x1 = `first` to `last`, is closer than 1.7 tube radii to an end of the wall. At this distance
-/// the neglected disturbance is 1e-5.
+/// Throws UserError if the particle, which extends from x1 = `first` to `last`, is closer than 1.7 tube radii to an end of the wall. At this
+/// distance, the relative error due to the cut-off of the wall is about 1e-5.
 void check_length(const TubeWall& wall, double first, double last);
 
 }  // namespace tanktread::surface

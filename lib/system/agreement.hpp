@@ -14,22 +14,23 @@ namespace tanktread::coupling {
 /// Duplicates the MPI communicator, so that the calls below do not interfere with calls on other communicators. Collective; called by Session.
 void begin_agreements();
 
-/// Returns the largest `mine` of all ranks. If this rank has an `error` that other ranks do not share, they may be waiting in a call that this rank
-/// will never reach. After half a minute this rank then prints the error and ends all ranks with exit code 3. Collective.
+/// Returns the largest `mine` of all ranks. If this rank has an `error` that other ranks do not share, the other ranks may be waiting in a call that
+/// this rank will never reach. If they have not arrived here after half a minute, this rank prints the error and ends all ranks with exit code 3.
+/// Collective.
 int largest(int mine, const std::string& error = {});
 
 /// Returns the error of one of the ranks on all ranks; empty if no rank has an error. Collective; see `largest`.
 std::string error_of_any(const std::string& mine);
 
-/// Calls `act` on every rank. Returns the message of the exception if it failed on any rank, and otherwise an empty text. UserErrors are not caught.
+/// Calls `act` on every rank. Returns the message of the exception if `act` failed on any rank, otherwise an empty text. UserErrors are not caught.
 /// Collective.
 std::string failure_of_any(const std::function<void()>& act);
 
-/// Calls `act` on the ranks whose `acts` is true. If it fails on any of them, every rank throws: UserError for a mistake of the user, otherwise
-/// RunFailure. Collective.
+/// Calls `act` on the ranks whose `acts` is true. If `act` fails on any of these ranks, every rank throws: UserError for a mistake of the user,
+/// otherwise RunFailure. Collective.
 void together(bool acts, const std::function<void()>& act);
 
-/// Returns the largest `mine` of all ranks. If it is not 0, also returns one of the reasons that ranks gave. Collective; see `largest`.
+/// Returns the largest `mine` of all ranks. If this value is not 0, also returns one of the reasons that ranks gave. Collective; see `largest`.
 std::pair<int, std::string> worst_of_all(int mine, const std::string& reason);
 
 /// Returns whether a net that all ranks hold is finite, as determined by the first rank. Collective.

@@ -48,7 +48,7 @@ Net Capsule::response(Evaluation& at, const Net& work) {
   return change;
 }
 
-/// Sets the forces of contacts and loads on rigid bodies, in addition to their prescribed forces.
+/// Sets the contact forces on rigid bodies and the forces of their loads (Particle::loads), in addition to the prescribed forces on the bodies.
 void Capsule::push_bodies(const Net& x) {
   if (bodies_.rigid.empty()) return;
   Net push = forces_[static_cast<std::size_t>(Forces::contacts)];
@@ -109,8 +109,9 @@ std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocit
   return latest_;
 }
 
-/// Computes (4.2) step by step: the load (membrane_load and rigid bodies), its velocity and the ambient flow (explicit_velocity), the projection onto
-/// constant volumes (constrain), and the solution of the system for the velocity (solve_velocity), if there is one (has_velocity_system).
+/// Computes (4.2) step by step: the load (membrane_load and rigid bodies), the velocity that this load causes plus the ambient velocity
+/// (explicit_velocity), the projection onto constant volumes (constrain), and the solution of the linear system for the velocity (solve_velocity), if
+/// one is needed (has_velocity_system).
 Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   bodies_.rigid.place(x);
   if (!x.allFinite() || (duct_.tube && !enter_tube(x)) || !in_front_of_wall(x))
@@ -143,9 +144,10 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   return v;
 }
 
-/// Returns v_inf - (1/mu) R^-1 A f of (4.2), with R the collocation matrix and A the single layer. In a tube with eliminated wall unknowns, adds the
-/// response of the wall to the load f and, if given, to the velocity `moves` of the particle. Stores this response in `answer`, if given, unless a
-/// linear system for the velocity follows, whose solution changes the response.
+/// Returns v_inf - (1/mu) R^-1 A f of (4.2), with the ambient velocity v_inf, the collocation matrix R and the single layer A. Adds the velocity that
+/// plates and posts cause in response to the load f and, if given, to the velocity `moves` of the particles. In a tube whose wall unknowns are
+/// eliminated, adds the response of the wall in the same way. Stores this response in `answer`, if given, unless a linear system for the velocity
+/// follows, because the solution changes the response.
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer) {
   Net u = layers_.apply_single(x, f);
   if (by_sites()) {
@@ -166,7 +168,7 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std
   return v;
 }
 
-/// Sets the shape in the tube. Returns whether all its collocation sites are inside.
+/// Sets the tube to the shape x. Returns whether all collocation sites of the shape are inside the tube.
 bool Capsule::enter_tube(const Net& x) {
   place(x);
   const Net at_sites = targets_.at_sites() * x;

@@ -1,5 +1,5 @@
 #pragma once
-// Coupling of the Stokes flow to capsules, drops and rigid bodies, in unbounded flow or in a tube.
+// Coupling of the Stokes flow to capsules, drops and rigid bodies: in unbounded flow, on a lattice, in front of walls or in a tube.
 
 #include <array>
 #include <functional>
@@ -29,17 +29,17 @@ class RigidTractions;
 ///
 /// Basic equation, without a wall (2.4), (4.2):
 ///
-///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
+///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by projection P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
 ///
-/// R is the collocation matrix, M0 the mass matrix, E the energy of the membranes and V the volume of a particle. A and D are the single and the
-/// double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface. Each particle has its own condition
-/// b.v = 0, and P is the product of the projections of all particles.
+/// R is the collocation matrix, M0 the mass matrix, v_inf the ambient velocity, E the energy of the membranes and V the volume of a particle. A and D
+/// are the single and the double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface, with the viscosity
+/// ratio lambda. Each particle has its own condition b.v = 0, and P is the product of the projections of all particles.
 ///
 /// Solution: if lambda = 1, then D = 0, and the velocity needs no assembly and no linear solve. Otherwise Belos solves P B P v = P rhs, where rhs is
 /// the right-hand side of the equation above. This system results from the block system of v and the Lagrange multipliers of b.v = 0 if the
 /// multipliers are eliminated. P removes the mode for which B becomes singular as lambda -> 0.
 ///
-/// Viscous membranes and interfaces: B contains the load M0^{-1} C v (3.10), where v is the fluid velocity:
+/// Viscous membranes and interfaces: B includes the velocity caused by the load M0^{-1} C v (3.10), where v is the fluid velocity:
 ///
 ///   B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                                                                                 (3.11)
 ///
@@ -51,18 +51,19 @@ class RigidTractions;
 /// Symmetry: if the scene is symmetric, only the rows of fundamental control points are evaluated and solved for. All other rows are mirror images of
 /// these rows.
 ///
-/// Lattice and plane wall: the layers include all images (ParticleLayers). On a lattice each particle is replaced by its image in the cell around the
-/// origin. The velocity of the particle is the velocity of this image, plus the difference of the ambient velocities at the two positions.
+/// Lattice and plane wall: the layers include the periodic and mirror images of the particles (ParticleLayers). On a lattice each particle is
+/// replaced by its image in the cell around the origin. The velocity of the particle is the velocity of this image, plus the difference of the
+/// ambient velocities at the two positions.
 ///
 /// Tube: the velocity caused by the wall and by the pressure drop (2.5)-(2.7) is added. This velocity is linear in the load and, for lambda != 1,
 /// in v. The part due to known loads is added to the right-hand side, and the part due to v to B. Alternatively v, the wall traction and the
 /// pressure drop are solved for in one linear system (BlockSystem).
 ///
-/// Plates and posts: the velocity (2.47) caused by them is added to the right-hand side and to B in the same way.
+/// Plates and posts: the velocity (2.47) that they cause is added to the right-hand side and to B in the same way.
 class Capsule : public Dynamics {
  public:
-  /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`. The volume of each particle of `initial` is conserved, unless the particle
-  /// sets `kept_volume`.
+  /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`. The motion conserves `kept_volume` of each particle if it is set, and
+  /// otherwise the volume of the particle in `initial`.
   Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
           const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;
@@ -72,8 +73,8 @@ class Capsule : public Dynamics {
   std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {}, double error = 0);
 
   /// Returns an evaluation of the shape x that computes each quantity at its first use. `velocity`: velocity of the control points; no rows if
-  /// unknown. If the shape evaluated last is within `distance` of x (in `norm`), its rigid motions and fluid velocities are used. Otherwise a linear
-  /// system is solved when a quantity is needed that cannot be computed from `velocity`.
+  /// unknown. If the shape evaluated last is within `distance` of x (in `norm`), the rigid motions and fluid velocities of that shape are used.
+  /// Otherwise a linear system is solved when a quantity is needed that cannot be computed from `velocity`.
   std::shared_ptr<Evaluation> evaluation(const Net& x, const Net& velocity, double distance);
 
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
@@ -98,9 +99,9 @@ class Capsule : public Dynamics {
   double norm(const Net& displacement) const override;  ///< ignores the mean displacement along x1 in a straight tube, where all x1 are equivalent
   Net symmetric(Net field) const override { return parameters_.symmetry.completed(std::move(field)); }
 
-  /// Sets the virtual work of additional forces, one row per control point, for all later calls. An empty net removes the forces. The forces are
-  /// either contact forces (`contacts`), which keep their directions and material points, or loads due to the fields on surfaces (`fields`), given as
-  /// minus their contribution to dE/dx (4.2).
+  /// Sets additional forces for all later calls. `work`: virtual work of these forces, one row per control point; an empty net removes the forces.
+  /// The forces are either contact forces (`contacts`), which keep their directions and material points, or loads due to the fields on surfaces
+  /// (`fields`). The work of these loads is minus their contribution to dE/dx (4.2).
   enum class Forces { contacts, fields };
   void set_forces(Forces of, Net work);
 
@@ -138,8 +139,9 @@ class Capsule : public Dynamics {
   const stokes::AmbientFlow& flow() const { return around_.flow; }  ///< flow at the time set by `at`
   const std::optional<stokes::PeriodicCell>& cell() const { return around_.cell; }  ///< cell at the time set by `at`
 
-  /// Subtracts a lattice vector from every particle so that its mean is in the cell, and returns these vectors. The cell is centred on the origin; in
-  /// a channel, on the middle of the channel; and in a straight tube, whose wall moves with the particles, on the mean of the particles.
+  /// Subtracts from every particle the lattice vector that moves the mean of its control points into the cell, and returns these vectors. The cell is
+  /// centred on the origin; in a channel, on the middle of the channel; and in a straight tube, whose wall moves with the particles, on the mean of
+  /// the particles.
   std::vector<Vec3> put_into_cell(Net& x);
 
   /// Returns the ambient velocity at a point displaced by the lattice vector `shift`, minus the ambient velocity at the point itself. 0 in a duct,
@@ -151,7 +153,7 @@ class Capsule : public Dynamics {
   const VelocityProjection* projection() const { return targets_.projection(); }  ///< null if velocities are collocated
   const surface::Geometry& geometry() const { return volumes_.geometry(); }
   const Phases& layer_phases() const { return layers_.single_layer().phases(); }  ///< run time of the parts of the single layer
-  stokes::Measure measure() const { return membranes_.measure(); }  ///< measure of the loads
+  stokes::Measure measure() const { return membranes_.measure(); }  ///< area (unstressed or current) to which the loads refer
   void forget_recycled() const;  ///< discards the data of earlier solves that the preconditioner `recycled` keeps
   const Work& work() const { return work_; }
   Work& work() { return work_; }
@@ -165,16 +167,16 @@ class Capsule : public Dynamics {
     std::optional<stokes::PeriodicCell> cell;
     std::unique_ptr<SolidResponse> solids;
   };
-  /// Tube or channel, and the net of the particles for which it was set up last. `origin`: current x1 of the origin of the frame of a straight
+  /// Tube or channel. `net`: net of the particles for which the tube was set up last. `origin`: current x1 of the origin of the frame of a straight
   /// periodic wall, which moves with the particles. `origin_of_net`: value of `origin` when `net` was set.
   struct Duct {
     std::unique_ptr<Tube> tube;
     Net net;
     std::optional<double> origin, origin_of_net;
-    double inner_radius = 0;  ///< radius of the largest circle in the section of a straight tube about its centroid
+    double inner_radius = 0;  ///< radius of the largest circle about the centroid that fits in the section of a straight tube
   };
-  /// Rigid bodies among the particles. `tractions`: set if their unknowns are their tractions. `isolated`: inverses of the system (2.23) for isolated
-  /// bodies, used as a preconditioner; set up at the first use.
+  /// Rigid bodies among the particles. `tractions`: set if the unknowns on the bodies are their tractions. `isolated`: inverses of the system (2.23)
+  /// for isolated bodies, used as a preconditioner; set up at the first use.
   struct Bodies {
     RigidParticles rigid;
     std::unique_ptr<RigidTractions> tractions;

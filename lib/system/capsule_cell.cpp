@@ -41,8 +41,8 @@ void Capsule::place(const Net& x) {
   duct_.net = x, duct_.origin_of_net = duct_.origin;
 }
 
-/// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is the mean of all particles' control points, even if
-/// they are far apart.
+/// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is on the x1 axis, at the mean x1 of all control
+/// points, even if the particles are far apart.
 Vec3 Capsule::cell_origin(const Net& x) const {
   if (!duct_.tube) return Vec3::Zero();
   if (duct_.tube->fixed()) return (duct_.tube->wall().start + duct_.tube->wall().end) / 2 * Vec3::UnitX();
@@ -50,7 +50,7 @@ Vec3 Capsule::cell_origin(const Net& x) const {
 }
 
 /// Adds to the rank-owned rows of u the velocity (2.47) that the solids cause at the targets in response to the load f and the velocity `moves` of
-/// the particles. If `with_empty`, includes the flow of the solids without particles.
+/// the particles. If `with_empty`, also adds the velocity that the solids cause without particles.
 void Capsule::add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u) {
   const auto clock = phases_.time("wall");
   place_among_solids(x);
@@ -62,7 +62,8 @@ void Capsule::add_solids(const Net& x, const Net& f, const Net& moves, bool with
   u += part;
 }
 
-/// Returns the control values of the velocity by which a tube or solids respond to a load f and a velocity v.
+/// Returns the control values of the velocity that the tube, or otherwise the solids, cause in response to the load f and the velocity v of the
+/// particles.
 Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
   if (duct_.tube) return targets_.collocation().solve(duct_.tube->respond(f, v).velocity);
   Net u = targets_.zero();
@@ -70,7 +71,7 @@ Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
   return targets_.serial_control_values(u);
 }
 
-/// Constructs the response of plates and posts, if there are any.
+/// Creates the object that computes the flow caused by plates and posts, if there are any.
 void Capsule::put_among_solids() {
   if (!parameters_.solids) return;
   around_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, around_.flow);
@@ -83,7 +84,8 @@ void Capsule::place_among_solids(const Net& x) {
   around_.solids->place(x, targets_.values() * x, targets_.own());
 }
 
-/// Evaluates the shape with each particle moved by a lattice vector so that its mean is in the cell, and transfers the velocities back.
+/// Evaluates the shape with each particle moved by a lattice vector so that its mean is in the cell. Converts the velocities to those at the original
+/// positions.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
   if (!around_.cell || !e.x().allFinite()) return solve(e, e.x(), guess);
   Net x = e.x();

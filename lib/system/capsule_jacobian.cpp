@@ -69,8 +69,8 @@ std::vector<Mat3> CapsuleJacobian::gradients_at(const Net& x) const {
   return all;
 }
 
-/// Applies the volume projection P (2.8) of the last linearisation to a rate of change. Without P, the response of a stiff membrane to volume
-/// changes, which the fluids do not allow, would dominate the rate.
+/// Applies the volume projection P (2.8) of the last linearisation to a rate of change. Without P, the rate would include volume changes, which
+/// incompressible fluids do not allow, and the response of a stiff membrane to these changes would dominate.
 Net CapsuleJacobian::without_flux(Net rate) const {
   if (flux_.size() > 0) volumes_.constrain(rate, flux_, flux_response_);
   return rate;
@@ -87,9 +87,9 @@ Net CapsuleJacobian::inflation(const Net& c) {
 ///
 ///   B v = P B P v + (1 - P) v,   B J dx = P (grad v_inf dx - (1/mu) R^{-1} A M0^{-1} H dx)                                         (4.3)
 ///
-/// P is the volume projection (2.8), R the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the membrane tangent. `work`, if
-/// given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies B v is v, and B J dx is 0. The layers and the
-/// tube are applied once, to the sum of all loads.
+/// P is the volume projection (2.8), v_inf the ambient velocity, R the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the
+/// membrane tangent. `work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies B v is v, and B J
+/// dx is 0. The layers and the tube are applied once, to the sum of all loads.
 Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& work) {
   const bool moves = v.size() > 0 && has_system(), displaced = dx.size() > 0;
   if (!moves && !displaced) return v;

@@ -62,7 +62,7 @@ class CapsuleJacobian {
   /// proportional to the large dilatation modulus, would affect the next step.
   Net inflation(const Net& c);
 
-  /// Moves the start y of a stage so that membranes that nearly conserve area have the area of `before`.
+  /// Changes the initial guess y of a stage so that membranes that nearly conserve area have the same local area as in the shape `before` the stage.
   void improve_start(Net& y, const Net& before, double shift);
 
   void forget_recycled() const;  ///< discards the data of earlier solves that the preconditioner `recycled` keeps

@@ -23,10 +23,10 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v, double t
   if (v.allFinite()) require_convergence(report, system, tolerance);
 }
 
-/// Solves P B P v = rhs (4.2) for v, where P rhs = rhs. The vectors b and c define the projection P (2.8), which removes changes of the volumes. If b
-/// and c are empty, the volumes are free and P = 1. In a tube, B includes the response of the wall to v with the option `schur`; with other options,
-/// solve_blocks() solves for v and the wall tractions together. The initial guess is rhs if `guess` is empty or there are rigid bodies, and otherwise
-/// `guess`.
+/// Solves P B P v = rhs for v, with the operator B of (4.2) and P rhs = rhs. The vectors b and c define the projection P (2.8), which removes changes
+/// of the volumes. If b and c are empty, the volumes are free and P = 1. In a tube, B includes the response of the wall to v if the option
+/// Solvers/tube is `schur`. With other values of this option, solve_blocks() solves for v and the wall tractions together. The initial guess is rhs
+/// if `guess` is empty or there are rigid bodies, and otherwise `guess`. `error`: see Evaluation::solve.
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess, double error) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
@@ -71,7 +71,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   };
   const LinearSystem system{velocity_blocks(particles()), apply, bodies_.isolated->empty() ? Apply() : precondition};
   const auto least = [](const Particle& one) { return one.radius * std::sqrt(static_cast<double>(one.block.n_points)); };
-  const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // of the Euclidean norm
+  const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
   const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
   note(velocity_solver_.solve(system, right, v, tolerance), v, tolerance);
   Net solution = Eigen::Map<const Net>(v.data(), n, 3);
@@ -146,7 +146,8 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Ne
   return v;
 }
 
-/// Returns the first moment int df r dG of the load df on particle p, a rigid body whose unknown is its traction. `at`: evaluation of the shape.
+/// Returns the first moment int df_i r_j dG of the load df on particle p, a rigid body whose unknown is its traction. r is the position relative to
+/// the centre of the body. `at`: evaluation of the shape.
 Mat3 Capsule::moment_by_traction(Evaluation& at, std::size_t p) {
   at.rigid();
   const Mat3 moment = bodies_.tractions->moment(static_cast<std::size_t>(std::ranges::count_if(

@@ -17,7 +17,8 @@ Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stoke
                                          Eigen::VectorXd spline::Basis::* which = &spline::Basis::value);
 
 /// Gauss points q on a surface, to integrate the residual of collocation. The residual is zero only at the collocation sites. On an element of size h
-/// it is about h^4 times a quartic polynomial. The number of Gauss points per direction is the spline degree, which suffices for this polynomial.
+/// it is about h^4 times a quartic polynomial. The number of Gauss points per direction is the spline degree, which is enough to integrate this
+/// polynomial exactly.
 struct BetweenSites {
   stokes::Sites places;
   Eigen::SparseMatrix<double> values;   ///< N_A at the points, shape (points, N)

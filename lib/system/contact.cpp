@@ -42,7 +42,7 @@ Net work(std::span<const Particle> particles, const Contacts& contacts, Eigen::I
 
 namespace {
 
-/// Returns the contact forces f with A f + q = 0 (gap exactly closed) in the rows `held`, and f = 0 in all other rows.
+/// Returns the contact forces f with A f + q = 0 (gap exactly closed) in the rows of the contacts `held`, and f = 0 in all other rows.
 Eigen::VectorXd forces(const Eigen::MatrixXd& a, const Eigen::VectorXd& q, const std::vector<int>& held) {
   Eigen::VectorXd f = Eigen::VectorXd::Zero(q.size());
   if (held.empty()) return f;

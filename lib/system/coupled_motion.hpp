@@ -39,8 +39,8 @@ class CoupledMotion : public Dynamics {
   const std::vector<On>& fields() const { return fields_; }
   Eigen::Index n_rows() const { return rows_; }  ///< number of rows of a state
 
-  /// Returns an orthonormal basis, one column each, of the coefficients of field k that have this parity under the symmetry. If the field does not
-  /// know the mirror images of its coefficients, the basis spans all coefficients.
+  /// Returns an orthonormal basis, one vector per column, of the coefficients of field k that have this parity under the symmetry. If the field
+  /// cannot map its coefficients to mirror images, the basis spans all coefficients.
   Eigen::SparseMatrix<double> basis(std::size_t k, const surface::Symmetry& symmetry, const Vec3& parity) const;
   bool knows_images(const surface::Symmetry& symmetry) const;  ///< true if all fields can map their coefficients to mirror images
 
@@ -51,10 +51,10 @@ class CoupledMotion : public Dynamics {
   /// Returns the change of the state y if control points slide by the small displacement `along` on surfaces that do not move.
   Net slid(const Net& y, const Net& along);
 
-  /// Sets the state of the fields. Unlike set_state(), does not set their load on the capsule.
+  /// Sets the fields to the state y. Unlike set_state(), does not add their loads to the loads of the capsule.
   void set_fields(const Net& y);
-  /// Sets the state of the fields and adds their load to the loads of the capsule. Does not set the capsule's shape, which is an argument of its
-  /// functions.
+  /// Sets the fields to the state y and adds their loads to the loads of the capsule. Does not set the capsule's shape, which is an argument of the
+  /// capsule's functions.
   void set_state(const Net& y);
 
   Net velocity(const Net& y) override;

@@ -32,7 +32,8 @@ class Dynamics {
   /// Assembles the layer operators that the Jacobian keeps frozen (4.3) at x.
   virtual void freeze(const Net& x) = 0;
 
-  /// Returns true if freeze() uses a periodic lattice that changes in time. The time must then be the time of the shape that is passed to it.
+  /// Returns true if freeze() uses a periodic lattice that changes in time. The time set by at() must then be the time of the shape passed to
+  /// freeze().
   virtual bool lattice_moves() const { return false; }
 
   /// Returns the size in bytes, over all ranks, of those frozen operators that grow with the square of the number of control points.
@@ -81,14 +82,14 @@ class Dynamics {
   /// Returns fields that move points along surfaces without changing the shape: rotations of the meshes of drops and of membranes (4.22).
   virtual std::vector<Net> relabellings(const Net& /*x*/) { return {}; }
 
-  /// Returns the velocity of a rigid motion about the origin at the state x.
+  /// Returns the velocity of the state x in a rigid motion about the origin.
   virtual Net moved(const Net& x, const RigidMotion& motion) const { return rigid_velocity(x, motion, Vec3::Zero()); }
 
   /// Returns the state x rotated about the origin.
   virtual Net turned(const Net& x, const Mat3& rotation) const { return x * rotation.transpose(); }
 
-  /// Removes the asymmetric round-off from a rate of change if the scene is symmetric. A velocity is symmetric already. A difference of shapes is
-  /// not, and round-off extrapolated from it would grow from step to step.
+  /// Removes the asymmetric round-off from a rate of change if the scene is symmetric. velocity() returns symmetric rates, but a difference of shapes
+  /// contains asymmetric round-off. Extrapolated from such differences, the round-off would grow from step to step.
   virtual Net symmetric(Net rate) const { return rate; }
 
   /// Returns how much a shape differs from the shape at which operators were assembled: by default the norm of the displacement.

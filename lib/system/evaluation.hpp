@@ -33,14 +33,15 @@ class Evaluation {
   const std::vector<Net>& load_sums();                   ///< surface integrals on which the loads depend (see Loads), summed over all ranks
 
   /// Returns the control values of the load of the fluids on the membranes, per unstressed or per current area, depending on the particle. For a
-  /// rigid body, this is the load df of (2.23), a rigid-motion field with the force and torque on the fluid. It is not the traction.
+  /// rigid body, this is the load df of (2.23): a field of the form of a rigid motion whose resultants are the force and torque on the fluid. It is
+  /// not the traction.
   const Net& load();
 
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
   const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
 
-  /// `flow`: force density of the solids and uniform velocity U, which is added to the flow (2.46). `carried`: integral over the cell of the velocity
-  /// that solids and particles add to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_carried`: the parts of `flow` and
+  /// `flow`: force density of the solids, and the uniform velocity U (2.46) that is added to the flow. `carried`: integral over the cell of the
+  /// velocity that solids and particles add to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_carried`: the parts of `flow` and
   /// `carried` that are due to the particles.
   struct SolidFlow {
     Solids::Flow flow, caused;

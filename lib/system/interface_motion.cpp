@@ -77,7 +77,8 @@ Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v)
   return 3 * outward.transpose() * from_mean / b.cwiseProduct(from_mean).sum();
 }
 
-/// Returns half the vorticity of v, averaged over the interior, from v at the control points and b = dV/dx. Exact for a rigid rotation.
+/// Returns half the vorticity of v, averaged over the interior, from v at the control points and b = dV/dx. `from_mean`: control points minus their
+/// mean. Exact for a rigid rotation.
 Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
   const Mat3 volume = b.transpose() * from_mean, flux = b.transpose() * (v.rowwise() - v.colwise().mean());
   const Mat3 gradient = volume.partialPivLu().solve(flux).transpose();
@@ -87,9 +88,10 @@ Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
 /// Returns the velocity of the points y in a rotation about the origin.
 Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rotation.transpose()); }
 
-/// Returns the weight g (4.14) of an axis, divided by m. m is about 1.6 D^2, with the Taylor parameter D in the plane normal to the axis.
+/// Returns the weight g (4.14) of an axis, divided by m. m is about 1.6 D^2, with the Taylor deformation D of the drop in the plane normal to the
+/// axis.
 double weight_of_axis(double m) {
-  constexpr double elongated = 0.02;  // m at D = 11 %: the mesh of a drop that is longer turns with its shape
+  constexpr double elongated = 0.02;  // value of m at the Taylor deformation D = 0.11, from which on g = 1: the mesh turns with the shape of the drop
   const double along = m / elongated;
   return along < 1 ? along * (3 - 2 * along) / elongated : 1 / m;
 }
@@ -123,7 +125,8 @@ struct Moving {
   Net places, normals, velocities;
 };
 
-/// Returns the rigid motion W (4.14) of a drop, about the mean of its control points, with which its mesh moves.
+/// Returns the rigid motion W (4.14) with which the mesh of a drop moves. It consists of a velocity and a rotation about the mean of the control
+/// points.
 RigidMotion shared_motion(const Moving& drop) {
   const Eigen::RowVector3d middle = drop.x.colwise().mean();
   const Net from_mean = drop.x.rowwise() - middle, y = drop.places.rowwise() - middle;

@@ -23,9 +23,10 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 /// W (4.14) is the rigid motion of the drop's shape. The mesh moves with W: the mesh of a drop that is convected, or of an elongated drop that is
 /// rotated as a whole, moves rigidly. The mesh of a steady shape stays fixed while the fluid tank-treads around it. E1 is the energy of a neo-Hookean
 /// membrane of modulus 1 whose unstressed shape is the initial shape. A0 and M0 are the single layer and the mass matrix of the drop's initial shape,
-/// and the rotation Q turns the initial shape with the mesh. The relaxed mesh slides along the interface like an elastic membrane that its tension
-/// pulls through the fluid. Elements therefore keep their shape, and the mesh comes to rest where E1 is smallest on the given interface. The
-/// equations of motion are no stiffer than for a capsule with the capillary number Ca = mu rate R_C / (mu speed). On all other particles u = v.
+/// and the rotation Q turns the initial shape with the mesh. The relaxed mesh slides along the interface like an elastic membrane that is pulled
+/// through the fluid by its tension. Elements therefore keep their shape, and the mesh comes to rest where E1 is smallest on the given interface. The
+/// equations of motion are no stiffer than for a capsule with the capillary number Ca = mu rate R_C / (mu speed), where `rate` is the shear rate. On
+/// all other particles u = v.
 class InterfaceMotion {
  public:
   /// `initial`: net that the meshes relax towards. `mass`: factored mass matrix M0 of `initial`. References, except `initial`, must outlive this
@@ -34,8 +35,8 @@ class InterfaceMotion {
                   const membrane::SymmetricSolver& mass);
 
   /// Returns the control values of the velocity u (4.6) of the control points in the shape x. `v`: control values of the fluid velocity. `b`: dV/dx.
-  /// `given`: net of the same shape that `linearise` receives, which differs from x if particles have been moved into a cell, and by round-off in the
-  /// rows of rigid bodies. Collective.
+  /// `given`: net of this shape as passed to `linearise`. It differs from x if particles have been moved into a cell, and by round-off in the rows of
+  /// rigid bodies. Collective.
   Net velocity(const Net& x, const Net& b, const Net& v, const Net& given);
 
   /// Returns the control values of (1 - n n).(e_k x y) on each drop for each k of `axes`, where y is the position relative to the mean of the drop's

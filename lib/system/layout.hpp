@@ -26,7 +26,7 @@ class Layout {
   /// touching() is returned instead.
   const std::vector<int>& elements() const { return elements_; }
 
-  /// Sets the rows that other ranks own, and the rows of symmetry images.
+  /// Copies the rows that other ranks own from these ranks, and sets the rows of symmetry images.
   void replicate(Net& net) const { ranks_.replicate(net); }
 
   /// Completes integrals over elements() on all ranks. If only one element of each symmetry orbit contributes, first adds the integrals at image

@@ -32,9 +32,9 @@ struct Particle {
   double radius = 1;                          ///< R_C, radius of the sphere of equal volume
   membrane::Material material;
   stokes::Measure measure = stokes::Measure::reference;  ///< surface area to which the load (force per area) refers: unstressed (3.7) or current
-                                                         ///< (3.6); not for rigid bodies
+                                                         ///< (3.6); not used for rigid bodies
   bool by_traction = false;  ///< whether the unknown on a rigid body is its traction (2.40) rather than the density w of a double layer (2.23)
-  std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface
+  std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface: "material", "normal" or "relaxed"
   double interface_speed = 0;                 ///< speed of the mesh relaxation of a drop, length/time
   std::optional<double> kept_volume;  ///< volume V0 to be conserved, for example after a change of mesh; if not set, the volume of the initial net
 

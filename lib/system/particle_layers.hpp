@@ -34,7 +34,8 @@ class Targets {
   /// Gathers the velocity at the targets on all ranks. `shared`: see Layout::gather. Collective.
   void gather(bool shared, Net& at_targets) const;
 
-  /// Return the control values of the velocity whose values at the targets are `at_targets`. `control_values` is collective: ranks share the work.
+  /// Return the control values of the velocity whose values at the targets are `at_targets`. With collocation, `control_values` is collective and
+  /// divides the work among the ranks, and in `serial_control_values` every rank does all the work.
   Net control_values(Net at_targets) const;
   Net serial_control_values(const Net& at_targets) const;
 
@@ -49,9 +50,9 @@ class Targets {
   membrane::SymmetricSolver collocation_;
 };
 
-/// The single layer A and the double layer D of (4.2) of all particles at the targets. D includes the factor 1 - lambda of each particle, or -1 for a
-/// rigid body. The layers include the periodic images of the particles and their images in a plane wall. Results are equal on all ranks; calls are
-/// collective.
+/// The single layer A and the double layer D of (4.2) of all particles at the targets. D includes the factor of each particle: 1 - lambda, or -1 or 0
+/// for a rigid body (see viscosity_contrast). The layers include the periodic images of the particles and their images in a plane wall. Results are
+/// equal on all ranks; calls are collective.
 class ParticleLayers {
  public:
   /// References, except `unstressed`, must outlive this object.

@@ -27,11 +27,12 @@ struct Powers {
   void add_columns(Columns& to) const;
 };
 
-/// Returns half the sum of the magnitudes of three terms of (6.12): the input by flow and forces, the dissipation in the fluids, and the remaining
-/// terms. Equals the power input if all dissipation and storage is positive.
+/// Returns half the sum of the magnitudes of four terms of (6.12): the power inputs by the flow and by forces, the dissipation in the fluids, and the
+/// remainder flow + forces - fluids. Equals the power input if no term is negative.
 double turnover(double flow, double forces, double fluids);
 
-/// Evaluates the power balance of deformable particles, and of rigid bodies among them, in affine and parabolic flows or in a tube.
+/// Evaluates the power balance of deformable particles, and of rigid bodies among them, in affine and parabolic flows, in a tube or among plates and
+/// posts.
 class PowerBalance {
  public:
   /// `capsule`: the system with its particles on their current meshes. References must outlive this object.

@@ -54,9 +54,9 @@ class Ranks {
   /// Divides the control points of a space among the ranks, and returns the points whose rows this rank computes. Collective.
   std::vector<int> divide_points(const spline::Space& space, const surface::Symmetry& symmetry);
   std::vector<int> divide_in_order(const surface::Symmetry& symmetry);  ///< divides the fundamental points into equal parts in their order,
-                                                                        ///< regardless of neighbourhood
+                                                                        ///< regardless of neighbourhood; returns the part of this rank
 
-  /// Sets the rows that other ranks own, and the rows of symmetry images. Collective.
+  /// Copies the rows that other ranks own from these ranks, and sets the rows of symmetry images. Collective.
   void replicate(Net& net) const;
 
   /// Returns a net of n rows on every rank. `fill` sets the rank-owned rows in a net of zeros. Collective.
@@ -68,7 +68,8 @@ class Ranks {
     return net;
   }
 
-  /// Returns a matrix of this size on every rank: the sum of the contributions that all ranks add to a matrix of zeros. Collective.
+  /// Returns, on every rank, a matrix of this size that is the sum of the contributions of all ranks. `assemble` adds the contribution of this rank
+  /// to a matrix of zeros. Collective.
   template <class Matrix, class Assemble>
   Matrix assembled(Eigen::Index rows, Eigen::Index columns, const Assemble& assemble) const {
     Matrix matrix = Matrix::Zero(rows, columns);
@@ -77,7 +78,8 @@ class Ranks {
     return matrix;
   }
 
-  /// Returns a matrix of n rows on every rank. `evaluate(items, rows)` sets the rows `items`, this rank's share, in a matrix of zeros. Collective.
+  /// Returns a matrix of n rows on every rank. `evaluate(items, rows)` sets the rows with the indices `items`, the share of this rank, in the matrix
+  /// `rows` of zeros. Collective.
   template <class Matrix, class Evaluate>
   Matrix divided(int n, Eigen::Index width, const Evaluate& evaluate) const {
     return assembled<Matrix>(n, width, [&](Matrix& rows) { evaluate(share(n), rows); });
