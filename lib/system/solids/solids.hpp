@@ -28,7 +28,7 @@ struct Rod {
 /// Single layer of solids on a lattice, assembled and factored once. f is the force per area that the solids exert on the fluid. F is the given total
 /// force of the solids of one cell on the fluid. U is a uniform velocity:
 ///
-///   (1/mu) G_S f + U = u on the solids,   e.int f dG = e.F for every free direction e of U,   int_s f.n dG = 0 of every solid s      (2.46)
+///   (1/mu) G_S f + U = u on the solids,   e.int f dG = e.F for every free direction e of U,   int_s f.n dG = 0 for every solid s     (2.46)
 ///
 /// The last condition fixes the multiple of n that produces no velocity. U is a combination of the free directions e. With three periods, all
 /// directions are free because the mean velocity follows from the pressure gradient. At a single plate with unbounded fluid on its other side,
