@@ -78,8 +78,7 @@ void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
   for (Eigen::Index k = 0; k < shape_size(); ++k)
     drawn.col(k) = coordinates_along(dynamics.mesh_motion(of_shape(Eigen::VectorXd::Unit(shape_size(), k))));
   const double scale = slides.diagonal().cwiseAbs().mean();
-  for (const Net& field : dynamics.relabellings(x)) {  // excludes rotations of the mesh along the surface, because they do not change the shape
-                                                       // (4.17)
+  for (const Net& field : dynamics.relabellings(x)) {  // removes mesh rotations, because they do not change the shape (4.17)
     if (!admits(field)) continue;
     const Eigen::VectorXd turn = coordinates_along(field).normalized();
     slides -= turn * (turn.transpose() * slides + scale * turn.transpose());

@@ -16,8 +16,8 @@
 
 namespace tanktread::coupling {
 
-/// Flow through a channel with the flow rate Q, computed from an equation of the first kind for the wall traction f. At each end it is the flow of a
-/// straight duct:
+/// Flow through a channel with the flow rate Q. At each end the flow is fully developed, as in a straight duct. The velocity v follows from an
+/// equation of the first kind for the wall traction f:
 ///
 ///   v = -(1/mu) G_W f + dp c + P_I + P_O,   (1/mu) G_W f = dp c + P_I + P_O on the wall,   int v.n dS = Q through a section      (2.30)
 ///
