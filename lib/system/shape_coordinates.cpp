@@ -161,7 +161,7 @@ Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the displacement that has the tangential coordinates t and zero normal coordinates y.
+/// Returns the displacement with the tangential coordinates t and the normal coordinates y = 0.
 Net ShapeCoordinates::along(const Eigen::VectorXd& t) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   for (std::size_t k = 0; k < along_.size(); ++k) at_sites.row(along_[k].site) += t[static_cast<Eigen::Index>(k)] * along_[k].direction.transpose();

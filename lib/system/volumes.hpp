@@ -28,7 +28,7 @@ class Volumes {
   void constrain(Net& v, const Net& b, const Net& c) const;
 
   /// Moves x so that the volumes become V0, by Newton's method. V is a cubic form in x, so V = x.(dV/dx)/3. Sets x to NaN if the iteration fails.
-  /// `along(b)`: direction of the displacement of each particle that changes its volume, for b = dV/dx.
+  /// `along(b)`: returns the direction in which each particle is displaced to change its volume, for b = dV/dx.
   void restore(Net& x, const std::function<Net(const Net& b)>& along) const;
 
  private:

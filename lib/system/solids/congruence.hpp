@@ -8,7 +8,8 @@
 
 namespace tanktread::coupling {
 
-/// One orthogonal map Q of the cross-section, extended by Q e1 = e1, that maps the wall to itself: rotation about x1, reflection, or both.
+/// Orthogonal matrix Q with Q e1 = e1 (e1: axis of the tube) that maps the wall to itself: rotation about x1, reflection of the cross-section, or
+/// both.
 struct Congruence {
   Mat3 q;
   std::vector<int> image, source;  ///< image[k]: Q maps control point k of every cross-section (ring) to control point image[k] of this

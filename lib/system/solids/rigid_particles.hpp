@@ -25,11 +25,10 @@ namespace tanktread::coupling {
 struct OwnLacking {
   std::array<Net, 6> loads;  ///< corrections of the single-layer velocity A f for the six loads f = e_k and f = e_k x r, k = 0, 1, 2 (r: position
                              ///< from the centre of volume)
-  Eigen::MatrixXd density;   ///< matrix, shape (3 N, 3 N): maps the density w to the collocation-error correction of its double layer; empty if N >
-                             ///< `most_points`
+  Eigen::MatrixXd density;   ///< matrix, shape (3 N, 3 N): maps the density w to the correction of the double layer of w; empty if N > `most_points`
 
-  /// Largest number of control points for which the matrix `density` is stored, which takes 72 bytes per pair of control points. It is stored in
-  /// double precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
+  /// Largest number of control points for which the matrix `density` is stored, which takes 72 bytes per pair of control points. The matrix is stored
+  /// in double precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
   static constexpr int most_points = 2000;
 
   OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
@@ -104,8 +103,8 @@ class RigidParticles {
   /// the body at rest.
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
-  /// Returns the coefficients of component k of the mean rigid motion <w> (velocity, then angular velocity) as a linear function of the body's rows
-  /// of w, three coefficients per row. Valid for the body in its position at rest.
+  /// Component k of the mean rigid motion <w> (velocity, then angular velocity) is a linear function of the body's rows of w. Returns its
+  /// coefficients, three per row, for the body in its position at rest.
   Eigen::VectorXd mean_functional(std::size_t p, int k) const;
 
  private:

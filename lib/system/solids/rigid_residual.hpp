@@ -1,5 +1,5 @@
 #pragma once
-// Residual of the velocity on rigid bodies between the collocation sites, and the walls and solids that bound the fluid.
+// Residual of the velocity on rigid bodies between the collocation sites. FluidWalls: the walls and solids that bound the fluid.
 
 #include <optional>
 #include <span>
@@ -18,7 +18,7 @@
 
 namespace tanktread::coupling {
 
-/// Boundaries of the fluid other than particles; null or empty if there are none.
+/// Boundaries of the fluid other than particles. A member is null or empty if there is no such boundary.
 struct FluidWalls {
   Tube* tube = nullptr;
   SolidResponse* solids = nullptr;

@@ -45,7 +45,8 @@ class SolidResponse {
   /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
   void set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present);
 
-  /// Sets the contrasts of the double layer, one per control point: 1 - lambda of the particle, or -1 if it is rigid.
+  /// Sets the contrasts of the double layer, one per control point: 1 - lambda of a deformable particle. The contrast of a rigid body is -1 if its
+  /// unknown is w (2.23), and 0 if its unknown is the traction (2.40).
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
   /// Sets the particles' control net; later calls use this shape. `at`: points on the particles at which `velocities` are needed. `own`: the rows
@@ -92,7 +93,7 @@ class SolidResponse {
   const stokes::AmbientFlow& flow_;
   Eigen::SparseMatrix<double> collocation_;
   stokes::Layer single_;
-  std::optional<stokes::Layer> double_;  // double layer of the particles; set if 1 - lambda is not 0 for any particle
+  std::optional<stokes::Layer> double_;  // double layer of the particles; set if at least one contrast is not 0
   stokes::Measure measure_ = stokes::Measure::reference;
   Eigen::VectorXd contrasts_;
   Net shape_, at_;

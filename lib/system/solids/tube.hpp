@@ -26,7 +26,7 @@ struct BetweenSites;
 
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
-  double viscosity_ratio = 1;        ///< lambda, if it is equal for all particles
+  double viscosity_ratio = 1;        ///< lambda, if equal for all particles; otherwise call set_contrasts()
   surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; Symmetry() if there is none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
@@ -73,8 +73,9 @@ class Tube {
   /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
-  /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is -1;
-  /// in its rows, the argument `v` of the functions below is w of (2.23).
+  /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is 0 if
+  /// its unknown is the traction (2.40). Otherwise the contrast is -1, and in rows of this body the argument `v` of the functions below is w of
+  /// (2.23).
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: origin along x1 of the frame of a straight

@@ -72,9 +72,9 @@ struct Tube::Particle {
   Eigen::SparseMatrix<double> collocation;  ///< collocation matrix R
   membrane::DirectSolver from_sites;        ///< factored collocation matrix R, to compute control values from values at the sites
   stokes::Layer single;
-  std::optional<stokes::Layer> dual;  ///< double layer; set if any lambda is not 1
+  std::optional<stokes::Layer> dual;  ///< double layer; set if at least one contrast is not 0
   std::optional<Period> period;       ///< set if the duct is periodic
-  Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
+  Eigen::VectorXd contrasts;          ///< contrast of each control point, see Tube::set_contrasts
 
   Net shape;                                   ///< net of the particle in the frame of the wall
   double centroid = 0;                         ///< x1 of the origin of the wall's frame, which is the particle's centroid in a straight open tube

@@ -19,8 +19,8 @@ struct VolumeOptions {
 
 /// Options `Interface/*` of the deck: tangential motion of the control points along an interface. Without a membrane this motion is arbitrary.
 struct InterfaceOptions {
-  /// material: with the fluid; normal: only normal to the surface; relaxed: with the fluid in the normal direction, and tangentially so that elements
-  /// keep their shape. If not set: relaxed for a surface tension, material otherwise.
+  /// Motion of the control points. material: with the fluid; normal: only normal to the surface; relaxed: with the fluid in the normal direction, and
+  /// tangentially so that elements keep their shape. If not set: relaxed for a surface tension, material otherwise.
   std::optional<std::string> motion;
   double relaxation = 1;  ///< relaxation speed of the mesh, which moves like an elastic surface at capillary number 1/relaxation
 
@@ -50,8 +50,8 @@ struct SolverOptions {
   double tolerance = 1e-8;                        ///< relative residual of the systems for velocities or tractions
   std::string double_layer = "auto";  ///< double layer. assembled: once per velocity evaluation. matrix-free: summed in each iteration. auto:
                                       ///< matrix-free if far sums use a treecode, unless there are rigid bodies and the matrix is small
-  std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values: names of
-                                                  ///< the preconditioner of one system for all unknowns (BlockSystem)
+  std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values:
+                                                  ///< preconditioner of one system for all unknowns (BlockSystem)
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
                                                   ///< factors are large, see Wall)
   std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind (RigidParticles), first kind

@@ -7,8 +7,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Access to the blocks of an array of unknowns or residuals: velocity v, wall traction f^D, pressure drop dp and volume multipliers, one for each
-/// particle of BlockSystem::constrained.
+/// Access to the blocks of an array of unknowns or residuals: velocity v, wall traction f^D, pressure drop dp and one volume multiplier per particle
+/// of BlockSystem::constrained.
 template <class Number>
 struct Parts {
   using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;
