@@ -57,7 +57,8 @@ void ShapeCoordinates::add_rigid(const spline::Block& block, const Net& x) {
   }
 }
 
-/// Adds the tangential coordinates of a site: one for each tangential direction in which fields of the given mirror parity may be nonzero.
+/// Adds the tangential coordinates of a collocation site: one for each tangential direction in which symmetry and parity allow a displacement.
+/// `normal`: unit normal at the site.
 void ShapeCoordinates::add_along(int site, const Vec3& normal) {
   const Vec3 left = parity_.signs().row(site).transpose().cwiseAbs();
   const Mat3 tangential = Mat3::Identity() - normal * normal.transpose();
@@ -77,7 +78,7 @@ void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
   for (Eigen::Index k = 0; k < shape_size(); ++k)
     drawn.col(k) = coordinates_along(dynamics.mesh_motion(of_shape(Eigen::VectorXd::Unit(shape_size(), k))));
   const double scale = slides.diagonal().cwiseAbs().mean();
-  for (const Net& field : dynamics.relabellings(x)) {  // excludes mesh rotations, which do not change the shape, as in (4.17)
+  for (const Net& field : dynamics.relabellings(x)) {  // removes mesh rotations, because they do not change the shape (4.17)
     if (!admits(field)) continue;
     const Eigen::VectorXd turn = coordinates_along(field).normalized();
     slides -= turn * (turn.transpose() * slides + scale * turn.transpose());
@@ -90,8 +91,8 @@ void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
   following_ = Eigen::Map<const Eigen::MatrixXd>(first.data(), n, shape_size());
 }
 
-/// Makes the coordinates represent translations of a drop exactly, including their displacement along the surface. Applies only to translations that
-/// have the symmetry of the fields.
+/// Prepares the translations of a drop, so that coordinates represent them exactly, including their tangential part. Omits translations that do not
+/// have the symmetry and parity of the displacements.
 void ShapeCoordinates::carry_whole(const spline::Block& block) {
   for (int c = 0; c < 3; ++c) {
     Net field = Net::Zero(sites_.rows(), 3);
@@ -160,7 +161,7 @@ Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the displacement that has the tangential coordinates t and zero normal coordinates y.
+/// Returns the displacement with the tangential coordinates t and the normal coordinates y = 0.
 Net ShapeCoordinates::along(const Eigen::VectorXd& t) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   for (std::size_t k = 0; k < along_.size(); ++k) at_sites.row(along_[k].site) += t[static_cast<Eigen::Index>(k)] * along_[k].direction.transpose();

@@ -17,7 +17,7 @@
 
 namespace tanktread::coupling {
 
-/// Coordinates y of small displacements d of a net x, and of rates of change of x. They depend on the kind of particle:
+/// Coordinates y of small displacements d of a control net x, and of rates of change of x. The definition of y depends on the kind of particle:
 ///
 /// - Control points that move with the material: three coordinates per collocation site, the components of d.
 /// - Control points that slide along the interface of a drop: one coordinate per site, the normal component of d, because tangential displacements do
@@ -26,18 +26,20 @@ namespace tanktread::coupling {
 ///     y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                   (4.15)
 ///
 ///   Here n_i is the unit normal of x at site i and R the collocation matrix. If y contains a translation of the drop, d also contains the tangential
-///   part of the translation, so that translations are represented exactly. If velocities are projected (VelocityProjection), y contains instead the
-///   control values of the scalar field that fits n.d best, because tangential mesh motion would change (4.15) to fourth order in the element size.
+///   part of the translation, so that translations are represented exactly. If velocities are projected (VelocityProjection), y contains, instead of
+///   y_i, the control values of the scalar field that fits n.d best. With y_i of (4.15), tangential motion of the mesh would change y by an amount of
+///   fourth order in the element size.
 /// - Rigid body: the coefficients of six orthonormal fields, which span its translations and rotations.
 ///
-/// Relaxing meshes: after `follow` has been called, d contains in addition a tangential displacement R^{-1} t_i. It is chosen so that the relaxation
-/// velocity w of the mesh does not change: a mesh at rest remains at rest on the displaced shape. With the derivative w'(d) of w along d,
+/// Relaxing meshes: after `follow` has been called, d contains in addition a tangential displacement R^{-1} t_i. The displacement t_i is chosen so
+/// that the relaxation velocity w of the mesh does not change: a mesh at rest remains at rest on the displaced shape. With the derivative w'(d) of w
+/// along d,
 ///
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///
-/// Symmetry: if the scene is symmetric, only coordinates at fundamental sites are used, without the components that symmetry forces to zero there.
-/// They represent only symmetric displacements or, if `parity` is given, only displacements of this parity (surface/symmetry.hpp). If `parity` is not
-/// (1, 1, 1), all other parts of the system must be constructed without the symmetry.
+/// Symmetry: if the scene is symmetric, y has only coordinates at fundamental sites (one site per symmetry orbit), without the components that
+/// symmetry forces to zero there. These coordinates represent only symmetric displacements or, if `parity` is given, only displacements of this
+/// parity (surface/symmetry.hpp). If `parity` is not (1, 1, 1), all other parts of the system must be constructed without the symmetry.
 ///
 /// Fields on the surfaces (CoupledMotion): after `add_fields` has been called, y also contains coordinates y_q of the fields. y_q is the change dq of
 /// the field coefficients q, minus the change of q due to the tangential part of d:
@@ -52,22 +54,25 @@ class ShapeCoordinates {
   /// vanishes. Collective.
   void follow(Dynamics& dynamics, const Net& x);
 
-  /// Adds the coordinates of the fields on the surfaces (4.34). They represent changes relative to the state y. `motion` must outlive this object.
+  /// Adds the coordinates of the fields on the surfaces (4.34). These coordinates represent changes relative to the state y. `motion` must outlive
+  /// this object.
   void add_fields(CoupledMotion& motion, const Net& y);
 
   Eigen::Index size() const { return shape_size() + fields_.cols(); }
   Eigen::Index n_points() const { return sites_.rows(); }
-  Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the displacement with the coordinates y; after add_fields(), change of
-                                                        ///< the whole state
+  Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the displacement with the coordinates y; after add_fields(), the change
+                                                        ///< of the whole state (control points and fields)
   Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates y of a displacement (control values); after add_fields(), of a change of the
-                                                        ///< whole state
-  bool admits(const Net& field) const;                  ///< true if the field has, up to small errors, the symmetry of the coordinates
-  Net admitted(Net field) const;                        ///< the symmetric field that equals `field` at fundamental points
+                                                        ///< whole state (control points and fields)
+  bool admits(const Net& field) const;                  ///< true if the displacement `field` has the symmetry and parity that y represents, up to a
+                                                        ///< relative error of 1e-3
+  Net admitted(Net field) const;                        ///< the part of a change of state that y can represent: equal to `field` at fundamental
+                                                        ///< points and completed by symmetry
 
  private:
   struct Coordinate {
     int site;
-    Vec3 direction;  // direction of the displacement; zero if the coordinate is a normal component of the projected field
+    Vec3 direction;  // direction of the displacement; zero if the coordinate is a control value of n.d (projected velocities)
   };
   static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
   struct Translation {
@@ -86,7 +91,7 @@ class ShapeCoordinates {
   void add_along(int site, const Vec3& normal);
 
   std::vector<Coordinate> all_;
-  std::vector<Net> rigid_;         // orthonormal rigid motions of bodies; their coordinates come last
+  std::vector<Net> rigid_;         // orthonormal rigid motions of bodies; in y, their coordinates follow the coordinates `all_`
   std::vector<Coordinate> along_;  // tangential coordinates t of drops
   Eigen::MatrixXd following_;      // maps coordinates y to the tangential coordinates t of relaxing meshes (4.26); empty if no mesh relaxes
   std::vector<Translation> translations_;  // translations of drops
@@ -98,9 +103,9 @@ class ShapeCoordinates {
   const VelocityProjection* projection_;
   Net normals_;  // unit normals of drops at the sites of `projection_`
   CoupledMotion* motion_ = nullptr;     // set if the state has fields
-  Net state_;                           // state y; the field coordinates of add_fields() are changes relative to y
-  Eigen::SparseMatrix<double> fields_;  // orthonormal basis of the changes of a state's field coefficients that symmetry and parity allow, one column
-                                        // per basis vector
+  Net state_;                           // state passed to add_fields(); the coordinates of fields are changes relative to this state
+  Eigen::SparseMatrix<double> fields_;  // orthonormal basis of the changes of the field coefficients that symmetry and parity allow, one column per
+                                        // basis vector
 };
 
 }  // namespace tanktread::coupling

@@ -31,8 +31,8 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
   return defect <= 1e-10 * size && gradient_defect <= 1e-10 * gradient_size;
 }
 
-/// Returns whether the lattice has the symmetry: the image of every lattice vector is a lattice vector. If the flow has the symmetry too, this
-/// remains true at all times.
+/// Returns whether the lattice has the symmetry: the image of every lattice vector is a lattice vector. If the flow has the symmetry too, it also
+/// convects the lattice vectors symmetrically, so that the result remains true at all times.
 static bool keeps(const stokes::PeriodicCell& cell, const surface::Image& image) {
   for (int d = 0; d < cell.n(); ++d) {
     Vec3 steps = cell.coordinates(image.signs.cwiseProduct(cell.vectors().col(d)));

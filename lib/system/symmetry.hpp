@@ -33,7 +33,7 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
 using LoadList = std::vector<std::shared_ptr<membrane::Load>>;
 
 /// Returns the symmetries (mirror planes, half turns, point symmetry) that the flow (in all its directions over time), the loads, the normal of a
-/// plane wall, the lattice of a periodic cell, the space and all nets have in common. Returns only the identity if the options ask for it. Other
+/// plane wall, the lattice of a periodic cell, the space and all nets have in common. Returns only the identity if the option `use` is "none". Other
 /// boundaries of the fluid, for example posts, are not checked; the caller must exclude them.
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
                            const stokes::AmbientFlow& flow, const LoadList& loads = {}, const Vec3& wall_normal = Vec3::Zero(),
@@ -44,7 +44,7 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
                            const surface::TubeWall& wall, const LoadList& loads = {});
 
 /// Returns the velocity D x of the material points along the surface x when the unstressed surface X rotates onto itself at unit angular velocity
-/// about the axis e_k = x_{axis+1} through its centre X_c. The result has control values on the points `block`, and 0 in all other rows:
+/// about the axis e_k (k = axis + 1) through its centre X_c. The result has control values on the points `block`, and 0 in all other rows:
 ///
 ///   D x = F (e_k x (X - X_c)),   F the deformation gradient                                                        (4.22)
 ///

@@ -40,7 +40,8 @@ class VelocityProjection {
 
  private:
   surface::Symmetry symmetry_;
-  bool folded_ = false;  // true if the sites lie on one element of each symmetry orbit; sums at image points are then added to fundamental points
+  bool folded_ = false;  // true if only one element of each symmetry orbit has sites; sums at image points are then added to the sums at fundamental
+                         // points
   stokes::Sites sites_;
   std::vector<int> own_;
   Eigen::SparseMatrix<double> values_, along_s_, along_t_, weighted_;  // values_, along_s_, along_t_: N_A and its derivatives with respect to s and

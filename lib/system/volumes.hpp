@@ -1,5 +1,5 @@
 #pragma once
-// Volumes of all particles, and the projection of velocities that keeps them constant.
+// Volumes of all particles, and the projection of velocities that keeps these volumes constant.
 
 #include <functional>
 #include <vector>
@@ -13,8 +13,8 @@ namespace tanktread::coupling {
 /// The volumes V of all particles and their prescribed volumes V0. Rigid bodies are excluded from all corrections. Calls with a shape are collective.
 class Volumes {
  public:
-  /// Keeps the volume V0 = Particle::kept_volume of each particle if it is set, and otherwise the volume of the particle in the net `initial`.
-  /// References, except `initial`, must outlive this object.
+  /// Stores V0 of each particle: Particle::kept_volume if set, otherwise the volume of the particle in the net `initial`. References, except
+  /// `initial`, must outlive this object.
   Volumes(const spline::Space& space, const Net& initial, const std::vector<Particle>& particles, const Layout& layout, Phases& phases);
 
   const surface::Geometry& geometry() const { return geometry_; }
@@ -23,11 +23,12 @@ class Volumes {
   /// Returns b = dV/dx: the rows of each particle contain the gradient of the volume of this particle.
   Net gradient(const Net& x) const;
 
-  /// Applies the projection P of (2.8) to v for each particle, so that its volume does not change.
+  /// Applies the projection P of (2.8) to v for each particle, so that its volume does not change: subtracts c (b.v)/(b.c). `b`: dV/dx. `c`: field
+  /// along which v is corrected.
   void constrain(Net& v, const Net& b, const Net& c) const;
 
-  /// Changes the volumes of x to V0 by Newton's method. V is a cubic form in x, so V = x.(dV/dx)/3. Sets x to NaN if the iteration fails. `along(b)`:
-  /// direction of the displacement of each particle that changes its volume, for b = dV/dx.
+  /// Moves x so that the volumes become V0, by Newton's method. V is a cubic form in x, so V = x.(dV/dx)/3. Sets x to NaN if the iteration fails.
+  /// `along(b)`: returns the direction in which each particle is displaced to change its volume, for b = dV/dx.
   void restore(Net& x, const std::function<Net(const Net& b)>& along) const;
 
  private:

@@ -48,9 +48,9 @@ BodyLayer::BodyLayer(std::span<const Particle> bodies, double viscosity, const q
   if (wall && beyond_) beyond_->set_wall(*wall);
 }
 
-/// Sets, for each body, the two vectors of the regularising term of (2.10): the flux vector b = dV/dx, and s (R c)/(b.c), with R c the values of a
-/// velocity field c at the sites and s a scale. Any field c with nonzero flux b.c makes the system regular; the radial field about the mean of the
-/// sites is used.
+/// Sets the two vectors of the regularising term (2.10) of each body. flux_: flux vector b = dV/dx, with the volume V. outward_: s (R c)/(b.c), with
+/// a scale s and the values R c of a velocity field c at the sites. Any field c with nonzero flux b.c makes the system regular; here c is the radial
+/// field about the mean of the sites.
 void BodyLayer::make_regular(const Net& x) {
   flux_ = outward_ = Net::Zero(x.rows(), 3);
   for (std::size_t p = 0; p < bodies_.size(); ++p) {

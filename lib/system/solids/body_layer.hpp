@@ -20,19 +20,20 @@ namespace tanktread::coupling {
 /// control point of all particles; only the rows of bodies contain force densities f. Calls are collective.
 class BodyLayer {
  public:
-  /// `bodies`: the rigid bodies, with their blocks among all particles. `own`: collocation points of all particles whose rows this rank computes.
-  /// References must outlive this object.
+  /// `bodies`: the rigid bodies; their blocks are rows of nets of all particles. `own`: indices, in these nets, of the collocation points at which
+  /// this rank computes velocities. References must outlive this object.
   BodyLayer(std::span<const Particle> bodies, double viscosity, const quadrature::Options& quadrature,
             const std::optional<stokes::PlaneWall>& wall, std::span<const int> own, Ranks& ranks);
 
   /// Sets the shape x with the collocation sites `at`. Assembles and factors the single layer A at the sites of the bodies, without images on a
-  /// lattice. `keep_rows`: true to store all matrix rows that velocity() needs, for calls with many densities.
+  /// lattice. `keep_rows`: true to store the matrix for many calls of velocity(); false to save memory, and velocity() is then zero in the rows of
+  /// bodies.
   void place(const Net& x, const Net& at, bool keep_rows);
 
-  /// Returns (1/mu) A f at the collocation sites of all particles. The rows of bodies are zero unless place() was called with `keep_rows`.
+  /// Returns (1/mu) A f at the collocation sites of all particles. The rows of bodies are zero if place() was called without `keep_rows`.
   Net velocity(const Net& f);
 
-  /// Returns the regularising term (2.10) for the density f, which is part of the operator (1/mu) A.
+  /// Returns the regularising term (2.10), a part of the operator (1/mu) A, applied to the density f.
   Net regular(const Net& f) const;
 
   /// Solves for the force densities that produce the velocities in `columns`. Returns `columns` with the rows of bodies (velocities at the sites)
@@ -44,18 +45,18 @@ class BodyLayer {
  private:
   void make_regular(const Net& x);
 
-  std::vector<Particle> bodies_;   // the rigid bodies; their blocks count the control points of rigid bodies only
+  std::vector<Particle> bodies_;   // the rigid bodies; their blocks are rows of nets of the rigid bodies only
   std::vector<spline::Block> in_;  // rows of each body in nets of all particles
   spline::Space space_;            // common space of the bodies
-  std::vector<int> points_, rows_, others_;  // points_: control points of the bodies; rows_: their components; others_: points of `own` (see the
-                                             // constructor) that belong to other particles
+  std::vector<int> points_, rows_, others_;  // points_: control points of the bodies; rows_: indices of their components; others_: points of `own`
+                                             // (see the constructor) on other particles
   double viscosity_;
   Ranks& ranks_;
   stokes::Layer layer_;                  // single layer at the sites of the bodies
   std::optional<stokes::Layer> beyond_;  // single layer at the points `others_`; empty if there are none
   Net at_, flux_, outward_;  // at_: collocation sites. flux_: flux vector b of each body. outward_: vector s (R c)/(b.c) of the regularising term
                              // (2.10), with a scale s and the collocation matrix R
-  Eigen::MatrixXd matrix_;                // kept only for `velocity`
+  Eigen::MatrixXd matrix_;                // matrix of A at the sites of the bodies; empty if `keep_rows` is false
   stokes::Rows<double> rows_of_others_;  // rows of the single layer A at the points `others_`; empty if `keep_rows` is false
   std::optional<DenseFactors> factors_;
 };

@@ -16,13 +16,15 @@
 
 namespace tanktread::coupling {
 
-/// Flow with the flow rate Q through a channel, with the flow of a straight duct at each end, by the first-kind operator of the wall:
+/// Flow through a channel with the flow rate Q. At each end the flow is fully developed, as in a straight duct. The velocity v follows from an
+/// equation of the first kind for the wall traction f:
 ///
 ///   v = -(1/mu) G_W f + dp c + P_I + P_O,   (1/mu) G_W f = dp c + P_I + P_O on the wall,   int v.n dS = Q through a section      (2.30)
 ///
-/// f is the traction on the wall, dp the pressure drop between the ends, c the velocity due to a unit pressure at the inlet, (1/mu) times (2.13), and
-/// P_I, P_O the velocities (2.29) due to the duct flow through the inlet and the outlet. The wall operator is constructed by all ranks when a
-/// velocity is first needed; Tube uses the same factors. Members of DuctFlow other than velocities refer to the inlet.
+/// G_W is the single layer of the wall, dp the pressure drop between the ends, and c the velocity due to a unit pressure at the inlet: 1/mu times
+/// (2.13). P_I and P_O are the velocities (2.29) due to the duct flow through the inlet and the outlet. The wall operator is constructed by all ranks
+/// when a velocity is first needed; Tube uses the same LU factors. All members of DuctFlow except velocities and gradients refer to the duct at the
+/// inlet.
 ///
 /// In a periodic channel of period L, Poiseuille flow in a circular tube with the pressure gradient dp/L replaces the terms dp c, P_I and P_O. Then f
 /// is the traction of the fluid inside minus the traction of a fictitious fluid outside, whose velocity also vanishes on the wall.
@@ -31,8 +33,8 @@ class ChannelFlow : public stokes::DuctFlow {
   ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
               const WallSolver& solver = {});
 
-  /// Returns the velocities at x, accurate up to the wall. At points outside they are undefined. The values at the latest points are cached.
-  /// Collective.
+  /// Returns the velocities at x, accurate up to the wall. At points outside the channel the values are undefined. The values at the latest points x
+  /// are cached. Collective.
   Net velocities(const Net& x) const override;
 
   /// Computes the velocity gradients by one-sided differences with a step of a hundredth of the channel's smallest half width. Their accuracy
@@ -44,7 +46,7 @@ class ChannelFlow : public stokes::DuctFlow {
                                        ///< the centre line
   const Net& wall_traction() const;    ///< control values of f
 
-  /// Returns the flow rates through the cross-sections at the arc lengths s of the centre line, from velocities that are evaluated together.
+  /// Returns the flow rates through the cross-sections at the arc lengths s of the centre line. All velocities for them are evaluated in one call.
   std::vector<double> flow_rates_at(const std::vector<double>& s) const;
 
   const surface::Channel& channel() const { return *channel_; }
@@ -59,7 +61,7 @@ class ChannelFlow : public stokes::DuctFlow {
 
  private:
   struct Solved {
-    double pressure_drop = 0, driving = 1;  // driving: factor of ends() in the velocity
+    double pressure_drop = 0, driving = 1;  // driving: factor of the velocity ends(), which drives the flow
     Net traction;
   };
   const Solved& solved() const;
@@ -75,8 +77,8 @@ class ChannelFlow : public stokes::DuctFlow {
   quadrature::Options quadrature_;
   WallSolver solver_;
   std::vector<stokes::DuctEnd> ends_;
-  mutable std::shared_ptr<stokes::Layer> layer_;  // single layer of the wall, with a smaller tolerance than in Wall, because large
-                                                  // pressures at the ends amplify errors of the velocity
+  mutable std::shared_ptr<stokes::Layer> layer_;  // single layer of the wall. Its tolerance is smaller than in Wall, because large pressures at the
+                                                  // ends amplify errors of the velocity
   mutable std::shared_ptr<Wall> wall_;
   mutable std::shared_ptr<const Solved> solved_;
   mutable Net latest_at_, latest_;

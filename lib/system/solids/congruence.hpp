@@ -8,24 +8,26 @@
 
 namespace tanktread::coupling {
 
-/// One orthogonal map Q of the cross-section, extended by Q e1 = e1, that maps the wall to itself: rotation about x1, reflection, or both.
+/// Orthogonal matrix Q with Q e1 = e1 (e1: axis of the tube) that maps the wall to itself: rotation about x1, reflection of the cross-section, or
+/// both.
 struct Congruence {
   Mat3 q;
   std::vector<int> image, source;  ///< image[k]: Q maps control point k of every cross-section (ring) to control point image[k] of this
                                    ///< cross-section. source: inverse of image
 };
 
-/// Returns the maps found, with the identity first. For a circle with n points around, these are 2 n maps, for a rectangle 4, and for the section of
-/// a bent channel 2. A map is accepted if it moves each control point and collocation point of the wall to one of them, up to 1e-10 tube radii.
+/// Returns the maps of the wall onto itself, the identity first: 2 n maps for a circle with n points around, 4 for a rectangle, 2 for the section of
+/// a bent channel. A map is accepted if it moves every control point to a control point and every collocation point (`sites`) to a collocation point,
+/// up to 1e-10 tube radii.
 ///
-/// The kernels do not change if source, target and force are rotated or reflected together, so that the blocks of an operator A on the wall satisfy
-/// A(Q i, Q p) = Q A(i, p) Q^T.
+/// The kernels do not change if source, target and force are rotated or reflected together. The 3 x 3 blocks of an operator A on the wall, for target
+/// i and source p, therefore satisfy A(Q i, Q p) = Q A(i, p) Q^T.
 std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& sites);
 
-/// Orbit representative of a point of a cross-section (ring): the point of the ring from which a map leads to the given point. Matrix rows are
+/// Orbit representative of a point of a cross-section (ring): the point of the same ring that a map moves to the given point. Matrix rows are
 /// assembled only for representatives.
 struct Original {
-  int point;               ///< index of the representative in the ring: the smallest index of all points that maps move to the given point
+  int point;               ///< index of the representative in the ring: the smallest of the indices of all points that maps move to the given point
   const Congruence* from;  ///< map that moves the representative to the given point; an element of the list given to originals()
 };
 

@@ -27,7 +27,8 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
   return solution_;
 }
 
-/// Returns the pressure drop, corrected for the collocation error (2.41) by the integral of the residual times f. No further solve is needed.
+/// Returns the pressure drop due to the body, corrected for the collocation error (2.41) by the integral of the residual velocity times f. No further
+/// solve is needed.
 double FreeBodyInTube::pressure_drop(const Net& place) const {
   Tube* const tube = body_.tube();
   if (!tube) return 0;

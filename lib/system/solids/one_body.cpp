@@ -85,7 +85,7 @@ namespace {
 /// inverse, because their eigenvalues are not small: they are of the order of k h, with wave numbers k of at least about 1/R.
 constexpr double widest = 0.5;
 
-/// A body, its collocation sites, and a ball about the mean of the sites that contains all of them.
+/// A body with its collocation sites, and the ball (centre `middle`, radius `extent`) that contains all sites.
 struct Side {
   std::size_t particle;
   spline::Block block;

@@ -32,7 +32,7 @@ class OneBodyInverses {
   /// Returns whether the inverse of the system (2.23) of particle p is stored.
   bool serves(std::size_t p) const { return of_particle(p) != nullptr; }
 
-  /// Replaces control values by values at the collocation sites, in the rows of rigid bodies.
+  /// Replaces control values by values at the collocation sites, in the rows of all bodies whose inverse is stored.
   void take_to_sites(Net& y) const;
 
   /// Solves the system (2.23) of every isolated body whose inverse is stored. In the rows of the body, y has the right-hand sides at the collocation
@@ -61,14 +61,14 @@ class OneBodyInverses {
 };
 
 /// Inverses for the films between pairs of bodies. A mode of the density w (2.23) with wave number k that is equal on both sides of a film of width h
-/// has an eigenvalue of the order of k h, even after preconditioning by the isolated bodies. Let M_q be the operator of the isolated body q, and H_pq
-/// the double layer of body q at the sites of body p. The effect of body q on body p is C_pq = -H_pq M_q^-1. The matrix
+/// has an eigenvalue of the order of k h, even after preconditioning by OneBodyInverses. Small eigenvalues slow GMRES. Let M_q be the operator of the
+/// isolated body q, and H_pq the double layer of body q at the sites of body p. The effect of body q on body p is C_pq = -H_pq M_q^-1. The matrix
 ///
-///   1 + C,   C restricted to the sites of a film,
+///   1 + C,   C consists of C_pq and C_qp, restricted to the sites of the film between p and q,
 ///
-/// is factored for each pair of bodies. Its inverse minus 1 is added to the preconditioner of the isolated bodies (additive Schwarz; Smith, Bjørstad
-/// & Gropp 1996, chapter 1). Two films of one body are assumed to have no sites in common; if they do, the solver needs more iterations, but its
-/// result is the same.
+/// is factored for each pair of bodies. The inverse of this matrix minus 1 is added to the preconditioner of the isolated bodies (additive Schwarz;
+/// Smith, Bjørstad & Gropp 1996, chapter 1). Two films of one body are assumed to have no sites in common; if they do, the solver needs more
+/// iterations, but its result is the same.
 class FilmInverses {
  public:
   /// Returns the rows of the double layer H for the sites `targets`, three rows per site, in the order of `targets`; shape (3 targets, 3 N).

@@ -28,7 +28,7 @@ PlateFactors::PlateFactors(const Eigen::MatrixXd& rows, const std::array<int, 2>
   inverse_.assign(static_cast<std::size_t>(n1 * n2), Complex::Zero(size, size));
   for (int r = 0; r < size; ++r)
     for (int c = 0; c < size; ++c) {
-      Complex g(n1, n2);  // entries g(d) (2.50) of one component, for each difference d of grid indices
+      Complex g(n1, n2);  // entry (r, c) of the blocks g(d) (2.50), for each difference d of grid indices
       for (int i = 0; i < n1; ++i)
         for (int j = 0; j < n2; ++j)
           g((i - point[0] + n1) % n1, (j - point[1] + n2) % n2) = rows(r, 3 * ((c / 3) * n1 * n2 + i * n2 + j) + c % 3);

@@ -8,8 +8,9 @@
 
 namespace tanktread::coupling {
 
-/// Operator between plates that have the same grid of n1 x n2 equal elements over one period. Its blocks g depend only on the difference of the grid
-/// indices c and s of two points (block circulant). So for each pair k of wave numbers it is a matrix M(k) with three rows and columns per plate:
+/// Operator from force densities f to velocities u on plates that have the same grid of n1 x n2 equal elements over one period. Its 3 x 3 blocks g
+/// depend only on the difference of the grid indices c and s of two points (block circulant). A discrete Fourier transform (^) therefore reduces it,
+/// for each pair k of wave numbers, to a matrix M(k) with three rows and columns per plate:
 ///
 ///   u_s = sum_c g(c - s) f_c,   M(k) = sum_d g(d) exp(i k.d),   u^(k) = M(k) f^(k)                                         (2.50)
 ///

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int affine_modes = 11, quadratic_modes = 18;
 
-/// Indices of a quadratic velocity field y_b y_c e_i, b <= c: component i and the two coordinates.
+/// Indices of a quadratic velocity field y_b y_c e_i: the component i, and the coordinates b <= c (y: position from the centre).
 struct UnitQuadratic {
   int i, b, c;
 };
@@ -103,7 +103,7 @@ FreeBody::FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre,
 }
 
 /// Returns the amplitudes of the modes (RigidModes) of the disturbance velocity on the body, in body-fixed axes. These are the rigid motion relative
-/// to the flow, minus the strain rate of the flow and, if the flow is quadratic, minus its quadratic coefficients.
+/// to the flow, the negative strain rate of the flow and, if the flow is quadratic, its negative quadratic coefficients.
 Eigen::VectorXd FreeBody::amplitudes(const Net& place) const {
   const Mat3 turn = rotation_of(place), l = turn.transpose() * flow_.gradient(centre_of(place)) * turn;
   Eigen::VectorXd a(modes_.response.cols());

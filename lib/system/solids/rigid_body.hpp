@@ -16,12 +16,12 @@ namespace tanktread::coupling {
 /// Returns matrix k = 0 .. 4 of a basis of the strain rates (trace-free symmetric matrices).
 Mat3 unit_strain(int k);
 
-/// Returns the strain E with the given products E : unit_strain(k).
+/// Returns the trace-free symmetric matrix E whose products E : unit_strain(k), k = 0 .. 4, are `products`.
 Mat3 strain_of_products(const Eigen::Matrix<double, 5, 1>& products);
 
-/// Solutions for velocities on the body equal to the six unit rigid motions, the five unit strains and, if `quadratic`, the fields y_j y_k e_i with
-/// y = x - centre, in the axes of `surface`. The response to any affine flow is a combination of the first eleven solutions. The response to a
-/// quadratic flow (2.20) is a combination of all twenty-nine.
+/// Force densities that cause given velocities on the body: the six unit rigid motions, the five unit strains and, if `quadratic`, the 18 fields y_j
+/// y_k e_i with y = x - centre, in the axes of the net `surface`. The force density in any affine flow is a combination of the first eleven, and in a
+/// quadratic flow (2.20) a combination of all twenty-nine.
 struct RigidModes {
   RigidModes(RigidTractions& body, const Net& surface, const Vec3& centre, bool quadratic);
 
@@ -39,7 +39,8 @@ Mat3 rotation_of(const Net& place);
 /// Centre and orientation of a single rigid body as a system dx/dt = v(x).
 class LoneRigidBody : public Dynamics {
  public:
-  /// `surface`: control net of the body in its initial position. `radius`: R_C. `driven`: force on the body, and torque about the centre.
+  /// `surface`: control net of the body in its initial position. `radius`: particle radius R_C. `driven`: given force on the body, and torque about
+  /// its centre.
   LoneRigidBody(const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
       : surface_(surface), centre_(centre), radius_(radius), flow_(flow), driven_(driven) {}
 
@@ -49,7 +50,8 @@ class LoneRigidBody : public Dynamics {
   Net velocity(const Net& place) override;
   void freeze(const Net&) override {}
   void linearise(const Net&) override {}
-  Net solve(double, const Net& r, double, const Secants&) override { return r; }  ///< J = 0: the motion is not stiff
+  Net solve(double, const Net& r, double, const Secants&) override { return r; }  ///< returns r: the Jacobian is taken as 0, because the motion is
+                                                                                  ///< not stiff
   Net missed(const Net& change, const Net& delta, double shift) override { return change + delta / shift; }
   void restore_volume(Net& place) override;                       ///< normalises the quaternion; the volume of a rigid body needs no correction
   double norm(const Net& displacement) const override;            ///< combines the displacement of the centre, divided by R_C, and the angle of
@@ -57,11 +59,11 @@ class LoneRigidBody : public Dynamics {
 
   virtual RigidMotion motion(const Net& place) const = 0;
   virtual Net force_density(const Net& place) const = 0;  ///< force density on the fluid, control values
-  virtual Mat3 stresslet(const Net& place) const = 0;     ///< int (t_i x_j + t_j x_i)/2 - delta_ij/3 t.x dG, t the traction on the body
+  virtual Mat3 stresslet(const Net& place) const = 0;     ///< int [(t_i x_j + t_j x_i)/2 - delta_ij t.x/3] dG; t: traction on the body
   virtual double pressure_drop(const Net&) const { return 0; }  ///< additional pressure drop due to the body, in a tube
 
-  /// The latest solution of the linear system, which is the initial guess of the next solve; empty if no system is solved iteratively. Checkpoints
-  /// store it, so that a resumed run is bitwise equal.
+  /// Returns the latest solution of the linear system; empty if no system is solved iteratively. The next solve starts from this solution.
+  /// Checkpoints store it, so that a resumed run is bitwise equal to an uninterrupted run.
   virtual Eigen::VectorXd unknowns() const { return {}; }
   virtual void start_from(const Eigen::VectorXd&) {}
 
@@ -84,9 +86,9 @@ class LoneRigidBody : public Dynamics {
   long evaluations_ = 0;
 };
 
-/// A free body in unbounded flow (2.20):  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf(x_c)/2 + Omega'. Here (U', Omega')
-/// follows from the given force and torque, which are 0 by default, and from the remaining part of the flow about x_c. A call costs only a few
-/// products of small matrices.
+/// A free body in unbounded flow (2.20):  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf(x_c)/2 + Omega'. Here x_c is the centre
+/// and q the quaternion of the orientation. (U', Omega') follows from the given force and torque (0 by default), and from the strain rate and the
+/// second derivatives of v_inf at x_c. A call costs only a few products of small matrices.
 class FreeBody : public LoneRigidBody {
  public:
   FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven = {});
@@ -100,18 +102,18 @@ class FreeBody : public LoneRigidBody {
 
   RigidModes modes_;
   Eigen::Matrix<double, 6, 6> mobility_;            ///< column k: rigid motion due to the unit force (k = 0, 1, 2) or unit torque (k = 3, 4, 5)
-  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< column k: rigid motion of a free body relative to the flow, due to unit strain flow or unit
-                                                    ///< quadratic flow k
+  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< column k: rigid motion relative to the flow of a free body in unit flow k: unit strains, then
+                                                    ///< unit quadratic flows
 };
 
-/// A free body in a tube or near a plane wall, with the equation (2.40), which is solved at each position. In a tube the force density and the motion
+/// A free body in a tube or near a plane wall. Equation (2.40) is solved at each position. In a tube the force density f and the motion (U, Omega)
 /// are the unknowns of one system in body-fixed axes,
 ///
 ///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = F,   int r x f dG = T,
 ///
-/// where u is the response of wall and pressure drop; A does not depend on the position. The preconditioner is the inverse of the system without the
-/// term u(f). The initial guess is the previous solution. Calls are collective. Repeated calls at one position take one solve. The motion is not
-/// finite if the body intersects the wall.
+/// where u(f) is the velocity that wall and pressure drop cause for the load f (Tube::respond), and F, T are the given force and torque. The single
+/// layer A does not depend on the position. The preconditioner is the inverse of the system without the term u(f). The initial guess is the previous
+/// solution. Calls are collective. Repeated calls at one position take one solve. If the body intersects the wall, the motion is NaN.
 class FreeBodyInTube : public LoneRigidBody {
  public:
   /// `body`: equation (2.40) of the traction on the body, including the tube or the plane wall. `surface`: net of the body in its initial position.
@@ -141,7 +143,7 @@ class FreeBodyInTube : public LoneRigidBody {
 
   RigidTractions& body_;
   double viscosity_;
-  std::optional<RigidModes> modes_;  // force densities for unit motions and unit flows, without the response of the tube
+  std::optional<RigidModes> modes_;  // force densities for unit motions and unit flows, without the effect of the tube
   mutable Net place_;                 // position of the latest solve
   mutable Solution solution_;         // solution at the position `place_`
   mutable Eigen::VectorXd unknowns_;  // traction and rigid motion found by the latest solve, from which the next solve starts

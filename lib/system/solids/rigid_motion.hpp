@@ -14,20 +14,21 @@ struct RigidMotion {
 struct SolvedBody {
   RigidMotion motion;
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque (about the centre) of the body on the fluid
-  Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, with the position r from the centre
+  Mat3 moment = Mat3::Zero();                        ///< first moment int f_i r_j dG, with the position r from the centre
 
   /// Returns the symmetric, traceless part of `moment`.
   Mat3 stresslet() const { return (moment + moment.transpose()) / 2 - moment.trace() / 3 * Mat3::Identity(); }
 };
 
-/// Returns the unit motion k: translations along x1, x2, x3, then rotations about them.
+/// Returns the unit motion k: translations along x1, x2, x3 (k = 0, 1, 2), rotations about these axes (k = 3, 4, 5).
 inline RigidMotion unit_motion(int k) {
   RigidMotion unit;
   (k < 3 ? unit.velocity : unit.angular_velocity)[k % 3] = 1;
   return unit;
 }
 
-/// Returns U + Omega x (x - centre) at points, one row each. For a control net it returns exact control values, because the basis sums to one.
+/// Returns U + Omega x (x - centre) at the points x, one row per point. If x is a control net, the result is the exact control net of this velocity,
+/// because the basis functions sum to one.
 Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre);
 
 }  // namespace tanktread::coupling

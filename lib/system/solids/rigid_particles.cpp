@@ -20,7 +20,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Returns the single layer A f at sites for each of six densities f.
+/// Returns the single layer A f at the given sites, for each of six densities f.
 std::array<Net, 6> single_layer_at(const stokes::Sites& sites, const spline::Space& space, const Net& surface, const std::array<Net, 6>& f,
                                    const quadrature::Options& quadrature) {
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, sites, quadrature);
@@ -32,8 +32,8 @@ std::array<Net, 6> single_layer_at(const stokes::Sites& sites, const spline::Spa
   return u;
 }
 
-/// Returns the product of weights, shape (N, sites), with the double-layer matrix H at the sites. Row 3 a + c of the product belongs to row a of the
-/// weights and component c. Rows of H are assembled in chunks.
+/// Returns the product of `weights`, shape (N, sites), and the double-layer matrix H at the sites. Row 3 a + c of the product belongs to row a of the
+/// weights and velocity component c. To save memory, the rows of H are assembled in chunks.
 Eigen::MatrixXd weighted_double_layer(const stokes::Sites& sites, const Eigen::SparseMatrix<double>& weights, const spline::Space& space,
                                       const Net& surface, const quadrature::Options& quadrature) {
   constexpr int at_a_time = 512;

@@ -18,24 +18,24 @@ namespace tanktread::coupling {
 
 /// Correction of the collocation error of the velocity u that a single or double layer on a body induces on the body itself, for unit viscosity. It
 /// is the control net of u by least-squares projection minus the control net of u by collocation, M^-1 int N_A u dG - R^-1 u (M: mass matrix, R:
-/// collocation matrix). A spline surface of n elements per side is farther out at its collocation sites than between them by about 1/n^4. The
-/// velocity of a double layer and the velocity gradient of a single layer jump across a surface. Therefore the velocity at the sites has a systematic
-/// error. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4, and its
-/// stresslet in a straining flow has a similar error.
+/// collocation matrix). At its collocation sites, a spline surface of n elements per side lies farther out than between them, by about 1/n^4 radii.
+/// The velocity of a double layer and the velocity gradient of a single layer jump across a surface. Therefore the velocity at the sites has a
+/// systematic error. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4, and
+/// its stresslet in a straining flow has a similar error.
 struct OwnLacking {
   std::array<Net, 6> loads;  ///< corrections of the single-layer velocity A f for the six loads f = e_k and f = e_k x r, k = 0, 1, 2 (r: position
                              ///< from the centre of volume)
-  Eigen::MatrixXd density;   ///< matrix, shape (3 N, 3 N): maps the density w to the collocation-error correction of its double layer; empty if N >
-                             ///< `most_points`
+  Eigen::MatrixXd density;   ///< matrix, shape (3 N, 3 N): maps the density w to the correction of the double layer of w; empty if N > `most_points`
 
-  /// Largest number of control points for which the matrix `density` is stored, which takes 72 bytes per pair of control points. It is stored in
-  /// double precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
+  /// Largest number of control points for which the matrix `density` is stored, which takes 72 bytes per pair of control points. The matrix is stored
+  /// in double precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
   static constexpr int most_points = 2000;
 
   OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
 };
 
-/// The limit lambda -> infinity of (2.22). In this limit v = V + w/(lambda - 1) on the body, V = U + Omega x r, and
+/// The limit lambda -> infinity (rigid bodies) of equation (2.22) for particles of viscosity ratio lambda. In this limit v = V + w/(lambda - 1) on
+/// the body, V = U + Omega x r, and
 ///
 ///   V(x0) = v_inf(x0) - sum_p G df_p - (1 / 8 pi) int (w - w(x0)) T n dG + contributions of v and w of the other particles        (2.23)
 ///
@@ -48,7 +48,7 @@ struct OwnLacking {
 /// Nets stack the control points of all particles. The rows of a body in a net x represent the position of the rigid body that fits them best.
 class RigidParticles {
  public:
-  /// `rest`: net of all particles; only rows of rigid bodies are stored. `viscosity`: mu of the outer fluid.
+  /// `rest`: net of all particles at rest; only rows of rigid bodies are stored. `viscosity`: mu of the outer fluid.
   RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature);
 
   bool empty() const { return bodies_.empty(); }
@@ -57,8 +57,9 @@ class RigidParticles {
   /// Moves every body to the position that fits the rows of the body in x best. Replaces these rows by the control points of the moved body.
   void place(Net& x);
 
-  /// Sets forces on the bodies in addition to the prescribed forces. `work`: virtual work of these forces, one row per control point of all
-  /// particles; no rows if there are no such forces. The forces act on material points and have fixed directions in space.
+  /// Sets forces on the bodies in addition to the prescribed forces. `work`: virtual work of these forces per unit displacement of each control
+  /// point, one row per control point of all particles; no rows if there are no such forces. The forces act on material points and have fixed
+  /// directions in space.
   void push(const Net& work);
 
   // The next six functions apply only to bodies whose unknown is the double-layer density w (2.23), not to bodies whose unknown is the traction.
@@ -72,7 +73,8 @@ class RigidParticles {
   Net completing_load(const Net& w) const;   ///< load (mu/R_C) <w> of bodies with prescribed motion, with <w> the rigid motion nearest to w (2.23); 0
                                              ///< in other rows
   void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
-  /// Sets the motion, force and torque of body p to values that were not computed from (2.23). Sets the rows of the body in v to this motion.
+  /// Sets the motion, force and torque of body p to values that were not computed from (2.23). Sets the rows of the body in v to the control values
+  /// of this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
   /// On a lattice, the solve for the velocities uses the image of each body in the cell. Before the solve, `enter` sets for each body the ambient
   /// velocity at the body minus the ambient velocity at its image. shifts[p]: position of particle p minus the position of its image. `gradient`:
@@ -94,15 +96,15 @@ class RigidParticles {
                                                                        ///< push()
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
-  /// Returns whether two bodies have equal shapes and orientations at rest.
+  /// Returns whether the bodies p and q have equal shapes and orientations at rest.
   bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
 
   /// Returns the collocation-error correction (OwnLacking) of the velocity that the unit load k of body p induces on the body itself, in the axes of
   /// the body at rest.
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
-  /// Returns the coefficients of component k of the mean rigid motion <w> (velocity, then angular velocity) as a linear function of the body's rows
-  /// of w, three coefficients per row. Valid for the body in its position at rest.
+  /// Component k of the mean rigid motion <w> (velocity, then angular velocity) is a linear function of the body's rows of w. Returns its
+  /// coefficients, three per row, for the body in its position at rest.
   Eigen::VectorXd mean_functional(std::size_t p, int k) const;
 
  private:
@@ -110,7 +112,7 @@ class RigidParticles {
   struct Body {
     spline::Block block;
     Rigid rigid;
-    Net pushed;  // virtual work of the forces set by push(); no rows if there are none
+    Net pushed;  // rows of this body in the argument of push(); no rows if there are no such forces
     double radius = 0, viscosity = 0;
     Net rest;             // control net in the reference orientation, relative to the centre of volume
     std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies

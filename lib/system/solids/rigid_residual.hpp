@@ -1,5 +1,5 @@
 #pragma once
-// Residual of the velocity on rigid bodies between the collocation sites, and the walls and solids that bound the fluid.
+// Residual of the velocity on rigid bodies between the collocation sites. FluidWalls: the walls and solids that bound the fluid.
 
 #include <optional>
 #include <span>
@@ -18,15 +18,15 @@
 
 namespace tanktread::coupling {
 
-/// Boundaries of the fluid other than particles; null or empty if there are none.
+/// Boundaries of the fluid other than particles. A member is null or empty if there is no such boundary.
 struct FluidWalls {
   Tube* tube = nullptr;
   SolidResponse* solids = nullptr;
   std::optional<stokes::PlaneWall> plane;
 };
 
-/// Residual of the velocity on rigid bodies at Gauss points between the collocation sites, from which (2.11) computes corrections. Calls are
-/// collective.
+/// Residual of the velocity on rigid bodies at Gauss points between the collocation sites. With this residual, (2.11) corrects the forces for the
+/// collocation error. Calls are collective.
 class RigidResidual {
  public:
   /// The arguments are explained at the constructor of RigidTractions. Only `particles` that are rigid bodies have Gauss points.
@@ -47,7 +47,7 @@ class RigidResidual {
   Ranks& ranks_;
   BetweenSites between_;                 // Gauss points on the bodies
   stokes::Layer single_;                 // single layer of all particles at the Gauss points
-  std::optional<stokes::Layer> double_;  // double layer of deformable particles; set if 1 - lambda is not 0 for any of them
+  std::optional<stokes::Layer> double_;  // double layer of deformable particles; set if lambda is not 1 for at least one of them
   stokes::Measure measure_;
 };
 

@@ -17,7 +17,8 @@ Flat flat(const Net& net) { return {net.data(), net.size()}; }
 
 Eigen::Map<const Net> as_net(const Eigen::Ref<const Eigen::VectorXd>& numbers) { return {numbers.data(), numbers.size() / 3, 3}; }
 
-/// Sets six columns to the velocities of a body's unit motions at x, in the rows of the body. If x is a control net, they are control values.
+/// Sets six columns to the velocities of a body's unit motions at x, in the rows of the body. If x is a control net, the columns contain control
+/// values.
 void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
   const Net own = block.rows(x);
   for (int k = 0; k < 6; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(rigid_velocity(own, unit_motion(k), centre));
@@ -50,7 +51,7 @@ SolverOptions for_single(SolverOptions solvers) {
   return solvers;
 }
 
-/// Returns the indices, six per body, of the motions that are not prescribed.
+/// Returns the indices 6 p + k of the unit motions k = 0 .. 5 of all bodies p whose motion is not prescribed.
 std::vector<int> free_motions(std::span<const Rigid> driven) {
   std::vector<int> free;
   for (std::size_t p = 0; p < driven.size(); ++p)
@@ -59,7 +60,8 @@ std::vector<int> free_motions(std::span<const Rigid> driven) {
   return free;
 }
 
-/// Returns the changes of the motions, six per body, that produce the missing forces and torques. Only the motions `free` change.
+/// Returns the changes of the motions, six per body, that produce the missing forces and torques. Only the motions `free` change. Column k of
+/// `resistance`: forces and torques due to unit motion k.
 Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& missing) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(missing.size());
   if (free.empty()) return motion;
@@ -70,7 +72,7 @@ Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resis
 }
 
 /// Returns the amplitudes of the unit motions: prescribed motions, and the motions that give the prescribed forces and torques. `held`: forces and
-/// torques on bodies at rest.
+/// torques if all bodies are held at rest.
 Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(held.size()), given = motion;
   for (std::size_t p = 0; p < driven.size(); ++p) {
@@ -121,8 +123,8 @@ Net RigidTractions::product(const Net& y) {
 }
 
 /// Returns the unknowns y, one column per column of `velocities`. In rows of bodies, `velocities` are velocities at the sites; in other rows, they
-/// are the right-hand side for the velocity of deformable particles. If the surroundings do not respond, solves only for the force densities and
-/// copies the other rows.
+/// are the right-hand side for the velocity of deformable particles. If responds() is false (A is only the single layer of the bodies), solves only
+/// for the force densities and copies the other rows.
 Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
   if (!responds()) return layer_.solved(velocities);
@@ -149,7 +151,7 @@ Net RigidTractions::force_densities(const Net& y) const {
   return f;
 }
 
-/// Returns the unknowns y. If responds() is false, adds the velocity that the force densities cause on deformable particles to their rows.
+/// Returns the unknowns y. If responds() is false, rows of deformable particles are completed by the velocity that the force densities cause there.
 Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
   Net y = as_net(unknowns);
   if (responds() || alone_) return y;
@@ -165,8 +167,8 @@ void RigidTractions::place(const Net& x, std::span<const Vec3> centres, std::opt
   layer_.place(x, at_, responds() && !repeats_);
 }
 
-/// Returns the collocation-error corrections (2.11) for the unknowns y and the densities z, one per column of z: the work of the density in the
-/// residual velocity, computed from `left_`. In a channel the residual on the wall is included (2.42).
+/// Returns the collocation-error corrections (2.11) for the unknowns y, one per column of z (a density): the work of this density in the residual
+/// velocity, computed from `left_`. In a channel the residual on the wall is included (2.42).
 Eigen::VectorXd RigidTractions::lacks(const Net& y, const Eigen::MatrixXd& z) {
   Eigen::VectorXd work = z.transpose() * left_;
   if (!walls_.tube || !walls_.tube->fixed() || !alone_) return work;

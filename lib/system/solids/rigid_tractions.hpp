@@ -35,19 +35,19 @@ namespace tanktread::coupling {
 ///
 /// The collocation error of the force or torque that belongs to z_k is corrected by the reciprocal theorem (2.11): int z_k.(v - (1/mu) A f) dG over
 /// all bodies is added, with v the right-hand side. The error of a stresslet is corrected in the same way with the densities of unit strains of its
-/// body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. With (2.23), they are linear in the error of
-/// one density. In a channel the residual on the wall is included (2.42). The matrix is dense, which limits the number of control points to a few
-/// thousand.
+/// body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. With the double-layer equation (2.23), the errors
+/// of forces are linear in the error of one density. In a channel the residual on the wall is included (2.42). The matrix is dense, which limits the
+/// number of control points to a few thousand.
 ///
-/// If the fluid has other boundaries, A includes the velocity that f causes through them: images on a lattice, the wall of a tube and its pressure
-/// drop, plates and posts (2.47), and deformable particles. v_inf then includes the flow that these boundaries cause without bodies. The additions to
-/// A are smooth, and A remains self-adjoint. The densities are found by GMRES, together with the velocity of deformable particles (2.52), and the
-/// preconditioner is the factored operator of the bodies without these additions. Drops and capsules of viscosity ratio 1 without
+/// If the fluid has other boundaries, A includes the velocity that f causes through these boundaries: images on a lattice, the wall of a tube and its
+/// pressure drop, plates and posts (2.47), and deformable particles. v_inf then includes the flow that these boundaries cause without bodies. The
+/// additions to A are smooth, and A remains self-adjoint. The densities are found by GMRES, together with the velocity of deformable particles
+/// (2.52), and the preconditioner is the factored operator of the bodies without these additions. Drops and capsules of viscosity ratio 1 without
 /// surface viscosity do not change A. The pressure drop of a duct flow is corrected like a force, unless there are deformable particles; this
 /// correction includes the interpolation error of v_inf (2.41).
 class RigidTractions {
  public:
-  /// `space`: common space of all particles. `unstressed`, `rest`: control nets of their unstressed and resting shapes. `own`: collocation points
+  /// `space`: common space of all particles. `unstressed`, `rest`: control nets of all particles, unstressed and at rest. `own`: collocation points
   /// whose rows this rank computes. References must outlive this object.
   RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles, double viscosity,
                  const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall, Tube* tube,
@@ -60,14 +60,14 @@ class RigidTractions {
   /// Sets the periodic cell of the particles, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
 
-  /// Sets the solids in the lattice, which must outlive this object.
+  /// Sets the solids in the lattice. `solids` must outlive this object.
   void put_among(SolidResponse& solids) { walls_.solids = &solids; }
 
   /// Interactions of the bodies with deformable particles and with images on a lattice. Nets have one row per control point of all particles. The
   /// unknowns y are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
   struct Surroundings {
     Net flow;       ///< control values of the velocity (4.2) due to the ambient flow and known loads
-    bool responds;  ///< true if the velocity on the bodies depends on y through more than their single layers
+    bool responds;  ///< true if the velocity on the bodies depends on y not only through the single layers of the bodies
 
     /// Returns B y, the left-hand side of the linear system for y. `caused`: velocity at all collocation sites due to the force densities f in y;
     /// empty on a lattice. Rows of bodies contain the velocity at the sites due to y. All other rows contain v minus the control values of the
@@ -76,7 +76,7 @@ class RigidTractions {
     std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
   };
 
-  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, it must have been set to x. `around`: interactions
+  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, call Tube::place(x) before. `around`: interactions
   /// with deformable particles and with images on a lattice; not set if there are neither. Collective.
   void place(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
 
@@ -103,7 +103,7 @@ class RigidTractions {
 
   BodyLayer& layer() { return layer_; }  ///< returns the single layer at the latest net
 
-  /// Returns whether the bodies with the net x are inside the tube and in front of the plane wall. If there is a tube, it must have been set to x.
+  /// Returns whether the bodies with the net x are inside the tube and in front of the plane wall. If there is a tube, call Tube::place(x) before.
   bool inside(const Net& x) const;
 
   /// Returns the results for the bodies in the order of the particles. Their moments lack the collocation-error correction that moment() adds.
@@ -118,10 +118,10 @@ class RigidTractions {
   double lacking_pressure() const { return lacking_pressure_; }         ///< collocation-error correction of the pressure drop (2.7) due to all bodies
                                                                         ///< together
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
-  /// Throws RunFailure if an iterative solve of the latest call did not converge. Otherwise returns the number of iterations of all its solves.
+  /// Throws RunFailure if an iterative solve in `reports()` did not converge. Otherwise returns the number of iterations of all these solves.
   int converged_iterations() const;
-  /// Solves another system for a traction, with the initial guess `unknowns`. Returns the number of iterations, or throws RunFailure and leaves
-  /// `unknowns` unchanged. Collective.
+  /// Solves the given linear system for a traction. `unknowns`: initial guess, replaced by the solution. Returns the number of iterations. If the
+  /// solve does not converge, throws RunFailure and leaves `unknowns` unchanged. Collective.
   int solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
   void forget_recycled() const;  ///< discards the data of earlier solves that the solver and the tube's wall keep
   Tube* tube() const { return walls_.tube; }

@@ -1,5 +1,5 @@
 #pragma once
-// Velocity that plates and posts cause in response to the particles between them. The force of these solids on the fluid is eliminated.
+// Velocity that plates and posts add to the flow around the particles between them. The force of these solids on the fluid is eliminated.
 
 #include <memory>
 #include <optional>
@@ -25,7 +25,7 @@ struct SolidScene {
 /// Returns the solution of (2.46) without particles, in the ambient flow v_inf. Collective.
 Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow);
 
-/// Returns the integral over the cell (2.49) of the velocity due to the solids, for the solution `flow` of (2.46).
+/// Returns the integral over the cell (2.49) of the velocity due to the solids only. `flow`: solution of (2.46).
 Vec3 carried(const SolidScene& scene, const Solids::Flow& flow);
 
 /// Velocity u that solids (with the surface S) add to the ambient flow v_inf and to the layers of the particles (with the surface C):
@@ -33,10 +33,10 @@ Vec3 carried(const SolidScene& scene, const Solids::Flow& flow);
 ///   u = (1/mu) G_S f + U,   u = V - v_inf + (1/mu) G_C df - (1/8 pi) int_C (1 - lambda) T v n dG on the solids            (2.47)
 ///
 /// V is the prescribed velocity of the solids, which changes in time like the flow; df and v are load and velocity of the particles. f and U are the
-/// solution of (2.46) for the force F = |C| g + int df dG, where |C| is the volume of the cell and g the mean pressure gradient. With this F, the
-/// total force on the fluid in one cell balances the pressure gradient g. The layers of the particles include all images. `empty` is the part of the
-/// solution without particles, and `respond` the part that is linear in df and v. Nets of particles are replicated on all ranks. All calls except
-/// queries are collective.
+/// solution of (2.46) for the force F = V_c g + int df dG, where V_c is the volume of the cell and g the mean pressure gradient. With this F, the
+/// total force on the fluid in one cell balances the pressure gradient g. The layers of the particles include all images. `empty` returns the
+/// solution without particles, and `respond` the part of the solution that is linear in df and v. Nets of particles are replicated on all ranks. All
+/// calls except queries are collective.
 class SolidResponse {
  public:
   /// `space`: common space of all particles. `flow`: ambient flow. References must outlive this object.
@@ -45,7 +45,8 @@ class SolidResponse {
   /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
   void set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present);
 
-  /// Sets the contrasts of the double layer, one per control point: 1 - lambda of the particle, or -1 if it is rigid.
+  /// Sets the contrasts of the double layer, one per control point: 1 - lambda of a deformable particle. The contrast of a rigid body is -1 if its
+  /// unknown is w (2.23), and 0 if its unknown is the traction (2.40).
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
   /// Sets the particles' control net; later calls use this shape. `at`: points on the particles at which `velocities` are needed. `own`: the rows
@@ -55,7 +56,7 @@ class SolidResponse {
   /// Returns the solution without particles.
   const Solids::Flow& empty();
 
-  /// Returns the part of the solution of (2.46) due to the load f and the velocity v of the particles. Empty nets are skipped.
+  /// Returns the part of the solution of (2.46) due to the load f and the velocity v of the particles. An empty net counts as zero.
   Solids::Flow respond(const Net& f, const Net& v);
 
   /// Computes the rows `own` of the velocity u at the points `at`; both were passed to `place`. Not collective.
@@ -71,14 +72,14 @@ class SolidResponse {
   ///   int u_i dV = (1/mu) (int_S f_i phi dG - int_C df_i phi dG) + int_C (1 - lambda) v.sigma_i n dG                         (2.49)
   ///
   /// In this formula, f_i is the force density of the solids (`flow`) and df_i the load of the particles (the argument f). S are the surfaces of the
-  /// solids, C those of the particles. With z the distance from one plate and phi = z (D - z)/2, a unit pressure gradient along e_i drives the flow
-  /// phi e_i/mu, which has the stress sigma_i.
+  /// solids, C those of the particles. With z the distance from one plate and phi = z (D - z)/2, a pressure that decreases along e_i with unit
+  /// gradient drives the flow phi e_i/mu, which has the stress sigma_i.
   Vec3 carried(const Solids::Flow& flow, const Net& f, const Net& v);
 
   /// Returns the force of the particles on the fluid for a load f.
   Vec3 force(const Net& f) const { return -f.transpose() * areas_; }
 
-  /// Returns whether these points are in the fluid, in front of plates and outside of posts.
+  /// Returns whether all points `at` are in the fluid, in front of plates and outside of posts.
   bool inside(const Net& at) const { return stokes::in_front(scene_.planes, at) && scene_.solids->outside(at); }
 
   const SolidScene& scene() const { return scene_; }
@@ -92,7 +93,7 @@ class SolidResponse {
   const stokes::AmbientFlow& flow_;
   Eigen::SparseMatrix<double> collocation_;
   stokes::Layer single_;
-  std::optional<stokes::Layer> double_;  // double layer of the particles; set if 1 - lambda is not 0 for any particle
+  std::optional<stokes::Layer> double_;  // double layer of the particles; set if at least one contrast is not 0
   stokes::Measure measure_ = stokes::Measure::reference;
   Eigen::VectorXd contrasts_;
   Net shape_, at_;

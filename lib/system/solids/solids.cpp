@@ -77,8 +77,8 @@ void Solids::make_layer() {
   layer_->place(surface_.net);
 }
 
-/// Includes x in the range of coordinates for which the layer is set up. The range depends only on the current x, so that a resumed run computes the
-/// same velocities. It grows in steps, so that a moving particle seldom needs a new layer.
+/// Sets the range of coordinates for which the layer is accurate, so that it includes x. The range depends only on the current x, so that a resumed
+/// run computes the same velocities. The range grows in steps, so that a moving particle seldom needs a new layer.
 void Solids::reach(const Net& x) {
   if (cell().n() == 3) return;
   const auto [low, high] = cell().range(x);

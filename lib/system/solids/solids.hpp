@@ -28,19 +28,18 @@ struct Rod {
 /// Single layer of solids on a lattice, assembled and factored once. f is the force per area that the solids exert on the fluid. F is the given total
 /// force of the solids of one cell on the fluid. U is a uniform velocity:
 ///
-///   (1/mu) G_S f + U = u on the solids,   e.int f dG = e.F for every free direction e of U,   int_s f.n dG = 0 of every solid s      (2.46)
+///   (1/mu) G_S f + U = u on the solids,   e.int f dG = e.F for every free direction e of U,   int_s f.n dG = 0 for every solid s     (2.46)
 ///
-/// The last condition fixes the multiple of n that produces no velocity. U is a combination of the free directions e. With three periods, all
-/// directions are free because the mean velocity follows from the pressure gradient. At a single plate with unbounded fluid on its other side,
-/// directions along the plate are free. In these cases, the balance of forces determines U. Otherwise there is no free direction, and U = 0.
+/// The last condition makes f unique, because f = n on one solid produces no velocity. U is a combination of the free directions e. With three
+/// periods, all directions are free because the mean velocity follows from the pressure gradient. At a single plate with unbounded fluid on its other
+/// side, directions along the plate are free. In these cases, the balance of forces determines U. Otherwise there is no free direction, and U = 0.
 ///
 /// f is a periodic spline, with one control value per collocation point. If all solids are plates, the operator is inverted by Fourier series
-/// (PlateFactors). Otherwise it is dense. Nets are replicated on all ranks. All calls except queries are
-/// collective.
+/// (PlateFactors). Otherwise the matrix is dense. Nets are replicated on all ranks. All calls except queries are collective.
 class Solids {
  public:
-  /// A connected part of the solids, for example one plate. Its unit normal n, as a density that is 0 on all other parts, is a null vector of the
-  /// single layer. `velocity`: prescribed velocity of this part, tangential to its surface.
+  /// A connected part of the solids, for example one plate. The density equal to the unit normal n on this part and 0 on all other parts is a null
+  /// vector of the single layer. `velocity`: prescribed velocity of this part, tangential to its surface.
   struct Solid {
     surface::SolidSurface surface;
     Vec3 velocity = Vec3::Zero();
@@ -65,23 +64,23 @@ class Solids {
     Flow operator+(const Flow& other) const { return {force + other.force, drift + other.drift}; }
   };
 
-  /// Sets the range of heights above a plate in which `velocity_at` and `layer` are accurate, so that it contains the solids and the points x. Must
-  /// be called before `velocity_at` and `layer`. Collective.
+  /// Sets the range of heights above a plate in which `velocity_at` and `layer` are accurate, so that the range contains the solids and the points x.
+  /// Must be called before `velocity_at` and `layer`. Collective.
   void reach(const Net& x);
 
-  /// Returns whether points are outside of all cylinders.
+  /// Returns whether all points `at` are outside of all cylinders and their images.
   bool outside(const Net& at) const;
 
   /// Returns the solution of (2.46) for the velocity u at the collocation points and the force F.
   Flow solve(const Net& u, const Vec3& force) const;
 
-  /// Computes rows `rows` of the velocity of a flow at points off the solids. Not collective. `kept`: near-field corrections layer().near(at, rows)
-  /// computed before, or null.
+  /// Computes the rows `rows` of u, the velocity at points `at` off the solids due to the solution `flow`. Not collective. `kept`: near-field
+  /// corrections from an earlier layer().near(at, rows); if null, they are computed here.
   void velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept = nullptr);
 
   std::vector<Vec3> forces(const Net& f) const;  ///< returns int f dG of each solid
 
-  /// Returns the power of a force density at the prescribed velocities.
+  /// Returns the power int f.V dG of a force density f, with the prescribed velocities V of the solids.
   double power(const Net& f) const { return f.cwiseProduct(areas_.asDiagonal() * velocities_).sum(); }
 
   /// Returns int N_A phi dG for every control point A, where phi is the given function. The inner product with a force density f is int phi f dG.
@@ -109,7 +108,7 @@ class Solids {
   Ranks ranks_;
   std::vector<int> own_;
   std::array<Vec3, 2> across_;            // lowest and highest coordinates of the solids, in the axes of the cell
-  std::array<Vec3, 2> reached_;           // lowest and highest coordinates of targets of `layer_`, in the axes of the cell
+  std::array<Vec3, 2> reached_;           // lowest and highest coordinates, in the axes of the cell, for which `layer_` is set up
   std::unique_ptr<stokes::Layer> layer_;  // at points off the solids
   Net sites_, velocities_;
   Eigen::VectorXd areas_;   // int N_A dG
@@ -120,8 +119,8 @@ class Solids {
   std::optional<PlateFactors> plates_;  // set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
                                         // each plate
-  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced; the evaluations of the
-                                        // present layer_ are not included
+  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced; without the present
+                                        // `layer_`
 };
 
 }  // namespace tanktread::coupling

@@ -105,7 +105,7 @@ Net Tube::images_on_particle(const Net& f, const Net& v) {
   return on_particle(particle_->cause(f, v, *wall_).at_sites);
 }
 
-/// Gathers the rank-owned rows of a net with one row per collocation point of the particle, on all ranks.
+/// Returns, on all ranks, a net with one row per collocation point of the particle, gathered from the rank-owned rows of `own`.
 Net Tube::on_particle(const Net& own) const {
   return particle_->ranks.filled(own.rows(), [&](Net& u) {
     for (const int i : particle_->own) u.row(i) = own.row(i);

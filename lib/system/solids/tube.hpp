@@ -26,15 +26,15 @@ struct BetweenSites;
 
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
-  double viscosity_ratio = 1;        ///< lambda, if it is equal for all particles
+  double viscosity_ratio = 1;        ///< lambda, if equal for all particles; otherwise call set_contrasts()
   surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; Symmetry() if there is none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
 };
 
-/// Response of the wall and the pressure drop to a load f and a velocity v on the particle. f and v are given by control values, and the response is
-/// linear in both together:
+/// Response of the wall and the pressure drop to a load f and a velocity v on the particle, both given by control values. The response is linear in
+/// (f, v):
 ///
 ///   wall      (1/mu) G_W f^D - dp c = -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dG            at the wall      (2.6)
 ///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dG                                                           (2.7)
@@ -49,7 +49,7 @@ struct TubeParameters {
 /// laboratory frame; nets of the wall are in the wall's frame. Nets are replicated on all ranks. All calls except queries are collective.
 ///
 /// If the pressure drop dp_0 of the duct flow is prescribed instead of its flow rate, dp/dp_0 times that flow is subtracted from the response. dp is
-/// then the excess over the pressure drop of the empty tube at the reduced flow rate Q (1 - dp/dp_0).
+/// then the pressure drop minus the pressure drop of the empty tube at the reduced flow rate Q (1 - dp/dp_0).
 ///
 /// A duct that repeats along x1 is represented by one period of its wall, without ends and with the kernels of one period (Layer::repeat). c is then
 /// the empty duct's flow v_inf per unit pressure drop of a period. This flow vanishes on the wall, so that the response without the term dp c is the
@@ -73,8 +73,9 @@ class Tube {
   /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
-  /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is -1;
-  /// in its rows, the argument `v` of the functions below is w of (2.23).
+  /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is 0 if
+  /// its unknown is the traction (2.40). Otherwise the contrast is -1, and in rows of this body the argument `v` of the functions below is w of
+  /// (2.23).
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: origin along x1 of the frame of a straight
@@ -98,8 +99,8 @@ class Tube {
   /// Not collective, except if the duct repeats or its pressure drop is prescribed: then every rank must call it with the same x.
   void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
-  /// Stores the operators of the current shape as low-precision blocks. `frozen_response` applies them: it returns the response u at the particle's
-  /// collocation points. If the wall's system is solved by iteration, `frozen_response` returns 0. The Jacobian then omits u. This is
+  /// Stores the operators of the current shape as low-precision blocks for the Jacobian. `frozen_response` applies them: it returns the response u at
+  /// the particle's collocation points. If the wall's system is solved by iteration, `frozen_response` returns 0. The Jacobian then omits u. This is
   /// accurate enough, because the contribution of u is small and smooth.
   void freeze();
   Net frozen_response(const Net& f, const Net& v = {});
@@ -157,10 +158,10 @@ class Tube {
   /// Returns the particle's net in the frame of `wall()`, which moves with the particle in a straight tube.
   Net in_wall_frame(Net x) const;
 
-  /// Returns whether the wall is fixed in the laboratory frame (a channel), so that results depend on the position along it.
+  /// Returns whether the wall is fixed in the laboratory frame (a channel), so that results depend on the position along the channel.
   bool fixed() const { return wall().channel != nullptr; }
 
-  /// Returns whether these points are inside the duct; in a channel they must also be between its ends.
+  /// Returns whether the points `rows` of x are inside the duct; in a channel, also between its ends.
   bool inside(const Net& x, std::span<const int> rows) const;
 
   const surface::TubeWall& wall() const;

@@ -13,14 +13,14 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // argument of Layer::see_images_only that exceeds every row number: the surface itself
-                                                             // then contributes to all targets
+constexpr int everything = std::numeric_limits<int>::max();  // argument of Layer::see_images_only that exceeds every row number: the surfaces
+                                                             // themselves, not only their images, then contribute at all targets
 constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // check_sharpness: factor by which leak() multiplies the tolerance of
                                                            // integrals over the wall, because pressures are large. sharpest: upper limit of
                                                            // this product
 
-/// Adds points on the straight lines from the centroid of a section to points of its outline, except points that are not inside the outline. `place`:
-/// maps points of the section into space.
+/// Adds points of a section to `points`: points on straight lines from the centroid to the outline, if they are inside the outline. `place`: maps
+/// points of the section into space.
 template <class Place>
 void add_points_of_cap(const surface::Outline& outline, const Place& place, std::vector<Vec3>& points) {
   const surface::Vec2 centre = outline.centroid();
@@ -59,7 +59,7 @@ void Tube::weigh_flow() {
 }
 
 /// Returns the errors of the response in the conditions (2.14). By reciprocity, a force f at y causes the flow rate f.c(y)/mu through the inlet, with
-/// c of (2.13). So no quadrature over the inlet is needed.
+/// c of (2.13). Therefore no quadrature over the inlet is needed.
 Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
   Particle& particle = *particle_;
   const double mu = viscosity(), dp = response.pressure_drop;

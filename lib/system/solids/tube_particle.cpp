@@ -152,7 +152,7 @@ void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight)
   for (int c = 0; c < 3; ++c) pressure_of_velocity.col(c) = contrasts.cwiseProduct(dual->moments(flow_at[c])) / -flow.flow_rate();
 }
 
-/// Returns the duct flow at the sites. In a symmetric scene it is evaluated at the fundamental points only and completed by symmetry.
+/// Returns the duct flow at the sites. In a symmetric scene the flow is evaluated at the fundamental points only and completed by symmetry.
 Net Tube::Particle::ambient_of(const stokes::DuctFlow& flow) const {
   const surface::Symmetry& symmetry = parameters.symmetry;
   if (symmetry.order() == 1) return flow.velocities(sites);

@@ -34,24 +34,24 @@ struct Tube::Particle {
   void place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
 
   /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights with which a velocity on the wall contributes to
-  /// the pressure drop dp, or empty. If it is not empty, also computes the weights with which the particle's velocity v contributes to dp, from these
-  /// weights and the double layer. For accuracy, this is done before the rows of the double layer are rounded.
+  /// the pressure drop dp, or empty. If it is not empty, also computes the weights with which the particle's velocity v contributes to dp: the
+  /// product of `pressure_of_wall` and the double layer. For accuracy, the rows of the double layer are rounded only afterwards.
   void freeze(Wall& wall, const Net& pressure_of_wall);
 
   const stokes::Layer::Near* kept(const std::optional<stokes::Layer::Near>& near) const { return near ? &*near : nullptr; }
 
-  /// Returns v at the collocation point of the particle that is nearest to each target on the wall.
+  /// Returns, for each target on the wall, the value of v at the nearest collocation point of the particle.
   Net nearest_values(const Net& v) const;
 
   /// Returns (1 - lambda) v: the strength of the double layer.
   Net strength(const Net& v) const { return contrasts.asDiagonal() * v; }
 
   /// Adds to rows of u the velocity at the points `at` (in the wall's frame) due to the images of the particle in a periodic duct, for the load f and
-  /// the velocity v. Empty nets are skipped.
+  /// the velocity v. An empty net counts as zero.
   void add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u);
 
   /// Velocities that the load f and the velocity v of the particle cause in a periodic duct, for rank-owned rows. `at_wall`: at the targets on the
-  /// wall, due to the particle and its images. `at_sites`: at the particle's collocation points, due to its images only. Empty nets are skipped.
+  /// wall, due to the particle and its images. `at_sites`: at the particle's collocation points, due to its images only. An empty net counts as zero.
   struct Cause {
     Net at_wall, at_sites;
   };
@@ -72,9 +72,9 @@ struct Tube::Particle {
   Eigen::SparseMatrix<double> collocation;  ///< collocation matrix R
   membrane::DirectSolver from_sites;        ///< factored collocation matrix R, to compute control values from values at the sites
   stokes::Layer single;
-  std::optional<stokes::Layer> dual;  ///< double layer; set if any lambda is not 1
+  std::optional<stokes::Layer> dual;  ///< double layer; set if at least one contrast is not 0
   std::optional<Period> period;       ///< set if the duct is periodic
-  Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
+  Eigen::VectorXd contrasts;          ///< contrast of each control point, see Tube::set_contrasts
 
   Net shape;                                   ///< net of the particle in the frame of the wall
   double centroid = 0;                         ///< x1 of the origin of the wall's frame, which is the particle's centroid in a straight open tube
@@ -102,7 +102,7 @@ struct Tube::Particle {
   Net flow_of_strength_;
 };
 
-/// Points of the wall between its collocation points, at which leak() evaluates the velocity, and the layer that evaluates it.
+/// Points of the wall between its collocation points, at which leak() evaluates the velocity, and the single layer for these points.
 struct Tube::BetweenSitesOfWall {
   BetweenSitesOfWall(const surface::TubeWall& wall, const std::optional<stokes::PeriodicCell>& cell, const BetweenSites& between,
                      const quadrature::Options& options);

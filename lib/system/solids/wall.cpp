@@ -16,7 +16,7 @@ namespace {
 
 constexpr int reach = 2;
 
-/// Returns the control points within `distance` rows and columns of a control point, in ascending order.
+/// Returns the control points at most `distance` rows and columns away from the control point `point`, in ascending order.
 std::vector<int> around(const surface::TubeWall& wall, int point, int distance) {
   const int m = wall.n_around, i = point / m, k = point % m;
   std::vector<int> points;
@@ -115,7 +115,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   pumped_ = cell_ ? inlet_column_ : solve(inlet_column_);
 }
 
-/// Computes pressure_ and flux_. The product of these two fields is added to A to make it regular, because a uniform pressure produces no velocity.
+/// Computes pressure_ and flux_. The outer product of these two fields is added to A, because A is singular: a uniform pressure produces no velocity.
 /// The product is scaled so that it maps a uniform pressure to about the velocity that A produces for a tangential traction of equal size.
 void Wall::find_pressure() {
   flux_ = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
@@ -128,7 +128,7 @@ void Wall::find_pressure() {
 /// Returns, on every rank, the matrix of the wall's operator A. Its rows and columns are the components at fundamental points that symmetry does not
 /// make zero (4.12). Many rows are assembled at a time, because each row is a mean over a collocation point and adjacent element midpoints (2.39),
 /// and neighbouring collocation points share these midpoints. If rotations or reflections of the wall map collocation points to each other, only the
-/// rows of one of these points are assembled. The rows of the other points follow from them by the maps.
+/// rows of one of these points are assembled. These maps then yield the rows of the other points.
 Eigen::MatrixXd Wall::assembled() {
   constexpr std::size_t at_a_time = 240;
   const Net& signs = symmetry_.signs();

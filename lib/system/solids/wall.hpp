@@ -22,8 +22,8 @@
 
 namespace tanktread::coupling {
 
-/// Preconditioner for the wall's operator. For each control point, the block of the operator for the 5 x 5 neighbouring points is inverted, and the
-/// rows of the inverse that belong to the point are kept.
+/// Preconditioner for the wall's operator. For each control point, the block of the operator for the 5 x 5 points around it is inverted. Of the
+/// inverse, the three rows of the central point are stored.
 class WallPatches {
  public:
   /// `points`: control points to compute. `layer`: layer of the wall at its collocation points, with the shape set.
@@ -43,13 +43,13 @@ class WallPatches {
 
 /// Solver options of the linear system for the traction on a wall.
 struct WallSolver {
-  std::string method = "factored";  ///< "factored", "iterative", or "auto", which is iterative if the factors take more than most_bytes
+  std::string method = "factored";  ///< "factored" (LU factors), "iterative", or "auto": iterative if the factors take more than most_bytes
   double tolerance = 1e-8;          ///< relative residual of the iterative solver
 
   static constexpr double most_bytes = 4e9;
 
-  /// Return whether the system is solved iteratively: for any number of unknowns, and for this number. The operator of a periodic wall is always
-  /// factored.
+  /// may_iterate: returns whether a system of any size can be solved iteratively. iterates: returns whether a system with `unknowns` unknowns is. The
+  /// operator of a periodic wall is always factored.
   bool may_iterate(bool periodic) const { return !periodic && method != "factored"; }
   bool iterates(double unknowns, bool periodic) const {
     return may_iterate(periodic) && (method == "iterative" || 8 * unknowns * unknowns > most_bytes);
@@ -59,14 +59,14 @@ struct WallSolver {
 /// The single layer of the wall on itself, assembled and factored, and the inlet integral (2.13). The viscosity is not included. Nets are in the
 /// wall's frame. The ranks share the assembly, but each rank stores all factors: 72 bytes per pair of control points.
 ///
-/// If a symmetry is given, all fields must have it. Only rows of fundamental points are then assembled, and columns of image points are added to
-/// those of their fundamental points (4.12).
+/// If a symmetry is given, all fields must have it. Only rows of fundamental points are then assembled, and columns of image points are added to the
+/// columns of their fundamental points (4.12).
 ///
 /// If the factors would be too large and the wall is open, each system is solved by GMRES, with products by a treecode (TreeSum). The preconditioner
 /// combines WallPatches and data recycled from earlier solves (2.24).
 ///
-/// A periodic wall is represented by one period, with the kernels of one period and no ends. Its tractions f are periodic, with one row of control
-/// values per site. A traction q n of constant pressure q produces no velocity, so that the condition int f.n dG = 0 is added to A.
+/// A periodic wall is represented by one period, with the kernels of one period and no ends. Tractions f are periodic, with one row of control values
+/// per site. A traction q n of constant pressure q produces no velocity. Therefore the condition int f.n dG = 0 is added to A.
 class Wall {
  public:
   /// Assembles and factors the operator. Collective. `phases`: if given, records the time of communication between ranks, also in `apply`; must
@@ -88,8 +88,8 @@ class Wall {
   /// Returns the lowest and highest coordinates of the wall in the axes of the cell.
   std::array<Vec3, 2> across() const { return cell_->range(surface_.net); }
 
-  /// Converts control values of a traction f, one row per site, to control values on the space of the layer. Returns f unchanged unless the wall is
-  /// periodic: f is then a periodic spline, but the space is not periodic. `from_space` multiplies by the transpose of this map.
+  /// Converts control values of a traction f, one row per site, to control values on the space of the layer. Changes f only if the wall is periodic:
+  /// f is then a periodic spline, but the space is not periodic. `from_space` multiplies by the transpose of this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
   void from_space(stokes::Rows<float>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
@@ -125,7 +125,7 @@ class Wall {
   /// the strength through this surface must be 0.
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
-  /// Returns the bounding boxes of the elements of a channel wall, to compute distances.
+  /// Returns the bounding boxes of the elements of a channel wall, used to compute distances from the wall.
   const surface::ElementBoxes& boxes() const { return *boxes_; }
 
   stokes::Evaluations evaluations() const;

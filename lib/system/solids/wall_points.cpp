@@ -25,7 +25,7 @@ WallPoints::WallPoints(const surface::TubeWall& wall, const surface::Symmetry& s
   if (phases) ranks_.measure(*phases);
   own_targets_ = own_;
   if (wall.channel) {
-    // On a periodic wall, elements are the elements of the traction density, not of the geometry.
+    // On a periodic wall, site.element is an element of the traction density, not of the geometry.
     const auto first = static_cast<int>(sites_.rows());
     for (const auto& at : wall.sites) {
       middles_.emplace_back();

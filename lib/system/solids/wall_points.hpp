@@ -1,5 +1,5 @@
 #pragma once
-// Points of a tube's wall at which the velocity is prescribed, and the mean over them that forms the rows of the wall's linear system.
+// Points of a tube's wall at which the velocity is prescribed, and the weighted means over these points that form the rows of the linear system.
 
 #include <functional>
 #include <span>
@@ -32,11 +32,11 @@ class WallPoints {
   /// Returns the points at which the velocity on the wall is evaluated: the collocation points, followed in a channel by the midpoints of elements
   /// (2.39).
   const Net& targets() const { return targets_; }
-  const std::vector<int>& own_targets() const { return own_targets_; }  ///< targets that rank-owned rows need
+  const std::vector<int>& own_targets() const { return own_targets_; }  ///< targets needed for the rows of rank-owned collocation points
   stokes::Sites target_sites(const surface::TubeWall& wall) const;      ///< parametric points of the targets
 
-  /// Returns the right-hand side of the wall's system, one row per collocation point, from the velocity u at the targets. Reads only the rows of u of
-  /// targets that are in own_targets() on some rank. Collective.
+  /// Returns the right-hand side of the wall's system, one row per collocation point, from the velocity u at the targets. Each rank reads only the
+  /// rows own_targets() of u. Collective.
   Net collocated(const Net& u) const;
 
   /// Assembles an operator for the linear system of the wall, three rows for each of the collocation points `sites`. `assemble` computes the rows of

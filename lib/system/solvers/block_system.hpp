@@ -14,18 +14,18 @@ namespace tanktread::coupling {
 using Space = Thyra::VectorSpaceBase<double>;
 using ThyraVector = Thyra::VectorBase<double>;
 
-/// Returns the product of one vector space per block, or the space itself if there is a single block. Every rank holds all rows of each block,
-/// because operators need all rows. Dot products then need no communication, and iteration counts cannot differ between ranks. The vectors are
+/// Returns the product of the vector spaces of all blocks; for a single block, the vector space of this block. Every rank holds all rows of each
+/// block, because operators need all rows. Dot products then need no communication, and iteration counts cannot differ between ranks. The vectors are
 /// Thyra's own, because Tpetra vectors would add maps and imports that are not needed and that take a fifth of the time of a run of 0.1 s.
 Teuchos::RCP<const Space> vector_space(const Blocks& blocks);
 
 /// Returns the entries of all blocks of a vector, one block after another.
 Eigen::VectorXd numbers_of(const ThyraVector& vector);
 
-/// Sets the entries of a vector on all ranks to `numbers` of the first rank.
+/// Sets the entries of a vector, on all ranks, to the values that `numbers` has on the first rank.
 void set(const Teuchos::RCP<ThyraVector>& vector, const Eigen::VectorXd& numbers);
 
-/// Returns a vector of this space with these entries.
+/// Returns a vector of `space` with the entries `numbers` of the first rank.
 Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, const Eigen::VectorXd& numbers);
 
 /// Linear operator on a vector of all blocks, defined by a function. A zero vector is mapped to zero without calling the function. Every rank uses
@@ -47,7 +47,7 @@ class FunctionOperator : public Thyra::LinearOpBase<double> {
   Teuchos::RCP<const Space> space_;
 };
 
-/// A factory of Belos solvers with the same parameters as in the class Krylov. `flexible`: the solver is flexible GMRES, which always needs a
+/// A factory of Belos solvers with the same parameters as in the class Krylov. `flexible`: true if the solver is flexible GMRES, which always needs a
 /// preconditioner, at least the identity.
 struct BelosFactory {
   Teuchos::RCP<Thyra::LinearOpWithSolveFactoryBase<double>> factory;

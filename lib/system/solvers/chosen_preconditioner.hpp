@@ -12,14 +12,14 @@
 namespace tanktread::coupling {
 
 /// Preconditioner from the products y = A z of earlier solves, latest first. The columns of Z are the stored vectors z. The columns of Y are the
-/// stored vectors y, which are orthonormal. Applies Z Y^T to the part of a vector in the span of Y, and another preconditioner to the rest of the
-/// vector (2.24).
+/// stored vectors y, which are orthonormal. Applies Z Y^T to the part of a vector in the span of Y, and another preconditioner to the remainder
+/// (2.24).
 class RecycledProducts {
  public:
-  /// Records a product y = A z of the current solve. It is used from the next solve on.
+  /// Records a product y = A z of the current solve. apply() uses this product from the next solve on.
   void record(const Eigen::VectorXd& z, const Eigen::VectorXd& y) { present_.push_back({z, y}); }
 
-  /// Ends the current solve.
+  /// Ends the current solve. From now on, apply() uses the products recorded in this solve.
   void refresh();
 
   /// Computes out = Z Y^T in + P (in - Y Y^T in) (2.24). The columns of Z and Y are the stored z and y = A z; P is the preconditioner `other`.

@@ -19,8 +19,8 @@ namespace {
 
 const RunFailure not_found("the computation of the eigenvalues of the linearised motion failed");
 
-/// Returns eigenpairs from eigenvalues and from eigenvectors in LAPACK's format. Two adjacent columns are the real and the imaginary part of a
-/// complex eigenvector, which is stored once for each conjugate pair.
+/// Returns eigenpairs from eigenvalues and from eigenvectors in LAPACK's format. For each conjugate pair, `columns` contains one complex eigenvector:
+/// its real part, and in the next column its imaginary part.
 std::vector<Eigenpair> unpacked(const Eigen::VectorXcd& values, const Eigen::MatrixXd& columns) {
   std::vector<Eigenpair> pairs;
   for (Eigen::Index k = 0; k < values.size(); ++k) {

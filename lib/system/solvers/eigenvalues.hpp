@@ -16,11 +16,11 @@ struct Eigenpair {
   Eigen::VectorXcd vector;
 };
 
-/// Returns all eigenpairs of A, in no order. Throws RunFailure if LAPACK fails.
+/// Returns all eigenpairs of the matrix A, in no particular order. Throws RunFailure if LAPACK fails.
 std::vector<Eigenpair> eigenpairs(Eigen::MatrixXd a);
 
-/// Returns the `number` eigenpairs largest in magnitude of a linear map on n unknowns, by block Krylov-Schur, until the residual |A v - value v| is
-/// below `tolerance` times the value. `block`: block size; eigenvalues up to this multiplicity are found reliably. Collective. Throws RunFailure if
+/// Returns the `number` eigenpairs of largest |value| of the linear map A on n unknowns. Block Krylov-Schur iterates until the residuals |A v - value
+/// v| are below `tolerance` |value|. `block`: block size; eigenvalues up to this multiplicity are found reliably. Collective. Throws RunFailure if
 /// the iteration does not converge.
 std::vector<Eigenpair> largest_eigenpairs(const Apply& a, Eigen::Index n, int number, int block, double tolerance);
 

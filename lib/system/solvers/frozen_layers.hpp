@@ -11,8 +11,8 @@
 namespace tanktread::coupling {
 
 /// The single layer A and the double layer D of (4.2) at the collocation sites, assembled at one shape and used at later shapes with the rotations
-/// (4.29) of the particles. The option `frozen_operator` selects NodalOperator or FrozenOperator for A; D is a FrozenOperator. Images
-/// on a lattice are omitted, and NodalOperator also omits images in a plane wall. Calls are collective.
+/// (4.29) of the particles. A is a NodalOperator or a FrozenOperator, as selected by the option `frozen_operator`; D is a FrozenOperator. Images on a
+/// lattice are omitted, and NodalOperator also omits images in a plane wall. Calls are collective.
 class FrozenLayers {
  public:
   /// `layers`: the layers at `targets`. If `targets` are the collocation sites, this object assembles `layers`. Otherwise it creates and assembles
@@ -32,8 +32,9 @@ class FrozenLayers {
 
   bool has_double() const { return layers_.has_double(); }
   bool empty() const { return single_.empty() && nodal_.empty(); }  ///< true until the first call of assemble()
-  double bytes() const;                     ///< size, over all ranks, of the layers whose size grows with the square of the number of points
-  stokes::Evaluations evaluations() const;  ///< kernel evaluations of this object's own layers
+  double bytes() const;                     ///< memory in bytes, summed over all ranks, of the layers whose size grows with the square of the number
+                                            ///< of points
+  stokes::Evaluations evaluations() const;  ///< kernel evaluations of the layers that this object has created
 
  private:
   bool nodal() const { return parameters_.solvers.frozen_operator == "nodal"; }
@@ -45,7 +46,7 @@ class FrozenLayers {
   const membrane::MassMatrix& mass_;
   ParticleLayers& layers_;
   std::optional<stokes::Layer> site_single_, site_double_;  // layers at the collocation sites; not set if the targets are these sites
-  NodalOperator nodal_;                                     // A; the options select either nodal_ or single_
+  NodalOperator nodal_;                                     // single layer A; the option `frozen_operator` selects either nodal_ or single_
   FrozenOperator single_, double_;
   Net at_;                 // shape at which the layers were assembled
   Corotation corotation_;  // rotations of the particles from `at_` to the shape passed to turn_to()

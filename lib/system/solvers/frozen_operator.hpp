@@ -14,8 +14,8 @@ namespace tanktread::coupling {
 
 /// Rows of a dense operator whose 3 x 3 blocks are symmetric, such as the Stokeslet and the stresslet. Each block has six entries, each rounded to 16
 /// bits (the upper half of a float, relative error 2^-9). The rounding has no visible effect, because the quasi-Newton iteration omits (dA/dx) f and
-/// therefore reduces its error by a factor of only about ten per iteration in any case. Vectors are in double precision. With float vectors, runs on
-/// different numbers of ranks would differ by 1e-10 instead of 1e-16, because each iteration of GMRES enlarges the differences.
+/// therefore reduces its error only by a factor of about ten per iteration, even without rounding. Vectors are in double precision. With float
+/// vectors, runs on different numbers of ranks would differ by 1e-10 instead of 1e-16, because each iteration of GMRES enlarges the differences.
 class FrozenOperator {
  public:
   static constexpr double bytes_a_pair = 12;  ///< bytes per pair of control points
@@ -38,7 +38,8 @@ class FrozenOperator {
   mutable std::vector<double> f1_, f2_, f3_;
 };
 
-/// Adds to u the sum over n points of the symmetric block (six consecutive arrays of n entries) times (f1, f2, f3).
+/// Adds to u[0 .. 2] the sum over n points p of the symmetric 3 x 3 block of p times the vector (f1[p], f2[p], f3[p]). `entries`: six consecutive
+/// arrays of n entries, the entries 11, 12, 13, 22, 23, 33 of all blocks.
 void symmetric_block_row(int n, const std::uint16_t* entries, const double* f1, const double* f2, const double* f3, double* u);
 
 /// Approximates a layer operator A at a shape x, given A at an earlier shape x0, if x is x0 rotated and slightly deformed. With the rotation Q_p that

@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* block_gmres = "Block GMRES";
 
-constexpr double least_recursive_residual = 1e-12;  // relative residual below which the recursively computed residual is only round-off
+constexpr double least_recursive_residual = 1e-12;  // relative residual below which the residual that Belos updates recursively is only round-off
 
 /// Returns a map from the names of Belos' factory to the names of Stratimikos. "GMRES" is mapped to flexible GMRES, which detects convergence without
 /// an additional product.

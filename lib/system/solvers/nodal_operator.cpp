@@ -90,7 +90,7 @@ void NodalOperator::subtract_rule(const Surface& surface) {
   }
 }
 
-/// Computes the point forces w_B (R f)_B of the trapezoidal rule (4.11), the weight times the density f, at all nodes.
+/// Computes the point forces w_B (R f)_B of the trapezoidal rule (4.11), weight times density f, at all nodes.
 void NodalOperator::spread(const Net& f) {
   const Net values = values_ * f;
   for (std::size_t b = 0; b < row_.size(); ++b)
@@ -100,8 +100,8 @@ void NodalOperator::spread(const Net& f) {
     }
 }
 
-/// Computes the sum of the trapezoidal rule in (4.11) at the rank-owned targets. If ranks share the sums, computes this rank's part of them at all
-/// points.
+/// Computes the sum of the trapezoidal rule in (4.11) at the rank-owned targets. If ranks share the sums, computes this rank's part of the sums at
+/// all points.
 void NodalOperator::sum(Net& u) {
   if (tree_) {
     std::vector<double> rows(3 * node_[0].size());

@@ -21,9 +21,10 @@ namespace tanktread::coupling {
 ///   (A f)_i = sum_B G(x_B, x_i) w_B (R f)_B / 8 pi  +  sum over near C of K_iC f_C,   w_B = int N_B dG0                         (4.11)
 ///   K_iC = A_iC - sum_B G(x_B, x_i) w_B R_BC / 8 pi
 ///
-/// The node at the target itself is omitted. Only the near blocks K_iC are stored, about thirty per target. The sum over B is evaluated in every
-/// product, on large surfaces by a treecode. Double precision is used, because rounding errors of single precision would grow from step to step: runs
-/// with and without symmetry, which agree to 1e-8 in the deformation D, would then differ by more.
+/// G is the Stokeslet, R the collocation matrix, N_B a basis function and dG0 the unstressed area element. In the sums over B, the node at the target
+/// itself is omitted. Only the near blocks K_iC are stored, about thirty per target. The first sum is evaluated in every product, on large surfaces
+/// by a treecode. Double precision is used, because rounding errors of single precision would grow from step to step: runs with and without symmetry,
+/// which agree to 1e-8 in the deformation D, would then differ by more.
 ///
 /// The error of this operator is the error of the trapezoidal rule for nodes a few elements away. This error slows the quasi-Newton iteration
 /// slightly and does not affect accuracy.
@@ -41,7 +42,8 @@ class NodalOperator {
   /// Function that computes the 3 x 3 blocks A_iC of the single layer for control points C near target i (Layer::assemble).
   using Assemble = std::function<void(std::span<const int> targets, const stokes::NearPoints& near, std::vector<double>& entries)>;
 
-  /// `far_sum`: as in quadrature::Options.
+  /// Assembles the operator at the rank-owned `targets`. `reach`: see Surface::areas. `far_sum`: method for the sums over all nodes, as in
+  /// quadrature::Options.
   void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const std::string& far_sum, const Assemble& assemble);
 
   /// Divides the work of the treecode into `parts` equal parts, one per rank. This rank computes part number `part`. `everybody`: the targets of all

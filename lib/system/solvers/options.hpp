@@ -19,8 +19,8 @@ struct VolumeOptions {
 
 /// Options `Interface/*` of the deck: tangential motion of the control points along an interface. Without a membrane this motion is arbitrary.
 struct InterfaceOptions {
-  /// material: with the fluid; normal: only normal to the surface; relaxed: with the fluid in the normal direction, and tangentially so that elements
-  /// keep their shape. If not set: relaxed for a surface tension, material otherwise.
+  /// Motion of the control points. material: with the fluid; normal: only normal to the surface; relaxed: with the fluid in the normal direction, and
+  /// tangentially so that elements keep their shape. If not set: relaxed for a surface tension, material otherwise.
   std::optional<std::string> motion;
   double relaxation = 1;  ///< relaxation speed of the mesh, which moves like an elastic surface at capillary number 1/relaxation
 
@@ -29,7 +29,7 @@ struct InterfaceOptions {
 
 /// Options `Solvers/<system>` of the deck: the iterative solver of one kind of system.
 struct IterativeOptions {
-  std::optional<std::string> solver{};            ///< Belos' name of the solver; if not set, the solver of SolverOptions
+  std::optional<std::string> solver{};            ///< Belos' name of the solver; if not set, SolverOptions::krylov
   std::shared_ptr<Teuchos::ParameterList> belos{};  ///< parameter list of the Belos solver, passed unchanged. If neither this list nor `solver` is
                                                     ///< set, the parameter list of SolverOptions is used
   std::string preconditioner = "own";             ///< own, none, neumann, recycled
@@ -44,14 +44,14 @@ struct SolverOptions {
   std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver of all systems that do not set their own
   std::shared_ptr<Teuchos::ParameterList> belos;  ///< parameter list of the solver `krylov`, passed unchanged to Belos
   IterativeOptions velocity, traction;
-  IterativeOptions implicit_step{.restart = 30};  ///< three iterations are typical
+  IterativeOptions implicit_step{.restart = 30};  ///< short restart length, because three iterations are typical
   IterativeOptions spectrum{.restart = 30}, steady{.restart = 30};
   std::shared_ptr<Teuchos::ParameterList> nox;    ///< parameter list of the nonlinear solver (Steady, Time/scheme), passed unchanged to NOX
   double tolerance = 1e-8;                        ///< relative residual of the systems for velocities or tractions
   std::string double_layer = "auto";  ///< double layer. assembled: once per velocity evaluation. matrix-free: summed in each iteration. auto:
                                       ///< matrix-free if far sums use a treecode, unless there are rigid bodies and the matrix is small
-  std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values: all
-                                                  ///< unknowns in one system (BlockSystem), with this preconditioner
+  std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values:
+                                                  ///< preconditioner of one system for all unknowns (BlockSystem)
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
                                                   ///< factors are large, see Wall)
   std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind (RigidParticles), first kind
@@ -61,10 +61,12 @@ struct SolverOptions {
                                                   ///< (FrozenOperator)
   membrane::DirectSolverOptions direct;
 
-  /// Returns whether the double layer is assembled. `by_clusters`: true if a treecode (sums by clusters) evaluates the far-field sums.
+  /// Returns whether the double layer is assembled. `by_clusters`: true if the far-field sums are evaluated by a treecode (sums by clusters), false
+  /// if directly.
   bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
 
-  /// Returns `system`; its solver and parameter list, if not set, are replaced by the solver and list for all systems.
+  /// Returns `system`; if it sets no solver, with the solver for all systems. If it sets neither a solver nor a parameter list, also with the
+  /// parameter list for all systems.
   IterativeOptions of(IterativeOptions system) const;
 
   void declare(deck::Section& section);

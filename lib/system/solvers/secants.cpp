@@ -6,8 +6,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr double regularisation = 1e-2;  // regularisation of the normal equations; needed because the corrections (scaled to norm 1) may be
-                                         // nearly parallel
+constexpr double regularisation = 1e-2;  // regularisation of the normal equations of (4.13); needed because the corrections d_i (scaled to norm 1)
+                                         // may be nearly parallel
 
 }  // namespace
 

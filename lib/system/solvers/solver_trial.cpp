@@ -22,7 +22,7 @@ using Works = std::function<bool(const List&)>;
 constexpr Eigen::Index n = 60;           // number of unknowns of the trial, larger than the number of products stored by class Krylov
 constexpr int most_products = 10 * n;  // number of matrix-vector products after which a method counts as not converging
 
-/// Returns the result of a trial, or false if a library throws anything.
+/// Returns the result of a trial solve, or false if a library throws an exception.
 bool runs(const std::function<bool()>& trial) {
   try {
     return trial();

@@ -7,8 +7,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Access to the blocks of an array of unknowns or residuals: velocity v, wall traction f^D, pressure drop dp and volume multipliers, one for each
-/// particle of BlockSystem::constrained.
+/// Access to the blocks of an array of unknowns or residuals: velocity v, wall traction f^D, pressure drop dp and one volume multiplier per particle
+/// of BlockSystem::constrained.
 template <class Number>
 struct Parts {
   using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;
@@ -58,7 +58,7 @@ void product(const BlockSystem& s, const In& x, Out r) {
 
 /// Applies the preconditioner, in which the identity replaces the operator B of (2.5). Solves for the velocity and the multipliers, then for the
 /// pressure drop, then for the wall traction. If `triangular`, the right-hand sides of the pressure drop and the traction include the contributions
-/// of the unknowns computed before.
+/// of the unknowns that have been computed already.
 void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
   x.velocity = r.velocity;
   for (std::size_t k = 0; k < s.constrained.size(); ++k) {

@@ -20,9 +20,9 @@ namespace tanktread::coupling {
 ///   dp + (1/Q) (1 - lambda) int f_inf.v dG = r_p                                                                         (2.7)
 ///   b.v / (b.n) = 0                                                                       for each particle              (2.8)
 ///
-/// A load that depends on v, such as the load of a body with prescribed motion, contributes to (2.5), (2.6) and (2.7) like f; its terms are moved to
-/// the left-hand sides. G_W, f^D and c are defined at Tube, H is the double layer of the particle, b = dV/dx, and n = M0^-1 b. In the system, f^D, dp
-/// and the row of dp are multiplied by `unit`, so that all unknowns are velocities.
+/// A load that depends on v, such as the load of a body with prescribed motion, contributes to (2.5), (2.6) and (2.7) like f. The terms of such a
+/// load are on the left-hand sides. G_W, f^D and c are defined at Tube, H is the double layer of the particle, b = dV/dx, and n = M0^-1 b. In the
+/// system, f^D, dp and the row of dp are multiplied by `unit`, so that all unknowns are velocities.
 struct BlockSystem {
   Tube& tube;
   std::function<Net(const Net& v)> load;                        ///< load that depends on v; empty if there is none
