@@ -291,8 +291,9 @@ void ChannelOptions::declare(deck::Section& list) {
       "`step`: f = 1 - d for |s| < w with rounded edges. Elsewhere f = 1. `file`: f from the file `points`. d: `depth`, w: `half length`");
   if (profile == "constriction") depth = 0.5;
   list.key("depth", depth, deck::any(), "1",
-           "relative depth d by which `profile` narrows the cross-section of the channel in a constriction or step, or widens it in an "
-           "expansion; a step with a negative depth widens it. For `constriction` 0.5 if not given");
+           "depth d of the `profile`: it scales the cross-section of the channel by 1 - d in the middle of a constriction or in a step (a "
+           "negative d widens a step), and by 1 + d in the middle of an expansion. 0.5 for `constriction` if not given; required for "
+           "`expansion` and `step`");
   list.key("half length", half_length, deck::positive(), "length",
            "half length w, along the centre line, of the constriction, expansion or step of the channel (required for these profiles)");
   list.key("corner radius", corner_radius, deck::positive(), "length",

@@ -18,8 +18,8 @@ void FlowOptions::declare(deck::Section& section) {
   section.key("type", type, types,
               "ambient flow, that is the flow without particles; rate means Flow/shear rate. `simple shear`: velocity (rate x3, 0, 0); in "
               "a straight Tube the wall then moves with this velocity. `planar hyperbolic`: velocity (rate x1, 0, -rate x3). `uniaxial "
-              "extension`: velocity rate (-x1/2, -x2/2, x3). `four-roll`: planar flow between extension and rotation, chosen by Flow/roll "
-              "parameter. `linear`: any velocity gradient Flow/gradient. `uniform`: constant Flow/velocity. `parabolic`: Poiseuille "
+              "extension`: velocity (-rate x1/2, -rate x2/2, rate x3). `four-roll`: planar flow between extension and rotation, chosen by "
+              "Flow/roll parameter. `linear`: any velocity gradient Flow/gradient. `uniform`: constant Flow/velocity. `parabolic`: Poiseuille "
               "profile along x1 in unbounded fluid, with Flow/profile, Flow/maximum velocity and Flow/half width. `duct`: pressure-driven "
               "flow along x1 through a Tube or Channel, with Flow/mean velocity. `quiescent`: fluid at rest");
   section.key("shear rate", shear_rate, deck::positive(), "1/time",
