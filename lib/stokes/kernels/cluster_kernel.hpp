@@ -1,5 +1,5 @@
 #pragma once
-// Polynomial interpolation in a box: from points to the Chebyshev nodes that represent them, and from the nodes to points.
+// Polynomial interpolation in a box: transfers source strengths from points to Chebyshev nodes, and field values from Chebyshev nodes to points.
 
 #include <array>
 
@@ -11,8 +11,8 @@ namespace tanktread::stokes {
 /// Maximum number of Chebyshev nodes per direction.
 constexpr int most_chebyshev = 16;
 
-/// A box with its own axes (rows, orthonormal), and its numbers of Chebyshev nodes cos(pi (2a + 1)/(2n)) along each axis. Node (a, b, c) has the
-/// index a + n_0 (b + n_1 c).
+/// A box with its centre, orthonormal axes (rows of `axes`), half lengths along the axes, and numbers n_d = order[d] of Chebyshev nodes along axis d.
+/// The nodes along an axis are at cos(pi (2a + 1)/(2 n_d)) times the half length. Node (a, b, c) has the index a + n_0 (b + n_1 c).
 struct ChebyshevBox {
   double centre[3] = {}, axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, half[3] = {};
   std::array<int, 3> order{1, 1, 1};
@@ -20,7 +20,7 @@ struct ChebyshevBox {
   int n_nodes() const { return order[0] * order[1] * order[2]; }
 };
 
-/// Computes the positions of the nodes.
+/// Computes the positions (x, y, z) of the Chebyshev nodes of the box.
 void chebyshev_nodes(const ChebyshevBox& box, double* x, double* y, double* z);
 
 /// Replaces points in the box by Chebyshev nodes with the same far field: adds sum_k L_abc(x_k) q_ik to the source strength node_q[i] of node

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int wide = RegisterOf<float>::lanes;
 
-/// Coordinates of n points relative to an origin, scaled by a power of two and split into a single-precision part and the remainder.
+/// Coordinates of points relative to an origin, scaled by a power of two and split into a single-precision part (`place`) and the remainder (`rest`).
 template <int size>
 struct Split {
   alignas(register_bytes) float place[3][size], rest[3][size];
@@ -85,8 +85,8 @@ void add_differences(const Stresslets& nodes, const double* target, double* u) {
   const Sight sight(nodes.n, {nodes.x, nodes.y, nodes.z}, target);
   float v[3][single_run], n[3][single_run], v0[3][far_block];
   const double *const velocity[3] = {nodes.vx, nodes.vy, nodes.vz}, *const normal[3] = {nodes.nx, nodes.ny, nodes.nz};
-  for (int c = 0; c < 3; ++c) {  // values relative to the first node's velocity: these differences are small for close nodes, so that their rounding
-                                 // is harmless
+  for (int c = 0; c < 3; ++c) {  // velocities relative to the velocity of the first node: these differences are small for close nodes, so that their
+                                 // rounding is harmless
     narrow(nodes.n, velocity[c], velocity[c][0], v[c]);
     narrow(far_block, target + far_block * (3 + c), velocity[c][0], v0[c]);
     narrow(nodes.n, normal[c], 0, n[c]);
