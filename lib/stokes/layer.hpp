@@ -45,13 +45,14 @@ inline std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
 
 /// Options for the periodic images of the surfaces on a lattice.
 struct Repetition {
-  bool assembled = false;  ///< true: assembled rows include the near images; assemble_rest() adds all other images (PeriodicSum)
+  bool assembled = false;  ///< true: assembled rows include the near images, and assemble_rest() adds all other images (PeriodicSum). false:
+                           ///< assembled rows include no images
   std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off the
                                                                               ///< surfaces
 };
 
-/// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density,
-/// and k_p is a factor per surface, by default 1. The viscosity is not included.
+/// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density, dG
+/// is the area element, and k_p is a factor per surface, by default 1. The viscosity is not included.
 ///
 ///   single:  u(x0) = sum_p (k_p / 8 pi) int_p G(x, x0) f dG                                 f = sum_B f_B N_B               (2.1)
 ///   double:  u(x0) = sum_p (k_p / 8 pi) int_p (f_j(x) - f_j(x0)) T_ijk(x, x0) n_k dG        n out of the surface            (2.2)
@@ -159,8 +160,8 @@ class Layer {
   const std::vector<double>& weights() const { return weight_; }
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
-  /// Evaluate a field at the far nodes (`values`), or integrate a function h against each basis function, int N_A h dG (`moments`, the transpose of
-  /// `values`). `g`: h times area and quadrature weight at each far node.
+  /// values() evaluates a field at the far nodes. moments() returns the integral of a function h times each basis function (the transpose of
+  /// values()). `g`: h times area and quadrature weight at each far node.
   void values(const Net& field, std::vector<double> (&value)[3]);
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
@@ -175,7 +176,7 @@ class Layer {
     std::span<const int> rows, far_rows;  ///< rows of u that get near-singular and singular quadrature, and rows that get far sums
     const Net& at;                        ///< positions
     const Net& f0;                        ///< for each target, the constant subtracted from the density of a double layer
-    std::span<const int> in_tree;         ///< indices of the targets that are in the tree of clusters, ascending
+    std::span<const int> in_tree;         ///< ascending indices of the targets that are in the tree of clusters
     bool sites;                           ///< true if the targets are sites of the surfaces
     const Near* kept = nullptr;
   };
@@ -199,7 +200,8 @@ class Layer {
   struct Reference {
     std::vector<double> bezier, weight;  // bezier: Bezier points of the unstressed surface. weight: quadrature weights of this surface at the far
                                          // nodes, areas included
-    std::vector<bool> present;           // per element: whether Measure::by_element refers the density to its current area
+    std::vector<bool> present;           // per element: with Measure::by_element, true if the density refers to the element's current area, false:
+                                         // unstressed area
   };
 
   bool single() const { return kernel_ == Kernel::single_layer; }
@@ -258,7 +260,7 @@ class Layer {
   std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and the factor k_p of (2.1)
   std::vector<double> density_[3], normal_[3];                     // values at the far nodes. density_: density f (times weight_ in a single layer).
                                                                    // normal_: normal times quadrature weight, area and factor k_p of (2.2)
-  std::optional<TreeSum> tree_;                                    // set if clusters are faster
+  std::optional<TreeSum> tree_;                                    // clusters for far sums; not set if direct sums are used
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall
   std::vector<Mat3> image_stress_;                                 // for each target, the double layer of the images in the wall for the constant

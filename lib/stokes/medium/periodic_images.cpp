@@ -19,7 +19,7 @@ using std::numbers::pi;
 
 double delta(int i, int j) { return i == j ? 1 : 0; }
 
-/// Reduces a lattice basis: adds multiples of the other vectors to each vector while that makes it shorter.
+/// Reduces a lattice basis: adds multiples of the other lattice vectors to each lattice vector as long as it becomes shorter.
 void reduce(Mat3& vectors, int n) {
   for (bool changed = true; changed;) {
     changed = false;
@@ -49,8 +49,8 @@ struct Smooth {
       for (int m = 0; m < 16; ++m) {
         phi += power / (2 * m + 1);
         first += power * 2 / (2 * m + 3);
-        second -= power * 4 / (2 * m + 5);  // `first`, `second`: term 0 of their power series is 0. This adds term m + 1 divided by x^2, where
-                                            // (m + 1)/(m + 1)! = 1/m!
+        second -= power * 4 / (2 * m + 5);  // term 0 of the power series `first` and `second` is 0. Adds their term m + 1 divided by x^2, in which
+                                            // 1/m! replaces (m + 1)/(m + 1)!
         power *= -square / (m + 1);
       }
       const double scale = 2 * xi / std::sqrt(pi);

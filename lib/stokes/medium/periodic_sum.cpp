@@ -117,7 +117,7 @@ struct Differences {
   std::array<int, 3> order;
 };
 
-/// Returns the velocity at node a due to source strengths with In components at each node.
+/// Returns the velocity at node a due to the source strengths `carried` of all nodes, with In components per node.
 template <int In>
 Eigen::Array4d product(const Differences& of, const double* table, int a, const double* carried) {
   const auto& [n0, n1, n2] = of.order;

@@ -26,7 +26,7 @@ int chebyshev_order(double tolerance, double z) {
 /// which of two mirrored positions comes first. Clusters would then depend on the number of ranks, and sums would change by a part of the tolerance.
 constexpr int compared_bits = 33;
 
-/// Two extents count as equal if their ratio is above this value, so that rounding errors do not decide about the clusters either.
+/// Two lengths of a cluster count as equal if their ratio is above this value. Otherwise rounding errors would decide along which axis it is split.
 constexpr double equal_extents = 1 - 1e-6;
 
 /// Returns the axes rotated as little as possible so that one of them is the normal.
