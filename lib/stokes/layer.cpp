@@ -74,7 +74,7 @@ void Layer::values(const Net& field, std::vector<double> (&value)[3]) {
   node_values(surface_.panels, bezier_f_, value);
 }
 
-/// Evaluates the density f at the far nodes; in a single layer, multiplied by the quadrature weights.
+/// Evaluates the density f at the far nodes. In a single layer, the values are multiplied by the quadrature weights.
 void Layer::set_density(const Net& f) {
   const auto clock = phases_.time("setup");
   values(f, density_);

@@ -25,8 +25,8 @@ namespace tanktread::stokes {
 /// (`set_reference`).
 enum class Measure { reference, current, by_element };
 
-/// Rows of a dense operator. Linear systems use rows in double precision. The Jacobian uses rows in single precision and rounds them further
-/// (FrozenOperator).
+/// Dense matrix, stored row by row, for rows of an operator. Linear systems use double precision. The Jacobian uses single precision and rounds the
+/// rows further (FrozenOperator).
 template <class Real>
 using Rows = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -64,9 +64,9 @@ struct Repetition {
 /// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (TreeSum). On panels that are close to
 /// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's terms of this sum. The tolerance of this
 /// quadrature is relative to an integral over the panel's whole surface. The value at a target does not depend on which other targets are requested.
-/// The quadrature rule `desingularised` uses only the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed
-/// surface: int G n dG = 0, and the boundary integral identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the tangential density
-/// at the target. After Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012, who use a different flow.
+/// The quadrature rule `desingularised` uses only the Gauss nodes. This rule subtracts the singularity of the single layer by two identities of a
+/// closed surface: the integral of G n is 0, and the boundary integral identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the
+/// tangential density at the target. After Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012, who use a different flow.
 class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
@@ -75,8 +75,8 @@ class Layer {
   /// (2.1) and (2.2) for each element; if empty, it is 1.
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
-  /// Sets the unstressed surface, which Measure::reference needs. Its areas are stored for all far nodes and all points of singular rules. `present`:
-  /// for each element, whether Measure::by_element selects the current area (true) or the unstressed area (false).
+  /// Sets the unstressed surface, which Measure::reference needs. The unstressed areas are stored for all far nodes and all points of singular rules.
+  /// `present`: for each element, whether Measure::by_element selects the current area (true) or the unstressed area (false).
   void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
   /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites. If the far sum of a single layer uses
@@ -120,9 +120,9 @@ class Layer {
   void apply(const Net& f, std::span<const int> sites, Net& u);
 
   /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density. For each pair of a point and a close panel,
-  /// they are stored as moments: 6 per Bernstein polynomial of the panel.
+  /// the corrections are stored as moments: 6 per Bernstein polynomial of the panel.
   struct Near {
-    std::vector<std::size_t> first;  ///< for each target, index in `panels` at which the list of its close panels begins
+    std::vector<std::size_t> first;  ///< for each target, index in `panels` at which the list of the target's close panels begins
     std::vector<int> panels;
     std::vector<double> moments;
   };
@@ -138,8 +138,8 @@ class Layer {
   /// change (2.3), but the integrand is smaller if f0 is the density nearby.
   void apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
-  /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3
-  /// targets, 3 N).
+  /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3 x
+  /// number of targets, 3 x number of control points).
   void assemble(std::span<const int> sites, Rows<float>& a);
   void assemble(std::span<const int> sites, Rows<double>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
@@ -192,8 +192,8 @@ class Layer {
     std::vector<double> node[3];                // far nodes, moved into the cell
     std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
     std::vector<Vec3> rest_at;                  // targets at which rest_stress was computed: positions shifted by lattice vectors into the cell
-    std::vector<Mat3> rest_stress;              // at the targets rest_at: double layer of constant unit densities over all images except the near
-                                                // ones
+    std::vector<Mat3> rest_stress;              // at the targets rest_at: double layer over all images except the near ones, column c for the
+                                                // constant density e_c
   };
 
   /// The unstressed surface.

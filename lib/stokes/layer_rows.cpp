@@ -93,7 +93,7 @@ void sort_and_drop_repeated(std::vector<int>& numbers) {
 
 }  // namespace
 
-/// Assembles sums over the panels, one per control point and kernel component, for up to sixteen targets at a time.
+/// Assembles the integrals of kernel times basis function, one per control point and kernel component, for up to sixteen targets at a time.
 template <class Real>
 class Layer::RowSums {
  public:

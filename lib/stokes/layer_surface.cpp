@@ -9,7 +9,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// An element gets fewer Gauss points of the far rule (far_orders) if its relative size, see shares(), is below this value.
+/// An element whose relative size (see shares()) is below this value gets fewer Gauss points of the far rule (see far_orders()).
 constexpr double small = 0.6;
 
 /// Returns the number of Gauss points per direction of the far rule. The number was chosen from errors measured on deformed capsules with 3, 6 and 12
@@ -58,7 +58,7 @@ std::vector<int> far_orders(const spline::Space& space, const quadrature::Option
 }
 
 /// Returns the number of far nodes above which clusters are faster than direct sums: about twice the number of kernel evaluations per target that
-/// clusters need on a large surface. This number grows with the square of the number of digits of the tolerance (measured by
+/// clusters need on a large surface. The number of evaluations grows with the square of the number of digits of the tolerance (measured by
 /// tests/benchmark/growth.cpp).
 double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(tolerance), 2); }
 

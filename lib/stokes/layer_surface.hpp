@@ -14,7 +14,8 @@
 
 namespace tanktread::stokes {
 
-/// Returns whether option `far sum` selects clusters (TreeSum) for this space rather than direct summation. `images`: number of images of each node.
+/// Returns whether option `far sum` selects clusters (TreeSum) for this space rather than direct summation. `images`: number of lattice images of
+/// each node, including the node itself.
 bool sums_by_tree(const spline::Space& space, const quadrature::Options& options, int images = 1);
 bool sums_by_tree(double nodes, const quadrature::Options& options);
 
@@ -44,7 +45,8 @@ class LayerSurface {
   Vec3 site(int i) const { return value(i, bezier); }
   Vec3 value(int i, const std::vector<double>& of) const { return self_field.value(i, panels, of); }
 
-  /// Returns the pairs of site i with each panel that contains it, which need singular rules. The list is empty for the rule `desingularised`.
+  /// Returns the pairs of site i and a panel that contains it, one pair per panel. These pairs need singular rules. The list is empty for the rule
+  /// `desingularised`.
   std::span<SelfPair> own(int i);
 
   /// Returns the panels that need near-singular quadrature for a target, without the panels of `own`, which contain the target.

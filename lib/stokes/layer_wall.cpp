@@ -11,8 +11,8 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// Factor on the tolerance of clusters for the images in the wall, because the image kernel is singular by two orders more than the free-space
-/// kernel. The factor was chosen from errors measured on spheres and ellipsoids near a wall.
+/// Factor that reduces the tolerance of clusters for the images in the wall, because the image kernel is singular by two orders more than the
+/// free-space kernel. The factor was chosen from errors measured on spheres and ellipsoids near a wall.
 constexpr double share_of_clusters = 0.25;
 
 /// Transforms the Bezier points of a panel (if `point` is true), or the Bezier coefficients of a vector field on the panel (if false), to the wall's

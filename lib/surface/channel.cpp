@@ -156,8 +156,8 @@ Channel::Place Channel::in_period(double u) const {
   return at;
 }
 
-/// Returns the point at arc length u of the wall contour of the profile `step`. From its middle u = 0, the contour has a straight part, a rounded
-/// edge, a straight part across the channel, an edge rounded in the opposite direction, and a straight part.
+/// Returns the centre line's arc length and the scale factors at arc length u of the wall contour of the profile `step`. From its middle u = 0, the
+/// contour has a straight part, a rounded edge, a straight part across the channel, an edge rounded in the opposite direction, and a straight part.
 Channel::Place Channel::step(double u) const {
   const double w = *own_.half_length, edge = *own_.corner_radius, depth = *own_.depth;
   const double inner = height_ * (1 - depth), up = depth > 0 ? 1 : -1, across = std::abs(depth) * height_ - 2 * edge, arc = pi / 2 * edge;

@@ -49,7 +49,7 @@ struct ElementPart {
   Disc disc{Vec2::Zero(), 0};
   double bound = -std::numeric_limits<double>::infinity();  // lower bound of the distance of the piece from the outline
   Vec3 corner = Vec3::Zero();                               // corner of the piece farthest from the centre of `disc`
-  // true if the piece is more curved along the column index of its points than along their row index
+  // true if the piece is more curved along the column index of `points` than along the row index, so that it is bisected along the column index
   bool bends_across = false;
 
   /// Returns an upper bound of the distance from x to the points of the piece, in the plane x2 x3.

@@ -47,7 +47,7 @@ Vec2 uphill(const Height& h, const Vec2& at) {
   return 0.25 * h.gradient / (h.gradient.norm() + std::numeric_limits<double>::min());
 }
 
-/// Returns the local maximum of sign * x_c that an ascent from the given point of the patch reaches, and its parameters.
+/// Returns the local maximum of sign * x_c that an ascent from the point `at` of the patch reaches, and the parameters of the maximum.
 std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) {
   Height here = height(patch, c, sign, at);
   for (int iteration = 0; iteration < 50; ++iteration) {

@@ -79,8 +79,8 @@ Vec3 lowest(const Patches& surface, int c);
 /// The range is empty if the plane misses the surface.
 Range section_distances(const Patches& surface, const Vec3& centre);
 
-/// Deformation measures of the time series (6.2): Taylor parameter D in the x1 x3 plane, by two definitions; inclination in degrees, from -90 (not
-/// included) to 90. The inclination is NaN if the two semi-axes in that plane are not distinct.
+/// Deformation measures of the time series (6.2): Taylor parameter D in the x1 x3 plane, by two definitions (see Geometry::deformation());
+/// inclination in degrees, from -90 (not included) to 90. The inclination is NaN if the two semi-axes in that plane are not distinct.
 struct Deformation {
   double taylor_inertia = 0, taylor_surface = 0, inclination = 0;
   Vec3 lengths;  ///< extents along x1, x2, x3

@@ -254,8 +254,8 @@ Resolution mean(const Resolution& a, const Resolution& b) {
   return {(a.length + b.length) / 2, (a.errors + b.errors) * 0.5, {}};
 }
 
-/// Returns the element of twice the width (or height) of r that contains the mesh element r and results from repeated bisection of the initial mesh.
-/// Returns r if there is no such element.
+/// Returns the rectangle that contains the mesh element r, has twice its width (twice its height if `in_height`) and results from repeated bisection
+/// of the initial mesh. Returns r if there is no such rectangle.
 spline::Rectangle doubled(const Lattice& lattice, const spline::Rectangle& r, bool in_height) {
   spline::Rectangle out = r;
   int &at = in_height ? out.y : out.x, &size = in_height ? out.height : out.width;

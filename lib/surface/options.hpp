@@ -129,7 +129,7 @@ struct ChannelOptions {
 /// Options `Tube/*` of the deck: a straight tube along x1 around the particle, with a constant cross-section in the plane x2 x3. Keys of other
 /// cross-sections are not set.
 struct TubeOptions {
-  bool present = false;  ///< true if the deck has a tube; otherwise all other members are ignored
+  bool present = false;  ///< true if the deck has a tube or channel; otherwise all other members are ignored
 
   std::string section = "circle";            ///< cross-section: circle, ellipse, rectangle, file
   std::optional<double> radius;              ///< radius of the circle; default 1
@@ -138,7 +138,7 @@ struct TubeOptions {
   std::optional<std::string> outline;        ///< path of the file with the points of the outline; set for the cross-section `file`
 
   std::optional<double> length;  ///< length of the wall; default: the larger of 2 pi R_T and the particle's length plus 4.6 R_T (R_T: tube radius)
-  double period = 0;  ///< period of the duct along x1, as given by the section Domain; 0 if the duct is not periodic
+  double period = 0;  ///< period of the duct along x1, from the section Domain or from `periodic_length`; 0 if the duct is not periodic
   /// period L along x1 of tube and particles; not set if the tube is not periodic, or if the section Domain gives the period
   std::optional<double> periodic_length;
   /// number M of periodic images; has no effect, because the kernels of a periodic tube contain all images
@@ -152,14 +152,15 @@ struct TubeOptions {
   /// smallest allowed gap between particle and wall, divided by the particle radius R_C; a run stops if the gap is smaller
   double contact_gap = 0.02;
 
-  /// stress by which the wall repels a membrane if the gap is zero; not set if there is no repulsion
+  /// force per unstressed area by which the wall repels a membrane if the gap is zero; not set if there is no repulsion
   std::optional<double> repulsion;
   std::optional<double> repulsion_range;  ///< increase of the gap over which the repulsive stress decreases by a factor of e
 
   std::string flow = "exact";  ///< method for the duct flow: exact (closed form or series, if known for the cross-section), boundary elements
   int flow_elements = 96;      ///< number of boundary elements for the duct flow
 
-  /// options that only a channel has; if set, the deck has a section Channel, not Tube, with all keys of this structure and of `channel`
+  /// options that only a channel has; if set, the deck has a section Channel, not Tube. It has the keys of `channel` and the keys of this structure
+  /// except `length`, `periodic length`, `images`, `axial elements` and `grading`
   std::optional<ChannelOptions> channel;
   std::string list() const { return channel ? "Channel" : "Tube"; }
 

@@ -6,7 +6,7 @@
 namespace tanktread::stokes {
 
 constexpr int assembly_block = 16;  ///< number of targets that are processed together in one pass
-constexpr int assembly_tile = 4;    ///< the number of basis functions is padded to a multiple of this number
+constexpr int assembly_tile = 4;    ///< basis functions are processed in groups of this size, to which their number is padded
 
 /// One panel with its far nodes at the positions `x`, `y`, `z`. `weight`: quadrature weights times area element, for the single layer. If it is null,
 /// `normal` has the unit normals times these weights, for the double layer. basis[n_nodes A + k]: value of basis function A = 0 .. functions - 1 at

@@ -28,8 +28,8 @@ void chebyshev_nodes(const ChebyshevBox& box, double* x, double* y, double* z);
 void spread(int n, const ChebyshevBox& box, const Charges& points, Pack* scratch, const std::array<double*, 6>& node_q);
 
 /// Interpolates n fields from the nodes to points x of the box: u += sum_abc L_abc(x) u_abc, where u_abc is the value at node (a, b, c). All arrays
-/// are in blocks of far_block points, as in far_sum(): component c at point l of block k is array[n far_block k + far_block c + l], with n = 3 for
-/// positions.
+/// are in blocks of far_block points: component c at point l of block k is array[m far_block k + far_block c + l], with m = n components for fields
+/// and m = 3 for positions.
 void interpolate(int n, const ChebyshevBox& box, const double* node_u, int blocks, const double* target, double* u);
 
 }  // namespace tanktread::stokes

@@ -78,11 +78,10 @@ void far_sum(const Stresslets& nodes, const double* target, double* u);
 void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision = Precision::full);
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
 
-/// Number of terms that are summed in single precision. The functions below compute stokeslet_sum() and far_sum() with terms in single precision.
-/// Position differences have a relative error of 1e-7 even for close points, because the part of a position that single precision drops is stored
-/// separately. The terms of `single_run` consecutive nodes are summed in single precision; this sum is then added to the double-precision sum. The
-/// error is 3e-8 of the sum of the magnitudes of the terms (root mean square; at most 3e-7). The result of one target does not depend on the other
-/// targets.
+/// Number of consecutive terms that are summed in single precision before their sum is added in double precision. The functions below compute
+/// stokeslet_sum() and far_sum() with terms in single precision. Position differences have a relative error of 1e-7 even for close points, because
+/// the part of a position that single precision drops is stored separately. The error is 3e-8 of the sum of the magnitudes of the terms (root mean
+/// square; at most 3e-7). The result of one target does not depend on the other targets.
 constexpr int single_run = 64;
 void stokeslet_sum_in_single(const Charges& forces, const double* target, double* u);
 void far_sum_in_single(const Stresslets& nodes, const double* target, double* u);

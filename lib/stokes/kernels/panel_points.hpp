@@ -7,8 +7,8 @@
 namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 
-/// Bernstein polynomials at one pack of points (as many as fit into a register) of a PointTable. Degree: polynomial degree for common degrees, known
-/// at compile time; 0 if it is known at run time only.
+/// Bernstein polynomials at one pack of points (as many as fit into a register) of a PointTable. `Degree`: polynomial degree, given at compile time
+/// for common degrees; 0 if the degree is read from the table at run time.
 template <int Degree>
 struct Points {
   const int n;

@@ -48,7 +48,7 @@ struct Sight {
     }
   }
 
-  /// Computes the vectors r from the targets of one register to node k.
+  /// Computes the vectors r to node k from the targets of one register, which starts with target `first`.
   void difference(int first, int k, FloatRegister (&r)[3]) const {
     for (int c = 0; c < 3; ++c) {
       const FloatRegister place = as_it_stands(nodes.place[c][k] - load(&targets.place[c][first]));
@@ -63,8 +63,8 @@ void narrow(int n, const double* from, double origin, float (&to)[size]) {
   for (int k = 0; k < n; ++k) to[k] = static_cast<float>(from[k] - origin);
 }
 
-/// Adds the sums over n nodes, times a factor, to u. term(first, k, r, inverse, sum) adds the term of node k to `sum`, for the targets of the
-/// register that starts with target `first`; `inverse` is 1/|r|.
+/// Adds the sums over n nodes to u, times `factor`, which undoes the scaling of the coordinates. term(first, k, r, inverse, sum) adds the term of
+/// node k to `sum`, for the targets of the register that starts with target `first`; `inverse` is 1/|r|.
 template <class Term>
 inline void add_terms(const Sight& sight, int n, double factor, double* u, const Term& term) {
   for (int first = 0; first < far_block; first += wide) {

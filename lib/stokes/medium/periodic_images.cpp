@@ -66,7 +66,7 @@ struct Smooth {
   }
 };
 
-/// Multiplies an array by a matrix (n, m) along its first index, which has length m, and moves the first index to the end.
+/// Multiplies an array by a matrix, shape (n, m), along the first index of the array, which has length m. Moves this index to the end.
 template <class Number>
 void contract(const Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& by, std::vector<Number>& array) {
   using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
@@ -210,7 +210,7 @@ void PeriodicKernel::add_free(const Vec3& r, double factor, double* values) cons
     for (int c = 0; c < 6; ++c) values[6 * a + c] += (c < 3 ? 1 : 2) * scale * r[a] * r[stresses[c][0]] * r[stresses[c][1]];
 }
 
-/// Adds all images along the single lattice vector h, with the direction e, except the near images. They are added in pairs at +n h and -n h, and
+/// Adds all images along the single lattice vector h, with the direction e, except the near images. Images are added in pairs at +n h and -n h, and
 /// (I + e e)/|n h| is subtracted from each Stokeslet (2.43). The first `direct` pairs are summed directly. The sum over the other pairs is replaced
 /// by an integral over the variable 1/n and the first term of the Euler-Maclaurin formula.
 void PeriodicKernel::add_row(const Vec3& r, double* values) const {

@@ -56,11 +56,11 @@ class PeriodicSum {
   std::array<Vec3, 2> across_;  // lowest and highest coordinates of the interpolation box, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
-  std::array<std::vector<int>, 3> difference_;  // for each direction, entry n a + b (n: number of nodes): index of the difference of nodes a and b in
-                                                // the list of distinct differences
+  std::array<std::vector<int>, 3> difference_;  // for each direction with n nodes, entry n a + b: index of the difference of nodes a and b in the
+                                                // list of distinct differences
   std::array<std::size_t, 3> differences_;      // number of distinct differences of two nodes in each direction
-  std::vector<double> table_;  // entries m ((n_1 i + j) n_2 + k) + c, with m = components_: component c of the smooth kernel sum for the node
-                               // difference (i, j, k)
+  std::vector<double> table_;  // entry m ((n_1 i + j) n_2 + k) + c, with m = components_ and n_d = differences_[d]: component c of the smooth kernel
+                               // sum for the node difference (i, j, k)
   int components_ = 6;
   std::vector<Pack> scratch_;
 };

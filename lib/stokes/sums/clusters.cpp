@@ -9,7 +9,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// A cluster counts as flat if its smallest principal variance divided by its second largest is below this ratio.
+/// A cluster counts as flat if the smallest principal variance of its points divided by the middle one is below this ratio.
 constexpr double flat = 0.1;
 
 /// Returns the number of Chebyshev nodes along the longest axis of a box. With more nodes, clusters are usable at smaller distances, but each cluster

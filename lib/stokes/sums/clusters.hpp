@@ -43,8 +43,8 @@ class Clusters {
   /// `quantum`.
   Clusters(double tolerance, int leaf, int quantum) : tolerance_(tolerance), leaf_(leaf), quantum_(quantum) {}
 
-  /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only, and errors of rounding
-  /// hardly ever change it.
+  /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only, and rounding errors hardly
+  /// ever change it.
   void place(const std::vector<double> (&x)[3], std::span<const int> starts);
 
   const std::vector<Cluster>& all() const { return clusters_; }  ///< parents before their children
@@ -57,7 +57,7 @@ class Clusters {
  private:
   struct Group {
     Vec3 centre;
-    double along;  // coordinate of `centre` along the axis along which the cluster of the group is split
+    double along;  // coordinate of `centre` on the axis along which the group's cluster is split
     int number;
   };
   double rounded(double x) const { return step_ * std::round(x / step_); }

@@ -19,9 +19,10 @@ namespace tanktread::stokes {
 class NearField {
  public:
   /// `tolerance`: permitted error divided by the integral of 1/r over the closed surface that contains the panel, with r the distance from the
-  /// target. This integral is estimated as sqrt(4 pi A), where A is the area of the surface. `steep`: true for the double layer. The integrand of the
-  /// double layer grows like 1 / r^2 at targets that are not on the closed surface of the panel. At targets on this surface it grows like 1 / r,
-  /// because the density at the target is subtracted. `off_surface`: true if there are targets that are not on any surface.
+  /// target. This integral is estimated as sqrt(4 pi A), where A is the area of the surface. `smooth_order`: see quadrature::Demand. `steep`: true
+  /// for the double layer. The integrand of the double layer grows like 1 / r^2 at targets that are not on the closed surface of the panel. At
+  /// targets on this surface it grows like 1 / r, because the density at the target is subtracted. `off_surface`: true if there are targets that are
+  /// not on any surface.
   NearField(const Panels& panels, double tolerance, int smooth_order, bool steep, bool off_surface);
 
   /// Sets the shape from the Bezier points of the panels that are not symmetry images. The array must remain valid during later calls of list() and
