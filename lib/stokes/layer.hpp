@@ -79,9 +79,9 @@ class Layer {
   /// `present`: for each element, whether Measure::by_element selects the current area (true) or the unstressed area (false).
   void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
-  /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites. If the far sum of a single layer uses
-  /// clusters, it is computed as the sum u_F over the fundamental panels only. The sum over all panels then follows from u_F at the images g x_i of
-  /// each target x_i:
+  /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites (one site of each orbit). If the far sum
+  /// of a single layer uses clusters, it is computed as the sum u_F over the fundamental panels only. The sum over all panels then follows from u_F
+  /// at the images g x_i of each target x_i:
   ///
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(+-1)                                                         (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);

@@ -19,7 +19,8 @@ namespace {
 /// not requested, add to a spare row.
 template <class Real>
 struct FarBasis {
-  std::vector<int> panels, index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1
+  std::vector<int> panels, index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1 if it
+                                   ///< has no stored values
   std::vector<Real> values;
   std::vector<int> rows;
   std::vector<std::size_t> first_value, first_row;
@@ -37,7 +38,7 @@ struct FarBasis {
     first_value.push_back(values.size());
     first_row.push_back(rows.size());
     values.resize(values.size() + static_cast<std::size_t>(padded) * t.n_nodes, Real(0));
-    for (int a = 0; a < m; ++a)  // plain loops, because their order of summation does not depend on memory alignment
+    for (int a = 0; a < m; ++a)  // plain loops instead of a matrix product, because their order of summation does not depend on memory alignment
       for (int b = 0; b < t.n_bernstein; ++b) {
         const Real share = static_cast<Real>(all.extraction(e)[t.n_bernstein * a + b]);
         const double* from = &t.value[static_cast<std::size_t>(t.n_nodes) * b];

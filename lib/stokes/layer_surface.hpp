@@ -26,7 +26,7 @@ class LayerSurface {
   /// with the distance r from targets on other surfaces; false for a single layer (1/r).
   LayerSurface(const spline::Space& space, const Sites& sites, const quadrature::Options& options, bool steep);
 
-  /// Includes periodic images of the surfaces.
+  /// Includes images of the surfaces, on a lattice or in a wall, in the choice of near-singular rules.
   void repeat();
 
   /// Sets the symmetry that all later shapes have.

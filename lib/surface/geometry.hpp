@@ -87,8 +87,8 @@ struct Deformation {
 };
 
 /// Computes measures of any number of control nets on one space. Everything that depends only on the space is computed once. Every sum runs over the
-/// elements in one fixed order. If a gradient is summed over a subset of the elements that includes all elements on which a basis function is not
-/// zero, the row of its control point is therefore bitwise equal to the row from all elements.
+/// elements in one fixed order. A gradient may be summed over a subset of the elements. If the subset includes all elements on which a basis function
+/// is not zero, the row of the function's control point is bitwise equal to the row from all elements.
 class Geometry {
  public:
   explicit Geometry(const spline::Space& space);

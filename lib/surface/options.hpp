@@ -126,8 +126,8 @@ struct ChannelOptions {
   void check() const;
 };
 
-/// Options `Tube/*` of the deck: a straight tube along x1 around the particle, with a constant cross-section in the plane x2 x3. Keys of other
-/// cross-sections are not set.
+/// Options `Tube/*` of the deck: a straight tube along x1 around the particle, with a constant cross-section in the plane x2 x3. Keys of
+/// cross-sections that are not selected are not set.
 struct TubeOptions {
   bool present = false;  ///< true if the deck has a tube or channel; otherwise all other members are ignored
 

@@ -53,7 +53,7 @@ enum class Precision { single, full };
 /// Number of targets that are processed together in one pass over the nodes.
 constexpr int far_block = 16;
 
-/// Returns the squared distance below which a node coincides with the target x0 up to the rounding of their coordinates.
+/// Returns the squared distance below which a node counts as coincident with the target (x0, y0, z0), because of the rounding of coordinates.
 template <class Number>
 Number coincident(const Number& x0, const Number& y0, const Number& z0) {
   return 0x1p-80 * (x0 * x0 + y0 * y0 + z0 * z0);

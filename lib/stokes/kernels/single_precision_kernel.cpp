@@ -24,12 +24,12 @@ struct Split {
   }
 };
 
-/// Coordinates of consecutive nodes and of a block of targets, relative to the first of these nodes. They are scaled by the distance of the farthest
-/// target, so that powers of distances stay within the range of single precision in any units.
+/// Coordinates of consecutive nodes and of a block of targets, relative to the first of these nodes. The coordinates are scaled by the distance of
+/// the farthest target, so that powers of distances stay within the range of single precision in any units.
 struct Sight {
   Split<single_run> nodes;
   Split<far_block> targets;
-  alignas(register_bytes) float least[far_block];  // squared distance below which a node coincides with a target up to rounding
+  alignas(register_bytes) float least[far_block];  // squared distance below which a node counts as coincident with a target
   double scale;
 
   Sight(int n, const double* const (&x)[3], const double* target) {

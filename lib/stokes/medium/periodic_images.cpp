@@ -118,8 +118,8 @@ PeriodicKernel::PeriodicKernel(Kind kind, const PeriodicCell& cell, const Mat3& 
   for (int d = 0; d < cell.n(); ++d) nearest = std::min(nearest, near[static_cast<std::size_t>(d)] * cell.spacing(d));
   if (cell.n() == 2) {
     const double waves = digits * std::max(cell.vectors().col(0).norm(), cell.vectors().col(1).norm()) / (2 * pi);
-    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // sets the length of the third period. Modes with an in-plane wave number k != 0 decay like
-                                                         // |k| z e^{-|k| z} and do not reach across it
+    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // sets the length of the third period. Modes with an in-plane wave number k != 0 decay with
+                                                         // the distance z like |k| z e^{-|k| z} and do not reach across this length
   }
   xi_ = std::sqrt(digits) / nearest;
   longest_wave_number_ = 2 * xi_ * std::sqrt(digits);

@@ -29,7 +29,8 @@ class NearField {
   /// rule(). If a panel is an image, rule() also needs the Bezier points of this panel.
   void update(const std::vector<double>& bezier, const PanelImages& images);
 
-  /// Includes periodic images of the panels. A periodic image of a panel is treated as part of a different surface. Must be called before update().
+  /// Includes images of the panels, on a lattice or in a wall. An image of a panel is treated as part of a different surface. Must be called before
+  /// update().
   void repeat() { across_gaps_ = true; }
 
   /// Returns the index of the closed surface that contains a panel.

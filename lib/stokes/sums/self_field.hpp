@@ -15,10 +15,10 @@
 
 namespace tanktread::stokes {
 
-/// Points of spline surfaces, each given on every element whose closure contains it. Values are evaluated on the first of these elements.
+/// Points of spline surfaces, each given on every element whose closure contains the point. Values are evaluated on the first of these elements.
 using Sites = std::vector<std::vector<spline::Site>>;
 
-/// A site on one of the panels that contain it.
+/// A pair of a site and one of the panels that contain the site.
 struct SelfPair {
   int panel = 0;
   quadrature::Shear shear;         ///< metric of the panel at the site, rounded to a bin; the rule was constructed for this bin

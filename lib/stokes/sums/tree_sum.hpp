@@ -1,5 +1,5 @@
 #pragma once
-// The far-field sum in a time proportional to the number of nodes (treecode).
+// Far-field sums by a treecode, in a time proportional to the number of nodes.
 
 #include <array>
 #include <span>
