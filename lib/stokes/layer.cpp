@@ -12,9 +12,9 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Returns options whose tolerance is smaller for the double layer. Quadrature rules are chosen for int G f dG. The kernel of the double layer is
-/// singular by one order more, so that its error with the same rule is up to five times as large (tests/verify/layers.cpp). `far_precision` refers to
-/// the tolerance of the deck.
+/// Returns the options, with an eighth of the tolerance for the double layer. Quadrature rules are chosen for the kernel of the single layer. The
+/// kernel of the double layer is singular by one order more, so that its error with the same rule is up to five times as large
+/// (tests/verify/layers.cpp). The precision of the far sum is chosen from the unchanged tolerance of the deck.
 quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
   options.far_precision = options.far_in_single() ? "single" : "double";
   if (kernel == Layer::Kernel::double_layer) options.tolerance /= 8;
@@ -25,7 +25,7 @@ quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  // The clusters of the double layer get half the tolerance. The measured error of the double layer is then a quarter of the tolerance.
+  // The clusters of the double layer get half the tolerance. The measured error of the double layer is then a quarter of the full tolerance.
   const double of_tree = single() ? options.tolerance : options.tolerance / 2;
   if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
   fundamental_sites_ = indices(sites.size());
@@ -74,7 +74,7 @@ void Layer::values(const Net& field, std::vector<double> (&value)[3]) {
   node_values(surface_.panels, bezier_f_, value);
 }
 
-/// Evaluates the density f at the far nodes; in a single layer, multiplied by the quadrature weights.
+/// Evaluates the density f at the far nodes. In a single layer, the values are multiplied by the quadrature weights.
 void Layer::set_density(const Net& f) {
   const auto clock = phases_.time("setup");
   values(f, density_);
@@ -173,9 +173,9 @@ void Layer::add_far(const Targets& targets, Net& u) {
   evaluations_.far += static_cast<long long>(images.size() * places.size()) * n_nodes();
 }
 
-/// Sets the nodes and targets of the tree of clusters, and for a double layer computes sum_q T_ijk n_k at the targets. The tree and these sums are
-/// reused if the shape and the targets have not changed, because a Krylov solver applies the layer of one shape many times. Row k + g n of the sums
-/// belongs to image g of target k, where n is the number of targets.
+/// Sets the nodes and targets of the tree of clusters, and for a double layer computes the sum of T_ijk n_k over all far nodes at the targets. The
+/// tree and these sums are reused if the shape and the targets have not changed, because a Krylov solver applies the layer of one shape many times.
+/// Row k + g n of the tree's sums belongs to symmetry image g of target k (g = 0: the target itself), where n is the number of targets.
 void Layer::place_tree(const Targets& targets) {
   std::vector<Vec3> at = far_targets(targets, targets.in_tree);
   if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;
@@ -253,8 +253,8 @@ void Layer::take_constant_moments(int component) {
   take_moments_of([&](int, int i) { return i == component ? 1. : 0.; });
 }
 
-/// Evaluates sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k, with f the density, m its mean and f0 the constant that is subtracted from f at
-/// this target. The result is exactly 0 for a uniform density.
+/// Computes the far sum of the double layer by clusters, sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k over the far nodes q, with the
+/// density f, its mean m and the constant f0 that is subtracted from f at the target. The sum is exactly 0 for a uniform density.
 void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
   const Vec3 mean = mean_density();
   take_moments(mean);
@@ -282,7 +282,8 @@ const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pai
   return weights.data();
 }
 
-/// Computes the Bernstein moments of panel e by a rule, including the factor of the panel (1 - lambda in a double layer).
+/// Computes the integrals of the kernel times each Bernstein polynomial (moments) over panel e by the rule `table`, including the factor of the panel
+/// (1 - lambda in a double layer).
 void Layer::panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
   const double* bezier = &surface_.bezier[surface_.panels[e].first_bezier];
   scratch_.resize(static_cast<std::size_t>(6) * table.packs());

@@ -25,8 +25,8 @@ namespace tanktread::stokes {
 /// (`set_reference`).
 enum class Measure { reference, current, by_element };
 
-/// Rows of a dense operator. Linear systems use rows in double precision. The Jacobian uses rows in single precision and rounds them further
-/// (FrozenOperator).
+/// Dense matrix, stored row by row, for rows of an operator. Linear systems use double precision. The Jacobian uses single precision and rounds the
+/// rows further (FrozenOperator).
 template <class Real>
 using Rows = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -45,13 +45,14 @@ inline std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
 
 /// Options for the periodic images of the surfaces on a lattice.
 struct Repetition {
-  bool assembled = false;  ///< true: assembled rows include the near images; assemble_rest() adds all other images (PeriodicSum)
+  bool assembled = false;  ///< true: assembled rows include the near images, and assemble_rest() adds all other images (PeriodicSum). false:
+                           ///< assembled rows include no images
   std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off the
                                                                               ///< surfaces
 };
 
-/// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density,
-/// and k_p is a factor per surface, by default 1. The viscosity is not included.
+/// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density, dG
+/// is the area element, and k_p is a factor per surface, by default 1. The viscosity is not included.
 ///
 ///   single:  u(x0) = sum_p (k_p / 8 pi) int_p G(x, x0) f dG                                 f = sum_B f_B N_B               (2.1)
 ///   double:  u(x0) = sum_p (k_p / 8 pi) int_p (f_j(x) - f_j(x0)) T_ijk(x, x0) n_k dG        n out of the surface            (2.2)
@@ -63,9 +64,9 @@ struct Repetition {
 /// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (TreeSum). On panels that are close to
 /// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's terms of this sum. The tolerance of this
 /// quadrature is relative to an integral over the panel's whole surface. The value at a target does not depend on which other targets are requested.
-/// The quadrature rule `desingularised` uses only the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed
-/// surface: int G n dG = 0, and the boundary integral identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the tangential density
-/// at the target. After Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012, who use a different flow.
+/// The quadrature rule `desingularised` uses only the Gauss nodes. This rule subtracts the singularity of the single layer by two identities of a
+/// closed surface: the integral of G n is 0, and the boundary integral identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the
+/// tangential density at the target. After Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012, who use a different flow.
 class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
@@ -74,13 +75,13 @@ class Layer {
   /// (2.1) and (2.2) for each element; if empty, it is 1.
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
-  /// Sets the unstressed surface, which Measure::reference needs. Its areas are stored for all far nodes and all points of singular rules. `present`:
-  /// for each element, whether Measure::by_element selects the current area (true) or the unstressed area (false).
+  /// Sets the unstressed surface, which Measure::reference needs. The unstressed areas are stored for all far nodes and all points of singular rules.
+  /// `present`: for each element, whether Measure::by_element selects the current area (true) or the unstressed area (false).
   void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
-  /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites. If the far sum of a single layer uses
-  /// clusters, it is computed as the sum u_F over the fundamental panels only. The sum over all panels then follows from u_F at the images g x_i of
-  /// each target x_i:
+  /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites (one site of each orbit). If the far sum
+  /// of a single layer uses clusters, it is computed as the sum u_F over the fundamental panels only. The sum over all panels then follows from u_F
+  /// at the images g x_i of each target x_i:
   ///
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(+-1)                                                         (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
@@ -119,9 +120,9 @@ class Layer {
   void apply(const Net& f, std::span<const int> sites, Net& u);
 
   /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density. For each pair of a point and a close panel,
-  /// they are stored as moments: 6 per Bernstein polynomial of the panel.
+  /// the corrections are stored as moments: 6 per Bernstein polynomial of the panel.
   struct Near {
-    std::vector<std::size_t> first;  ///< for each target, index in `panels` at which the list of its close panels begins
+    std::vector<std::size_t> first;  ///< for each target, index in `panels` at which the list of the target's close panels begins
     std::vector<int> panels;
     std::vector<double> moments;
   };
@@ -137,8 +138,8 @@ class Layer {
   /// change (2.3), but the integrand is smaller if f0 is the density nearby.
   void apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
-  /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3
-  /// targets, 3 N).
+  /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3 x
+  /// number of targets, 3 x number of control points).
   void assemble(std::span<const int> sites, Rows<float>& a);
   void assemble(std::span<const int> sites, Rows<double>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
@@ -159,8 +160,8 @@ class Layer {
   const std::vector<double>& weights() const { return weight_; }
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
-  /// Evaluate a field at the far nodes (`values`), or integrate a function h against each basis function, int N_A h dG (`moments`, the transpose of
-  /// `values`). `g`: h times area and quadrature weight at each far node.
+  /// values() evaluates a field at the far nodes. moments() returns the integral of a function h times each basis function (the transpose of
+  /// values()). `g`: h times area and quadrature weight at each far node.
   void values(const Net& field, std::vector<double> (&value)[3]);
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
@@ -175,7 +176,7 @@ class Layer {
     std::span<const int> rows, far_rows;  ///< rows of u that get near-singular and singular quadrature, and rows that get far sums
     const Net& at;                        ///< positions
     const Net& f0;                        ///< for each target, the constant subtracted from the density of a double layer
-    std::span<const int> in_tree;         ///< indices of the targets that are in the tree of clusters, ascending
+    std::span<const int> in_tree;         ///< ascending indices of the targets that are in the tree of clusters
     bool sites;                           ///< true if the targets are sites of the surfaces
     const Near* kept = nullptr;
   };
@@ -191,15 +192,16 @@ class Layer {
     std::vector<double> node[3];                // far nodes, moved into the cell
     std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
     std::vector<Vec3> rest_at;                  // targets at which rest_stress was computed: positions shifted by lattice vectors into the cell
-    std::vector<Mat3> rest_stress;              // at the targets rest_at: double layer of constant unit densities over all images except the near
-                                                // ones
+    std::vector<Mat3> rest_stress;              // at the targets rest_at: double layer over all images except the near ones, column c for the
+                                                // constant density e_c
   };
 
   /// The unstressed surface.
   struct Reference {
     std::vector<double> bezier, weight;  // bezier: Bezier points of the unstressed surface. weight: quadrature weights of this surface at the far
                                          // nodes, areas included
-    std::vector<bool> present;           // per element: whether Measure::by_element refers the density to its current area
+    std::vector<bool> present;           // per element: with Measure::by_element, true if the density refers to the element's current area, false:
+                                         // unstressed area
   };
 
   bool single() const { return kernel_ == Kernel::single_layer; }
@@ -258,7 +260,7 @@ class Layer {
   std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and the factor k_p of (2.1)
   std::vector<double> density_[3], normal_[3];                     // values at the far nodes. density_: density f (times weight_ in a single layer).
                                                                    // normal_: normal times quadrature weight, area and factor k_p of (2.2)
-  std::optional<TreeSum> tree_;                                    // set if clusters are faster
+  std::optional<TreeSum> tree_;                                    // clusters for far sums; not set if direct sums are used
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall
   std::vector<Mat3> image_stress_;                                 // for each target, the double layer of the images in the wall for the constant

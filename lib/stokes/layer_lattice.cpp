@@ -9,7 +9,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Tolerance for the sum over the images that are not near, divided by the tolerance of the layer. It is below 1 because the loads are in
+/// Tolerance for the sum over the images that are not near, divided by the tolerance of the layer. The ratio is below 1 because the loads are in
 /// equilibrium, so that velocities are small compared with the sum of the magnitudes of their terms (as in TreeSum).
 constexpr double share_of_rest = 0.1;
 
@@ -93,8 +93,8 @@ void Layer::add_rest(const Targets& targets, Net& u) {
 }
 
 /// Computes the double layer of constant unit densities due to the images that are not in the far sum, at the targets `at`, one column per component
-/// of the density. Each surface has images in the far sum and images outside of it. Therefore neither of the two sums vanishes for a constant
-/// density.
+/// of the density. Each surface has images in the far sum and others that are not. Therefore neither the far sum nor this double layer vanishes for a
+/// constant density.
 void Layer::place_rest(const std::vector<Vec3>& at) {
   lattice_.rest_at = at;
   lattice_.rest_stress.assign(at.size(), Mat3::Zero());

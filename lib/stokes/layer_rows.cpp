@@ -14,12 +14,13 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Values of the basis functions of some panels at the far nodes of these panels. Each basis function adds to one row of the sums, the row of its
-/// control point. The number of basis functions is padded to a multiple of `assembly_tile`. Padding, and basis functions of control points that are
+/// Values of the basis functions of some panels at the far nodes of these panels. Each basis function adds to the row of its control point in
+/// RowSums::sums. The number of basis functions is padded to a multiple of `assembly_tile`. Padding, and basis functions of control points that are
 /// not requested, add to a spare row.
 template <class Real>
 struct FarBasis {
-  std::vector<int> panels, index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1
+  std::vector<int> panels, index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1 if it
+                                   ///< has no stored values
   std::vector<Real> values;
   std::vector<int> rows;
   std::vector<std::size_t> first_value, first_row;
@@ -37,7 +38,7 @@ struct FarBasis {
     first_value.push_back(values.size());
     first_row.push_back(rows.size());
     values.resize(values.size() + static_cast<std::size_t>(padded) * t.n_nodes, Real(0));
-    for (int a = 0; a < m; ++a)  // plain loops, because their order of summation does not depend on memory alignment
+    for (int a = 0; a < m; ++a)  // plain loops instead of a matrix product, because their order of summation does not depend on memory alignment
       for (int b = 0; b < t.n_bernstein; ++b) {
         const Real share = static_cast<Real>(all.extraction(e)[t.n_bernstein * a + b]);
         const double* from = &t.value[static_cast<std::size_t>(t.n_nodes) * b];
@@ -58,7 +59,8 @@ struct FarBasis {
   }
 };
 
-/// Adds Bernstein moments of panel e, moment[6 b + c], to the sums of one target: sums[n (6 rows[A] + c)], with n = assembly_block.
+/// Adds the Bernstein moments of panel e, moments[6 b + c], to the sums of one target: sums[n (6 rows[A] + c)] for each basis function A, with n =
+/// assembly_block.
 template <class Real>
 void add_moments(const Panels& panels, int e, const int* rows, const double* moments, Real* sums) {
   const int n_b = panels[e].table->n_bernstein;
@@ -71,8 +73,8 @@ void add_moments(const Panels& panels, int e, const int* rows, const double* mom
   }
 }
 
-/// Writes the three rows of the operator for one target. `sums`: for each control point, the entries 11, 12, 13, 22, 23, 33 of the kernel's sums. The
-/// rows are the sums divided by 8 pi.
+/// Writes the three rows of the matrix for one target: `sums` divided by 8 pi. `sums`: for each control point, the integrals of its basis function
+/// times the kernel entries 11, 12, 13, 22, 23, 33.
 template <class Real>
 void write_rows(int row, int n_points, const Real* sums, Rows<Real>& a) {
   constexpr int entry[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
@@ -92,7 +94,7 @@ void sort_and_drop_repeated(std::vector<int>& numbers) {
 
 }  // namespace
 
-/// Assembles sums over the panels, one per control point and kernel component, for up to sixteen targets at a time.
+/// Assembles the integrals of kernel times basis function, one per control point and kernel component, for up to sixteen targets at a time.
 template <class Real>
 class Layer::RowSums {
  public:
@@ -100,8 +102,8 @@ class Layer::RowSums {
   RowSums(Layer& layer, const Net* at) : layer_(layer), at_(at) {}
 
   FarBasis<Real> basis;
-  std::vector<Real> sums;  ///< sums[m (6 row + c) + l], with m = assembly_block: entry c of the kernel (11, 12, 13, 22, 23, 33) for control point
-                           ///< `row` at target l
+  std::vector<Real> sums;  ///< sums[m (6 row + c) + l], with m = assembly_block: integral of kernel entry c (11, 12, 13, 22, 23, 33) times the basis
+                           ///< function of control point `row`, at target l
 
   void add(std::span<const int> targets, int rows) {
     sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
@@ -124,8 +126,8 @@ class Layer::RowSums {
   Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : layer_.surface_.site(target); }
 
   /// Adds the corrections by near-singular and singular quadrature for one target. `images`: displacements of the panels; a displaced panel is
-  /// corrected if it is close to the target. On a lattice the corrected far sum includes the nodes of displaced panels. l: index of the target in its
-  /// block of sixteen.
+  /// corrected if it is close to the target. On a lattice, the far sum that is corrected contains the nodes of displaced panels. l: index of the
+  /// target in its block of sixteen.
   void add_close_panels(int target, const std::vector<Vec3>& images, int l) {
     LayerSurface& surface = layer_.surface_;
     for (const Vec3& image : images) {
@@ -172,7 +174,8 @@ class Layer::RowSums {
 };
 
 /// Subtracts the term with the density f(x_i) at the site x_i from the double layer (2.2). With the sums A_iC of all control points C, this subtracts
-/// N_B(x_i) sum_C A_iC from the sum of control point B. The term is thereby integrated by the same quadrature rules as the term with f(x).
+/// N_B(x_i) sum_C A_iC from the sum A_iB of each control point B. The subtracted term is thereby integrated by the same quadrature rules as the term
+/// with f(x).
 template <class Real>
 void Layer::subtract_density_at_site(int site, Real* sums) const {
   double total[6] = {};
@@ -218,7 +221,8 @@ void Layer::assemble_rest(std::span<const int> sites, Rows<double>& a) {
   for (const int i : sites) at.push_back(lattice_.sum->wrapped(surface_.site(i)));
   for (std::size_t k = 0; k < lattice_.node[0].size(); ++k) nodes.emplace_back(lattice_.node[0][k], lattice_.node[1][k], lattice_.node[2][k]);
   const Eigen::MatrixXd to = lattice_.sum->lagrange(at);
-  Eigen::MatrixXd from = lattice_.sum->lagrange(nodes), basis(from.cols(), surface_.n_points);  // int L_a N_B dG
+  Eigen::MatrixXd from = lattice_.sum->lagrange(nodes), basis(from.cols(), surface_.n_points);  // integrals of L_a N_B over the surface, with the
+                                                                                                // Lagrange polynomials L_a
   for (Eigen::Index a = 0; a < from.cols(); ++a) {
     from.col(a).array() *= Eigen::Map<const Eigen::ArrayXd>(weight_.data(), n_nodes());
     basis.row(a) = moments({from.col(a).data(), from.col(a).data() + from.rows()}).transpose();

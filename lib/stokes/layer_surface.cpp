@@ -9,12 +9,12 @@
 namespace tanktread::stokes {
 namespace {
 
-/// An element gets fewer Gauss points of the far rule (far_orders) if its relative size, see shares(), is below this value.
+/// An element whose relative size (see shares()) is below this value gets fewer Gauss points of the far rule (see far_orders()).
 constexpr double small = 0.6;
 
-/// Returns the number of Gauss points per direction of the far rule. The number was chosen from errors measured on deformed capsules at n = 3, 6 and
-/// 12 (tests/verify/layers.cpp). Targets off the surface need fewer points, because near rules replace the far rule at small distances: with three
-/// points the far sum has an error of 1e-8 to 2e-7 (tests/verify/tube_gap.cpp).
+/// Returns the number of Gauss points per direction of the far rule. The number was chosen from errors measured on deformed capsules with 3, 6 and 12
+/// elements per side of the cube mesh (tests/verify/layers.cpp). Targets off the surface need fewer points, because near rules replace the far rule
+/// at small distances: with three points the far sum has an error of 1e-8 to 2e-7 (tests/verify/tube_gap.cpp).
 int far_order(const quadrature::Options& options, bool on_surface = true) {
   if (options.rule != "adaptive") return options.points;
   if (options.tolerance >= (on_surface ? 1e-4 : 1e-5)) return 3;
@@ -57,8 +57,8 @@ std::vector<int> far_orders(const spline::Space& space, const quadrature::Option
   return orders;
 }
 
-/// Returns the number of far nodes above which clusters are faster. It is about twice the number of kernel evaluations per target that clusters need
-/// on a large surface. The number of kernel evaluations grows with the square of the number of digits of the tolerance (measured by
+/// Returns the number of far nodes above which clusters are faster than direct sums: about twice the number of kernel evaluations per target that
+/// clusters need on a large surface. The number of evaluations grows with the square of the number of digits of the tolerance (measured by
 /// tests/benchmark/growth.cpp).
 double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(tolerance), 2); }
 

@@ -14,18 +14,19 @@
 
 namespace tanktread::stokes {
 
-/// Returns whether option `far sum` selects clusters (TreeSum) for this space rather than direct summation. `images`: number of images of each node.
+/// Returns whether option `far sum` selects clusters (TreeSum) for this space rather than direct summation. `images`: number of lattice images of
+/// each node, including the node itself.
 bool sums_by_tree(const spline::Space& space, const quadrature::Options& options, int images = 1);
 bool sums_by_tree(double nodes, const quadrature::Options& options);
 
 /// Current surfaces, prepared for the integration of a layer: panels, far nodes, and the quadrature rule for each pair of a target and a panel.
 class LayerSurface {
  public:
-  /// `sites`: targets on the surfaces; if empty, all targets are off the surfaces. `steep`: the integrand grows like 1 / r^2 for targets on other
-  /// surfaces (double layer).
+  /// `sites`: targets on the surfaces; if empty, all targets are off the surfaces. `steep`: true for a double layer, whose integrand grows like 1/r^2
+  /// with the distance r from targets on other surfaces; false for a single layer (1/r).
   LayerSurface(const spline::Space& space, const Sites& sites, const quadrature::Options& options, bool steep);
 
-  /// Includes periodic images of the surfaces.
+  /// Includes images of the surfaces, on a lattice or in a wall, in the choice of near-singular rules.
   void repeat();
 
   /// Sets the symmetry that all later shapes have.
@@ -44,7 +45,8 @@ class LayerSurface {
   Vec3 site(int i) const { return value(i, bezier); }
   Vec3 value(int i, const std::vector<double>& of) const { return self_field.value(i, panels, of); }
 
-  /// Returns the panels that contain site i and need a singular rule for it. The list is empty for the rule `desingularised`.
+  /// Returns the pairs of site i and a panel that contains it, one pair per panel. These pairs need singular rules. The list is empty for the rule
+  /// `desingularised`.
   std::span<SelfPair> own(int i);
 
   /// Returns the panels that need near-singular quadrature for a target, without the panels of `own`, which contain the target.
@@ -55,7 +57,7 @@ class LayerSurface {
   void place(TreeSum& tree, std::span<const Vec3> targets) const;
 
   quadrature::Options options;
-  int n_points, n_sites;  ///< numbers of control points and of targets on the surfaces
+  int n_points, n_sites;  ///< numbers of control points (n_points) and of targets on the surfaces (n_sites)
   Panels panels;
   NearField near_field;
   SelfField self_field;

@@ -1,5 +1,5 @@
-// Contribution of a plane wall to a layer: the images of its nodes in the far sum, and near-singular quadrature on panels that are close to the
-// mirror image of a target.
+// Contribution of a plane wall to a layer: the far sum over the images of the layer's nodes in the wall, and near-singular quadrature on panels that
+// are close to the mirror image of a target.
 
 #include <cassert>
 
@@ -11,11 +11,12 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// Factor on the tolerance of clusters for the images in the wall, because the image kernel is singular by two orders more than the free-space
-/// kernel. The factor was chosen from errors measured on spheres and ellipsoids near a wall.
+/// Factor that reduces the tolerance of clusters for the images in the wall, because the image kernel is singular by two orders more than the
+/// free-space kernel. The factor was chosen from errors measured on spheres and ellipsoids near a wall.
 constexpr double share_of_clusters = 0.25;
 
-/// Transforms the Bezier points of a panel (if `point` is true) or the Bezier coefficients of a vector field on it to the wall's axes.
+/// Transforms the Bezier points of a panel (if `point` is true), or the Bezier coefficients of a vector field on the panel (if false), to the wall's
+/// axes.
 std::vector<double> turned(const PlaneWall& wall, const double* bezier, int n_b, bool point) {
   std::vector<double> own(static_cast<std::size_t>(3 * n_b));
   for (int b = 0; b < n_b; ++b) {
@@ -62,8 +63,8 @@ void Layer::add_images(const Targets& targets, Net& u) {
   add_near_images(targets, u);
 }
 
-/// Computes the far sums of the double layer of the images in the wall, at all targets, for the constant densities e_1, e_2 and e_3. The result for
-/// e_c is column c of the matrices image_stress_.
+/// Computes the matrices image_stress_, one per target: column c is the far sum of the double layer over the images in the wall for the constant
+/// density e_c (unit vector c).
 void Layer::take_image_stress() {
   for (int c = 0; c < 3; ++c) {
     take_constant_moments(c);
@@ -85,8 +86,8 @@ void Layer::add_near_images(const Targets& targets, Net& u) {
   }
 }
 
-/// Returns the contribution of the mirror image of panel e in the wall, computed by the near-singular rule `table`, minus the contribution of this
-/// image that the far sum contains.
+/// Returns the contribution of the image of panel e in the wall by the near-singular rule `table`, minus the contribution of this image to the far
+/// sum.
 Vec3 Layer::beyond_image_sum(int e, const PointTable& table, const Vec3& mirrored, const Vec3& at, const Vec3& f0) {
   const PlaneWall& wall = images_->wall();
   const Panel& panel = surface_.panels[e];

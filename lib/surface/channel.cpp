@@ -15,7 +15,8 @@ namespace {
 using std::numbers::pi;
 
 constexpr int n_samples = 4000;
-// least length of a straight end divided by the tube radius R_T; perturbations of the flow decay to 1e-5 over this length
+// least length of a straight end of the channel divided by the tube radius R_T; perturbations of the flow decay to 1e-5 of their size over this
+// length
 constexpr double straight_end = 1.7;
 
 }  // namespace
@@ -46,7 +47,7 @@ Channel::Channel(const TubeOptions& options)
   check();
 }
 
-/// Reads the scale factors from the file Channel/points, which has rows s,f or s,f2,f3.
+/// Reads the scale factors of the cross-section from the file Channel/points, which has rows s,f or s,f2,f3 (arc length and factors).
 void Channel::read_points() {
   const std::string name = "Channel/points \"" + deck::shortened(*own_.points, 80) + "\"";
   std::vector<double> s;
@@ -66,8 +67,8 @@ void Channel::read_points() {
   factors_ = interpolate_open(s, factor, Vec2::Zero(), Vec2::Zero());
 }
 
-/// Returns the length of the wall contour minus the length of the centre line, from the middle of the profile to one end, if the profile is `step`.
-/// Returns 0 for other profiles.
+/// If the profile is `step`, returns the length of the wall contour from the middle of the step to one end of the channel, minus the length of the
+/// centre line between them. Returns 0 for other profiles.
 double Channel::jump() const {
   if (own_.profile != "step") return 0;
   return std::abs(*own_.depth) * height_ + (pi - 4) * *own_.corner_radius;
@@ -141,7 +142,7 @@ void Channel::check_period() {
                   jumps.cwiseAbs().maxCoeff()));
 }
 
-/// Returns the equivalent arc length in the modelled period: s plus a multiple of the period.
+/// Returns the equivalent arc length in the modelled period: s plus a multiple of the period. If the channel is not periodic, returns s.
 double Channel::in_period_along(double s) const {
   return options_.period > 0 ? s - options_.period * std::floor((s - start_) / options_.period) : s;
 }
@@ -155,8 +156,8 @@ Channel::Place Channel::in_period(double u) const {
   return at;
 }
 
-/// Returns the point at arc length u of the wall contour of the profile `step`. From its middle u = 0, the contour has a straight part, a rounded
-/// edge, a straight part across the channel, an edge rounded in the opposite direction, and a straight part.
+/// Returns the centre line's arc length and the scale factors at arc length u of the wall contour of the profile `step`. From its middle u = 0, the
+/// contour has a straight part, a rounded edge, a straight part across the channel, an edge rounded in the opposite direction, and a straight part.
 Channel::Place Channel::step(double u) const {
   const double w = *own_.half_length, edge = *own_.corner_radius, depth = *own_.depth;
   const double inner = height_ * (1 - depth), up = depth > 0 ? 1 : -1, across = std::abs(depth) * height_ - 2 * edge, arc = pi / 2 * edge;
@@ -280,8 +281,8 @@ std::vector<double> Channel::kinks() const {
 }
 
 /// Returns the desired element length at each longitudinal parameter u: three quarters of the width of the elements at u, and less where the wall
-/// bends. More than 2.5 R_T away from the part of the channel that changes, it is multiplied by 2.5. Where the curvature jumps, it is multiplied by
-/// 0.25. The length changes by at most 0.3 per unit distance, so that elements grow gradually away from short ones.
+/// bends. More than 2.5 R_T (tube radius) away from the part of the channel that changes, the length is multiplied by 2.5. Where the curvature jumps,
+/// the length is multiplied by 0.25. The length changes by at most 0.3 per unit distance, so that elements grow gradually away from short ones.
 std::vector<double> Channel::sizes(const std::vector<double>& u) const {
   const double finer = 24. / options_.azimuthal_elements, radius = outline_.radius(), step = u[1] - u[0];
   const bool changes = last_ > first_;
@@ -314,8 +315,9 @@ int Channel::elements() const {
   return std::max(8, static_cast<int>(std::ceil(count)));
 }
 
-/// Makes knots triple where the curvature of the wall or of the centre line jumps, if there are enough elements. The slope of the wall pressure jumps
-/// there, and the shear stress behaves like d log d with the distance d from the jump. Splines that are smooth across the jump would oscillate.
+/// Returns the knots. Where the curvature of the wall or of the centre line jumps, the knots are triple if there are enough elements. The slope of
+/// the wall pressure jumps there, and the shear stress behaves like d log d with the distance d from the jump. Splines that are smooth across the
+/// jump would oscillate.
 std::vector<double> Channel::knots(int elements) const {
   const std::vector<double> u = lines(), size = sizes(u);
   std::vector<double> count{0};
@@ -334,7 +336,8 @@ std::vector<double> Channel::knots(int elements) const {
     begin = end, done = whole;
   };
   std::vector<double> joints = kinks();
-  // On the transverse wall of a step, triple knots would fold the sides of the elements. With simple knots, the control points stay apart.
+  // No triple knots on the transverse wall of a step, where they would fold the sides of the elements. With simple knots, the control points stay
+  // apart.
   if (own_.profile == "step")
     std::erase_if(joints, [&](double joint) { return std::abs(place(joint).s) < *own_.half_length + 1.001 * *own_.corner_radius; });
   std::ranges::sort(joints);

@@ -35,7 +35,7 @@ class Channel {
   double start() const { return start_; }
   double end() const { return end_; }
   bool repeats() const { return options_.period > 0; }
-  double smallest_radius() const { return smallest_; }  ///< half the smallest width
+  double smallest_radius() const { return smallest_; }  ///< half the smallest width of the channel
 
   /// Returns, for the position x, the arc length s of the centre line and the coordinates y2, y3 in the unscaled cross-section.
   Vec3 coordinates(const Vec3& x) const;
@@ -44,7 +44,7 @@ class Channel {
   /// Returns the knots, in the longitudinal parameter u, of a spline surface for the wall from start() to end(). at() returns the section at any u in
   /// this range. At a step, the scale factors f2 and f3 change with u while the arc length s is constant.
   std::vector<double> knots(int elements) const;
-  int elements() const;  ///< number of elements along the wall with which the elements are about as long as wide
+  int elements() const;  ///< number of elements along the wall: Channel/axial elements or, if not given, such that elements are about as long as wide
   Section at(double u) const;
 
  private:

@@ -25,8 +25,8 @@ struct Disc {
 };
 
 /// Returns a Disc that is valid for pieces of the surface within the distance r of x. The disc touches the outline at `foot`, the point of the
-/// outline nearest to x, and its curvature is at least the curvature of the outline there. If a point of the outline lies inside the disc, the radius
-/// is reduced such that the circle passes through this point.
+/// outline nearest to x, and the curvature of the disc is at least the curvature of the outline at this point. If a point of the outline lies inside
+/// the disc, the radius is reduced such that the circle passes through this point.
 Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double r, double tolerance) {
   if (foot.distance < tolerance) return {foot.x, 0};
   const PlaneJet at = outline.at(foot.side, foot.u);
@@ -47,9 +47,9 @@ Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double
 struct ElementPart {
   std::array<Eigen::MatrixXd, 3> points;  // one matrix per coordinate
   Disc disc{Vec2::Zero(), 0};
-  double bound = -std::numeric_limits<double>::infinity();  // lower bound of the distance of the piece to the outline
+  double bound = -std::numeric_limits<double>::infinity();  // lower bound of the distance of the piece from the outline
   Vec3 corner = Vec3::Zero();                               // corner of the piece farthest from the centre of `disc`
-  // true if the piece is more curved along the column index of its points than along their row index
+  // true if the piece is more curved along the column index of `points` than along the row index, so that it is bisected along the column index
   bool bends_across = false;
 
   /// Returns an upper bound of the distance from x to the points of the piece, in the plane x2 x3.
@@ -150,8 +150,8 @@ class OutlineSearch {
     bound(piece);
   }
 
-  /// Sets, for a piece, the lower bound of its distance, its corner farthest from the centre of its disc, and the direction of largest curvature.
-  /// They follow from the Bezier coefficients of the squared distance to the centre of the disc.
+  /// Sets the lower bound of the distance of a piece from the outline, the corner of the piece farthest from the centre of its disc, and the
+  /// direction of largest curvature. All three follow from the Bezier coefficients of the squared distance from the centre of the disc.
   void bound(ElementPart& piece) {
     const Eigen::Index m = piece.points[0].rows(), n = 2 * m - 1, last = n - 1;
     if (products_.rows() != m) products_ = products(m - 1);

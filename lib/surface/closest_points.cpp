@@ -30,7 +30,8 @@ Points bezier_points(const Patch& patch) {
   return Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>(patch.points, 3, patch.n_bezier());
 }
 
-/// Part of an element, given by its Bezier points, s fastest. halves() divides the part across its longer direction when it is called first.
+/// Part of an element, given by its Bezier points, s fastest. The first call of halves() divides the part across its longer direction; later calls
+/// return the stored halves.
 struct Part {
   int degree = 0;
   Points points;
@@ -42,7 +43,7 @@ struct Part {
   Vec3 corner(int i, int j) const { return points.col(degree * (i + (degree + 1) * j)); }
   spline::Site site(int i, int j) const { return {low.element, low.s + i * sides[0], low.t + j * sides[1]}; }  // site of a corner
   Vec3 middle() const { return points.rowwise().mean(); }
-  Vec3 normal() const { return (corner(1, 1) - corner(0, 0)).cross(corner(0, 1) - corner(1, 0)).normalized(); }  // approximate normal at its middle
+  Vec3 normal() const { return (corner(1, 1) - corner(0, 0)).cross(corner(0, 1) - corner(1, 0)).normalized(); }  // approximate normal at the middle
 
   const std::array<Part, 2>& halves() const {
     if (!halves_kept) halves_kept = std::make_shared<const std::array<Part, 2>>(halved());
@@ -73,8 +74,8 @@ struct Part {
   }
 };
 
-/// Returns the distance between the projections of two point sets on a unit vector that points from the first to the second; negative if they
-/// overlap.
+/// Returns the distance between the projections of two point sets on a unit vector that points from the first set to the second; negative if the
+/// projections overlap.
 double separation(const Points& a, const Points& b, const Vec3& direction) {
   return (direction.transpose() * b).minCoeff() - (direction.transpose() * a).maxCoeff();
 }
@@ -97,7 +98,7 @@ class PairSearch {
   }
 
  private:
-  /// A pair of bounding boxes, or of parts of elements if each box contains only one element.
+  /// A pair of bounding boxes, or if each box contains only one element, of parts of these elements.
   struct Pair {
     double bound;
     int box[2];
@@ -276,7 +277,7 @@ double distance(const Vec3& x, const Sampled& element) {
     if (const double squared = (element.place[k] - x).squaredNorm(); squared < least) least = squared, nearest = k;
   // `across`: distance of x from the tangent plane at the nearest sample point. `along`: distance of the foot of the perpendicular on this plane from
   // the sample point. If `along` is large, the foot may be beyond the element's edges, and another element is nearer than this plane. In this case,
-  // the distance from the sample point is returned.
+  // returns the distance from the sample point.
   const double across = (x - element.place[nearest]).dot(element.normal[nearest]), along = std::sqrt(std::max(0., least - across * across));
   return along > element.box.diagonal().norm() / 4 ? std::sqrt(least) : std::max(across, 0.);
 }

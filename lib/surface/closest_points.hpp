@@ -46,9 +46,9 @@ class ElementBoxes {
 double distance(const ElementBoxes::Box& a, const ElementBoxes::Box& b);
 
 /// Returns the closest points of two surfaces if their distance is below `beyond`; otherwise returns `beyond` as the distance. Uses branch and bound:
-/// divides the pair of boxes, elements or parts of elements with the smallest lower bound, until no pair can be closer than the best points found by
-/// more than `tolerance`. The bounds of parts come from separating planes between their Bezier points. If the surfaces are nearly parallel, the error
-/// of these bounds is much smaller than the size of the parts.
+/// divides the pair of boxes, elements or parts of elements with the smallest lower bound of the distance, until no pair can be closer than the best
+/// points found by more than `tolerance`. The bounds of parts come from separating planes between their Bezier points. If the surfaces are nearly
+/// parallel, the error of these bounds is much smaller than the size of the parts.
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond);
 
 /// Refines the closest points `near` of two elements by Newton's method. `first` and `second` are the patches of the elements. At the result, the
@@ -56,10 +56,10 @@ ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& seco
 /// returns the points at the local coordinates given by `near`.
 ClosestPoints nearest_points(const Patch& first, const Patch& second, const ClosestPoints& near);
 
-/// Returns, for each element of a surface, the width of the film between it and the other surfaces. The width is the smallest distance from 3 x 3
-/// points of the element to the tangent planes of the other elements, where the tangent plane of an element is taken at the nearest of 5 x 5 sample
-/// points. Its error is h^2 k/8, with k the curvature of the other surface and h a quarter of its element length. The width is infinite if no other
-/// surface is within `reach`.
+/// Returns, for each element of a surface, the width of the film between the element and the other surfaces. The width is the smallest distance from
+/// 3 x 3 points of the element to the tangent planes of the other elements, where the tangent plane of an element is taken at the nearest of 5 x 5
+/// sample points. The error of the width is h^2 k/8, with k the curvature of the other surface and h a quarter of the element length of that surface.
+/// The width is infinite if no other surface is within `reach`.
 std::vector<double> film_widths(const Patches& surface, std::span<const Patches* const> others, double reach);
 
 }  // namespace tanktread::surface

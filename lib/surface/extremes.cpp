@@ -47,7 +47,7 @@ Vec2 uphill(const Height& h, const Vec2& at) {
   return 0.25 * h.gradient / (h.gradient.norm() + std::numeric_limits<double>::min());
 }
 
-/// Returns the local maximum of sign * x_c that an ascent from the given point of the patch reaches, and its parameters.
+/// Returns the local maximum of sign * x_c that an ascent from the point `at` of the patch reaches, and the parameters of the maximum.
 std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) {
   Height here = height(patch, c, sign, at);
   for (int iteration = 0; iteration < 50; ++iteration) {
@@ -101,7 +101,8 @@ struct Crossing {
   double distance;
 };
 
-/// Moves a sampled point onto the section curve y2 = 0 along the gradient of y2, and returns it with its distance from the centre.
+/// Moves a sampled point onto the section curve y2 = 0 (y = x - centre) along the gradient of y2. Returns the moved point and its distance from the
+/// centre, or nothing if the iteration fails.
 std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at) {
   for (int iteration = 0; iteration < 10; ++iteration) {
     const CoordinateJet j = jet(patch, 1, at[0], at[1]);
@@ -117,12 +118,12 @@ std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at
 }
 
 /// Returns points of the section curve: intersects the plane x2 = centre_2 with the chords of a sampling grid, and moves the intersections onto the
-/// curve. Without the move, on a nearly circular curve, the errors of their distances from the centre may exceed the difference between the largest
-/// and the smallest distance.
+/// curve. Without the move, the errors of the distances from the centre may exceed the difference between the largest and the smallest distance on a
+/// nearly circular curve.
 std::vector<Crossing> crossings(const Patch& patch, const Vec3& centre) {
   std::vector<Crossing> result;
   Grid<double> above = sample(patch, 1);
-  const double in_plane = 1e-13 * (place(patch, 0, 0) - centre).norm();  // sampled points below this distance from the plane count as points of it
+  const double in_plane = 1e-13 * (place(patch, 0, 0) - centre).norm();  // sampled points nearer to the plane than this count as points of the plane
   for (auto& line : above)
     for (double& height : line)
       if (height -= centre[1]; std::abs(height) < in_plane) height = 0;
@@ -139,11 +140,12 @@ std::vector<Crossing> crossings(const Patch& patch, const Vec3& centre) {
   return result;
 }
 
-/// Returns the stationary value of the distance from the centre on the section curve y2 = 0 (y = x - centre, r = |y|), by Newton's method for
+/// Returns the stationary value of the distance from the centre on the section curve y2 = 0 (y = x - centre, r = |y|). Solves by Newton's method for
+/// the point and lambda:
 ///
-///   grad(r^2/2) = lambda grad(y2),   y2 = 0;
+///   grad(r^2/2) = lambda grad(y2),   y2 = 0.
 ///
-/// nothing if the iteration leaves the element.
+/// Returns nothing if the iteration leaves the element.
 std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre, Vec2 at) {
   double lambda = std::numeric_limits<double>::quiet_NaN();
   for (int iteration = 0; iteration < 15; ++iteration) {
@@ -188,10 +190,11 @@ struct Candidate {
   const Crossing& best(double sign, std::size_t k = 0) const { return crossings[sign < 0 ? k : crossings.size() - 1 - k]; }
 };
 
-/// Searches for the maximum of sign * distance in all candidates that may contain it, and extends the range `found` by the distances found. On a
-/// nearly circular curve, the search from a sampled maximum may converge to a minimum or leave the element. Then it starts again from the next
-/// sampled point. Elements and points are left out if their distance is further below the largest sampled distance than a quarter of the spread of
-/// the element's distances: where the distance is a parabola with its maximum inside the element, the sampling error is at most spread/cells^2.
+/// Searches for the maximum of d = sign * distance in all candidates that may contain it, and extends the range `found` by the distances found. On a
+/// nearly circular curve, the search from a sampled maximum may converge to a minimum or leave the element. Then the search starts again from the
+/// next sampled point. Leaves out an element if its largest sampled d is below the largest d of all elements by more than a quarter of the element's
+/// spread (largest minus smallest sampled distance). Leaves out a sampled point if its d is below the largest d of its element by more than this. The
+/// margin is ample: if d is a parabola with its maximum inside the element, the sampling error is at most spread/cells^2.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.best(sign).distance);

@@ -14,7 +14,7 @@ LeastSquaresFit::LeastSquaresFit(const spline::Space& space) : map_(space) {
     const Eigen::MatrixXd value = spline::tensor_bernstein(block.degree, rule.s, rule.t).value;
     tables_[block.degree] = {value, value.transpose() * rule.weights.asDiagonal()};
   }
-  std::deque<Eigen::MatrixXd> values;  // neighbouring elements share one matrix
+  std::deque<Eigen::MatrixXd> values;  // consecutive elements with equal extraction share one matrix
   std::vector<spline::LocalMatrix> local;
   const Eigen::MatrixXd* last = nullptr;
   for (const spline::Element& element : space.elements) {

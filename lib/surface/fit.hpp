@@ -15,8 +15,8 @@ namespace tanktread::surface {
 ///
 ///   sum_e area_e int_e |sum_A N_A P_A - f|^2 ds dt = min,
 ///
-/// with p + 2 Gauss points per direction and element. The matrix depends only on the space. The normal equations are solved iteratively to
-/// round-off.
+/// with the parametric area area_e of element e and p + 2 Gauss points per direction on elements of degree p. The matrix depends only on the space.
+/// The normal equations are solved iteratively to round-off.
 class LeastSquaresFit {
  public:
   explicit LeastSquaresFit(const spline::Space& space);

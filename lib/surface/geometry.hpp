@@ -33,7 +33,7 @@ double mean_curvature(const spline::Space& space, const Net& net, const spline::
 struct Measures {
   double area = 0, volume = 0;
   Vec3 centroid;        ///< centroid of the volume (P-42)
-  Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG about the centroid (6.1)
+  Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG (6.1), with y the position relative to the centroid
 };
 
 /// Returns whether two semi-axes of a body differ by at least 1e-6 R_C, where R_C is the radius of the sphere of equal volume. If they do not, every
@@ -51,12 +51,12 @@ struct PrincipalAxes {
 };
 PrincipalAxes principal_axes(const Measures& measures);
 
-/// Number of integrals per block: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23), with x relative to the mean of the control
-/// points.
+/// Number of integrals per block of elements: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) over the interior, with x
+/// relative to the mean of the control points.
 constexpr int n_moments = 11;
 
-// Smallest and largest value of a quantity on a closed surface: a coordinate, or the distance between a given point and the points of a plane
-// section. coordinate_range(), lowest() and section_distances() find the extrema of the spline surface itself by Newton's method.
+// Smallest and largest value of a quantity on a closed surface. The quantity is a coordinate, or the distance of the points of a plane section from a
+// given point. coordinate_range(), lowest() and section_distances() find the extrema of the spline surface itself by Newton's method.
 
 struct Range {
   double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();  ///< empty range
@@ -79,16 +79,16 @@ Vec3 lowest(const Patches& surface, int c);
 /// The range is empty if the plane misses the surface.
 Range section_distances(const Patches& surface, const Vec3& centre);
 
-/// Deformation measures of the time series (6.2): Taylor parameter D in the x1 x3 plane, by two definitions; inclination in degrees, from -90 (not
-/// included) to 90. The inclination is NaN if the two semi-axes in that plane are not distinct.
+/// Deformation measures of the time series (6.2): Taylor parameter D in the x1 x3 plane, by two definitions (see Geometry::deformation());
+/// inclination in degrees, from -90 (not included) to 90. The inclination is NaN if the two semi-axes in that plane are not distinct.
 struct Deformation {
   double taylor_inertia = 0, taylor_surface = 0, inclination = 0;
   Vec3 lengths;  ///< extents along x1, x2, x3
 };
 
-/// Computes measures of any number of control nets on one space; everything that depends only on the space is computed once. Every sum runs over the
-/// elements in one fixed order. The row of a control point in a gradient is therefore bitwise equal for all subsets of elements for which it is
-/// complete.
+/// Computes measures of any number of control nets on one space. Everything that depends only on the space is computed once. Every sum runs over the
+/// elements in one fixed order. A gradient may be summed over a subset of the elements. If the subset includes all elements on which a basis function
+/// is not zero, the row of the function's control point is bitwise equal to the row from all elements.
 class Geometry {
  public:
   explicit Geometry(const spline::Space& space);
@@ -98,19 +98,21 @@ class Geometry {
   /// Returns the volume V = 1/3 oint x.n dG (P-43), exactly. V is a homogeneous cubic function of the control points x, so V = x.(dV/dx)/3.
   double volume(const Net& net) const;
 
-  /// Computes the flux vector b_A = int N_A n dG = dV/dx_A (2.8), exactly, summed over the given elements in ascending order. The row of a control
-  /// point is complete if the given elements include all elements on which its function is not zero. `b` is overwritten, shape (N, 3).
+  /// Computes the flux vector b_A = dV/dx_A, the integral of N_A n over the surface (2.8), exactly, summed over the given elements in ascending
+  /// order. The row of control point A is complete if the given elements include all elements on which N_A is not zero. `b` is overwritten, shape (N,
+  /// 3).
   void volume_gradient(const Net& net, std::span<const int> elements, Net& b) const;
   Net volume_gradient(const Net& net) const;
 
-  /// Adds to b the derivative of int g.x dV with respect to the control points, int N_A (g.x) n dG, exactly, summed over the given elements. The row
-  /// of a control point is complete if the given elements include all elements on which its function is not zero. x is relative to `origin`.
+  /// Adds to b the derivative of the volume integral of g.x with respect to the control points, which is the surface integral of N_A (g.x) n,
+  /// exactly, summed over the given elements. x is relative to `origin`. The row of control point A is complete if the given elements include all
+  /// elements on which N_A is not zero.
   void add_moment_gradient(const Net& net, const Vec3& g, const Vec3& origin, std::span<const int> elements, Net& b) const;
 
   Measures measures(const Net& net) const;
 
-  /// Returns the moments of all blocks of elements, one block after the other. They are computed for the given blocks and zero for the other blocks.
-  /// measures() adds them up.
+  /// Returns the n_moments integrals of each block of elements, one block after the other. They are computed for the given blocks and zero for the
+  /// other blocks. measures() adds them up.
   std::vector<double> block_moments(const Net& net, std::span<const int> blocks) const;
   static Measures measures(const Net& net, std::span<const double> of_blocks);
 

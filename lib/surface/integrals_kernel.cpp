@@ -24,8 +24,8 @@ struct Table {
   }
 };
 
-/// Calls use(q_s, q_t, x, a1, a2) at every node of the tensor rule, with the position x and the tangents a1, a2 as three SIMD registers each, one
-/// per component. Sums over s first, then over t.
+/// Calls use(q_s, q_t, x, a1, a2) at every node of the tensor rule, with the position x and the tangents a1, a2 as three SIMD registers each, one per
+/// component. Bernstein expansions are summed along s first, then along t. If with_place is false, x is 0.
 template <int p, int n, bool with_place, class Use>
 inline void each_node(const Table<p, n>& table, const Lanes& points_of_lanes, Use use) {
   const auto* points = reinterpret_cast<const Register*>(points_of_lanes.value);
@@ -67,7 +67,7 @@ inline void store(const Register& from, double (&to)[most_lanes]) {
   for (int l = 0; l < lanes; ++l) to[l] = from[l];
 }
 
-/// Computes the solid harmonics of degree three at most.
+/// Computes the 16 solid harmonics h of degree 0 to 3 at the position `at`.
 inline void harmonics(const Register (&at)[3], Register (&h)[n_harmonics]) {
   const Register x = at[0], y = at[1], z = at[2], xx = x * x, yy = y * y, zz = z * z;
   const Register all[n_harmonics] = {Register{} + 1.,
@@ -99,7 +99,7 @@ struct Of {
   static void volume_gradient(const Lanes& points, Lanes& gradient) { normal_integrals<n, false>(points, nullptr, gradient); }
   static void moment_gradient(const Lanes& points, const double* g, Lanes& gradient) { normal_integrals<n_transport, true>(points, g, gradient); }
 
-  /// Computes int B_b n dG, or int B_b (g.x) n dG with the vector g if with_place is true.
+  /// Computes the integral of B_b n over each element for each Bernstein polynomial B_b, or if with_place is true, of B_b (g.x) n with the vector g.
   template <int n, bool with_place>
   static void normal_integrals(const Lanes& points, const double* g, Lanes& gradient) {
     static const Table<p, n> table;

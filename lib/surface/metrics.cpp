@@ -114,8 +114,8 @@ bool on_pole(const Lattice& lattice, int vertex) {
   return height == 0 || height == lattice.height(lattice.rows);
 }
 
-/// Returns whether a mesh line cannot be continued along a ray, because it arrives at a pole, where edges have zero length, or at the border of the
-/// lattice, which exists only on meshes with poles (polar_lattice).
+/// Returns whether a mesh line cannot be continued along a ray. This is so at a pole, where edges have zero length, and at the border of the lattice,
+/// which exists only on meshes with poles (polar_lattice).
 bool ends(const Lattice& lattice, Ray ray) { return lattice.ends(ray.vertex, ray.slot) || lattice.length(ray.vertex, ray.slot, 1) == 0; }
 
 /// Evaluates the unstressed and the current surface, the load and the fields at lattice vertices, each vertex only once.
@@ -254,8 +254,8 @@ Resolution mean(const Resolution& a, const Resolution& b) {
   return {(a.length + b.length) / 2, (a.errors + b.errors) * 0.5, {}};
 }
 
-/// Returns the element of twice the width (or height) of r that contains the mesh element r and results from repeated bisection of the initial mesh.
-/// Returns r if there is none.
+/// Returns the rectangle that contains the mesh element r, has twice its width (twice its height if `in_height`) and results from repeated bisection
+/// of the initial mesh. Returns r if there is no such rectangle.
 spline::Rectangle doubled(const Lattice& lattice, const spline::Rectangle& r, bool in_height) {
   spline::Rectangle out = r;
   int &at = in_height ? out.y : out.x, &size = in_height ? out.height : out.width;

@@ -25,7 +25,7 @@ struct ElementMetrics {
   double aspect_ratio(int alpha) const { return along[alpha].length / along[1 - alpha].length; }
 };
 
-/// A field on the surface as a function of a site (element and local coordinates). If it is empty, its variation is 0.
+/// A field on the surface as a function of a site (element and local coordinates). The variation of an empty function is 0.
 using FieldAt = std::function<Vec3(const spline::Site&)>;
 using FieldsAt = std::function<Eigen::VectorXd(const spline::Site&)>;
 
@@ -67,7 +67,7 @@ struct Errors {
   Errors operator*(double factor) const { return {surface * factor, load * factor, fields * factor}; }
 };
 struct Resolution {
-  double length = 0;  ///< mean length of the edges
+  double length = 0;  ///< mean length of the element's edges along the direction
   Errors errors;
   Errors merged;  ///< errors of the merged element of twice the length; estimated as 16 times `errors` if there is no such element
 };

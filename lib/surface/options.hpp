@@ -15,7 +15,7 @@ namespace tanktread::surface {
 struct MeshOptions {
   std::string mesh = "cube";  ///< cube, polar
 
-  std::optional<int> elements_per_side;             ///< n of the cube mesh
+  std::optional<int> elements_per_side;             ///< number n of elements along each edge of the cube
   /// rule at the eight points of the cube mesh where three elements meet: g1, catmull-clark
   std::optional<std::string> extraordinary_points;
 
@@ -47,7 +47,7 @@ struct MeshOptions {
 struct InitialShape {
   std::optional<Mat3> map;          ///< linear map applied to the resting shape about its centre
   std::optional<Vec3> stretch;      ///< factors of a linear map that stretches the resting shape along the particle's body-fixed axes
-  std::optional<std::string> file;  ///< path of a Bezier-extraction text with a surface on the particle's mesh
+  std::optional<std::string> file;  ///< path of a Bezier-extraction file with a surface on the particle's mesh
   std::optional<std::string> run;   ///< path of the results of another run, or of one of its snapshots
   std::optional<int> mode;          ///< index, from 1, of a mode in the spectrum of `run`; this mode is added to the shape
   double mode_amplitude = 0.01;     ///< largest displacement by the added mode, divided by the particle radius R_C
@@ -62,8 +62,8 @@ struct InitialShape {
   /// Throws UserError unless exactly one of `map`, `stretch`, `file` and `run` is given and valid.
   void check() const;
 
-  /// Returns the linear map of the initial shape as a matrix in space-fixed axes. It is `map`, or the map that stretches by the factors `stretch`
-  /// along the columns of `rotation`. Returns nothing if the shape is read from a file or run.
+  /// Returns the linear map from the resting shape to the initial shape as a matrix in space-fixed axes: `map`, or the map that stretches by the
+  /// factors `stretch` along the columns of `rotation`. Returns nothing if the shape is read from a file or run.
   std::optional<Mat3> affine(const Mat3& rotation) const;
 };
 
@@ -73,7 +73,7 @@ struct ParticleShape {
   std::optional<double> radius;     ///< radius of the sphere or cylinder, or of the disc of a red cell; not set for other shapes
   std::optional<std::string> axis;  ///< periodic direction along which a cylinder lies; not set for other shapes
   std::optional<Vec3> semi_axes;    ///< semi-axes of a spheroid or ellipsoid along its body-fixed x1, x2, x3; not set for other shapes
-  std::optional<std::string> file;  ///< path of the Bezier-extraction text with surface and spline space; set for the shape `file`
+  std::optional<std::string> file;  ///< path of the Bezier-extraction file with surface and spline space; set for the shape `file`
   Vec3 center = Vec3::Zero();       ///< centre of the resting shape
   Vec3 orientation = Vec3::Zero();  ///< rotation vector (axis times angle) in degrees from the space-fixed axes to the body-fixed axes
   std::optional<InitialShape> initial;  ///< initial shape; if not set, the resting shape
@@ -106,8 +106,8 @@ struct ParticleShape {
   double circumscribed_radius() const;
 };
 
-/// Options `Channel/*` of the deck that `Tube` does not have. A channel has the cross-section of a tube, scaled by factors that vary along a centre
-/// line. The centre line starts along x1 and may bend.
+/// Options `Channel/*` of the deck that have no counterpart in the section Tube. A channel has the cross-section of a tube, scaled by factors that
+/// vary along a centre line. The centre line starts along x1 and may bend.
 struct ChannelOptions {
   std::string profile = "constriction";  ///< straight, constriction, expansion, step, file
   /// d, largest deviation from 1 of the factor that scales the cross-section; not set for the profiles `straight` and `file`
@@ -126,10 +126,10 @@ struct ChannelOptions {
   void check() const;
 };
 
-/// Options `Tube/*` of the deck: a straight tube along x1 around the particle, with a constant cross-section in the plane x2 x3. Keys of other
-/// cross-sections are not set.
+/// Options `Tube/*` of the deck: a straight tube along x1 around the particle, with a constant cross-section in the plane x2 x3. Keys of
+/// cross-sections that are not selected are not set.
 struct TubeOptions {
-  bool present = false;  ///< true if the deck has a tube; otherwise all other members are ignored
+  bool present = false;  ///< true if the deck has a tube or channel; otherwise all other members are ignored
 
   std::string section = "circle";            ///< cross-section: circle, ellipse, rectangle, file
   std::optional<double> radius;              ///< radius of the circle; default 1
@@ -138,27 +138,29 @@ struct TubeOptions {
   std::optional<std::string> outline;        ///< path of the file with the points of the outline; set for the cross-section `file`
 
   std::optional<double> length;  ///< length of the wall; default: the larger of 2 pi R_T and the particle's length plus 4.6 R_T (R_T: tube radius)
-  double period = 0;  ///< period of the duct along x1, as given by the section Domain; 0 if the duct is not periodic
+  double period = 0;  ///< period of the duct along x1, from the section Domain or from `periodic_length`; 0 if the duct is not periodic
   /// period L along x1 of tube and particles; not set if the tube is not periodic, or if the section Domain gives the period
   std::optional<double> periodic_length;
   /// number M of periodic images; has no effect, because the kernels of a periodic tube contain all images
   std::optional<int> images;
   int azimuthal_elements = 24;   ///< number of elements around the wall
   static constexpr int default_axial_elements = 25;
-  std::optional<int> axial_elements;  ///< number of elements along the wall, or along one period; an open wall has three more rows of control points
+  std::optional<int> axial_elements;  ///< number of elements along the wall, or along one period; a wall with ends has three more rows of control
+                                      ///< points
   double grading = 4;            ///< density of elements along the tube near the particle, divided by the density far from it
 
   /// smallest allowed gap between particle and wall, divided by the particle radius R_C; a run stops if the gap is smaller
   double contact_gap = 0.02;
 
-  /// stress by which the wall repels a membrane if the gap is zero; not set if there is no repulsion
+  /// force per unstressed area by which the wall repels a membrane if the gap is zero; not set if there is no repulsion
   std::optional<double> repulsion;
   std::optional<double> repulsion_range;  ///< increase of the gap over which the repulsive stress decreases by a factor of e
 
   std::string flow = "exact";  ///< method for the duct flow: exact (closed form or series, if known for the cross-section), boundary elements
   int flow_elements = 96;      ///< number of boundary elements for the duct flow
 
-  /// options that only a channel has; if set, the deck has a section Channel, not Tube, with all keys of this structure and of `channel`
+  /// options that only a channel has; if set, the deck has a section Channel, not Tube. It has the keys of `channel` and the keys of this structure
+  /// except `length`, `periodic length`, `images`, `axial elements` and `grading`
   std::optional<ChannelOptions> channel;
   std::string list() const { return channel ? "Channel" : "Tube"; }
 
@@ -167,7 +169,7 @@ struct TubeOptions {
   /// Throws UserError if keys contradict each other or are missing.
   void check() const;
 
-  /// Returns whether the duct flow is known in closed form or as a series.
+  /// Returns whether the duct flow is computed in closed form or by a series; otherwise it is computed by boundary elements.
   bool exact_flow() const { return section != "file" && flow == "exact"; }
 };
 

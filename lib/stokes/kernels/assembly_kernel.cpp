@@ -7,7 +7,8 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-// Computes g[n (6 k + c) + l], with n = assembly_block, for each node k and target l: entry c = 11, 12, 13, 22, 23, 33 of G, or of T n if Double.
+// Computes the kernel g[n (6 k + c) + l] for each node k and target l, with n = assembly_block. c = 0 .. 5 numbers the entries 11, 12, 13, 22, 23, 33
+// of G times the weight of the node, or if Double, of T_ijm n_m with the weighted normal n of the node.
 template <class Real, bool Double>
 void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* __restrict g) {
   constexpr int n = assembly_block;
@@ -46,7 +47,8 @@ void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uin
   }
 }
 
-// Adds the moments for four basis functions and six kernel entries at a time. The 24 packs of sums stay in registers if the processor has enough.
+// Adds the sums of g times basis function over the nodes to `sums`, for assembly_tile = 4 basis functions and 6 kernel entries at a time. These 24
+// packs of sums stay in registers if the processor has enough of them.
 template <class Real>
 void add_products(const PanelNodes<Real>& panel, const Real* g, int first, Real* sums) {
   using Several = typename RegisterOf<Real>::Type;

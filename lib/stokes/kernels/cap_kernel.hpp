@@ -3,8 +3,9 @@
 
 namespace tanktread::stokes {
 
-/// Sums of rho.nu/r and nu/r over n nodes (y, z) of an outline. nu is the normal of a node times its quadrature weight, rho = (y - y0, z - z0) and
-/// r^2 = rho^2 + h^2. h is not 0.
+/// Sums of rho.nu/r (`flux`) and nu/r (`normal_y`, `normal_z`) over n nodes (y, z) of the outline of a cap. nu is the normal of a node times its
+/// quadrature weight, rho = (y - y0, z - z0) and r^2 = rho^2 + h^2. The target is at (y0, z0), at the distance h from the plane of the cap. h must
+/// not be 0.
 struct CapSums {
   double flux, normal_y, normal_z;
 };

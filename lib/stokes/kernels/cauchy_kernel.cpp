@@ -20,7 +20,7 @@ Complex operator/(const Complex& a, const Complex& b) {
   return {(a.re * b.re + a.im * b.im) * inverse, (a.im * b.re - a.re * b.im) * inverse};
 }
 
-/// Returns 1/(zeta_j - z); not a number or infinite if z is the node.
+/// Returns 1/(zeta_j - z), with zeta_j the position of node j. The result is NaN or infinite if z coincides with the node.
 inline Complex inverse(const CauchyNodes& nodes, int j, const Complex& z) {
   const Register x = nodes.x[j] - z.re, y = nodes.y[j] - z.im, square = 1 / (x * x + y * y);
   return {x * square, -y * square};

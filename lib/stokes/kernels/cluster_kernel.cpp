@@ -35,7 +35,7 @@ const Nodes& nodes(int n) {
   return all[n];
 }
 
-/// Evaluates the Lagrange polynomials at x without division.
+/// Evaluates the Lagrange polynomials of the n Chebyshev nodes at x, without division.
 void lagrange(int n, const Register& x, Register* value) {
   const Nodes& at = nodes(n);
   Register product = Register{} + 1;
@@ -50,7 +50,7 @@ void lagrange(int n, const Register& x, Register* value) {
   }
 }
 
-/// Lagrange polynomials of the three directions of a box at as many points as fit into a register.
+/// Lagrange polynomials along the three axes of a box, evaluated at as many points as fit into a register.
 struct Basis {
   Register along[3][most_chebyshev];
 

@@ -13,7 +13,7 @@ constexpr int packs = far_block / lanes;
 /// Number of packs of targets that are summed at the same time.
 constexpr int tile = packs < 4 ? packs : 4;
 
-/// Computes the sums for `tile` packs of targets; a pack fills one register.
+/// Computes stokeslet_sum() for `tile` packs of targets; a pack fills one register.
 void tile_sum(const Charges& forces, const double* target, double* u) {
   Register x0[tile], y0[tile], z0[tile], least[tile], ux[tile] = {}, uy[tile] = {}, uz[tile] = {};
   for (int p = 0; p < tile; ++p) {
@@ -41,7 +41,8 @@ void tile_sum(const Charges& forces, const double* target, double* u) {
   }
 }
 
-/// Computes, for each pack of targets with `in` input values each, the `out` sums over the nodes k of term(k, r, target, 1/|r|, sums).
+/// Computes `out` sums over all nodes for each target, one pack of targets at a time. A target has `in` input values, of which the first three are
+/// its position. term(k, r, target, 1/|r|, sums) adds the terms of node k to `sums`; r is the vector from the target to the node.
 template <int in, int out, class Nodes, class Term>
 void sums_of_packs(const Nodes& nodes, const double* target, double* value, const Term& term) {
   for (int p = 0; p < packs; ++p) {

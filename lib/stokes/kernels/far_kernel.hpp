@@ -9,7 +9,7 @@
 
 namespace tanktread::stokes {
 
-/// Points with up to six source strengths each. A point force has three: weight times density.
+/// Points with up to six source strengths q each. A point force has three: the components of the force density times the quadrature weight.
 struct Charges {
   int n = 0;
   const double *x = nullptr, *y = nullptr, *z = nullptr;
@@ -29,7 +29,8 @@ inline Charges charges(const std::vector<double> (&x)[3], std::span<const std::v
   return all;
 }
 
-/// Regularised stresslets: positions, velocities, and normals times the area of the node.
+/// Nodes of a regularised double layer (the velocity at the target is subtracted): positions x, velocities v, and normals n times the area of the
+/// node.
 struct Stresslets {
   int n = 0;
   const double *x = nullptr, *y = nullptr, *z = nullptr, *vx = nullptr, *vy = nullptr, *vz = nullptr;
@@ -52,7 +53,7 @@ enum class Precision { single, full };
 /// Number of targets that are processed together in one pass over the nodes.
 constexpr int far_block = 16;
 
-/// Returns the squared distance below which a node coincides with the target x0 up to the rounding of their coordinates.
+/// Returns the squared distance below which a node counts as coincident with the target (x0, y0, z0), because of the rounding of coordinates.
 template <class Number>
 Number coincident(const Number& x0, const Number& y0, const Number& z0) {
   return 0x1p-80 * (x0 * x0 + y0 * y0 + z0 * z0);
@@ -70,17 +71,17 @@ void far_sums(const Charges& forces, std::span<const Vec3> targets, double* u, P
 /// subtracts this sum from the far sum.
 void node_sum(const Charges& forces, const double* x0, double* u);
 
-/// Computes u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[far_block c + l] is coordinate c = 0, 1, 2 of target l, and for c = 3, 4, 5
-/// component c - 3 of the velocity v0 there.
+/// Compute the double layer (2.2), u_l = sum over the nodes k of (v_k - v0_l)_j T_ijm(x_k, x0_l) n_m, for far_block targets, any number of targets,
+/// or one target. In far_sum(), target[far_block c + l] is coordinate c = 0, 1, 2 of target l, and for c = 3, 4, 5 component c - 3 of the velocity v0
+/// there.
 void far_sum(const Stresslets& nodes, const double* target, double* u);
 void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision = Precision::full);
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
 
-/// Number of terms that are summed in single precision. The functions below compute stokeslet_sum() and far_sum() with terms in single precision.
-/// Position differences have a relative error of 1e-7 even for close points, because the part of a position that single precision drops is stored
-/// separately. The terms of `single_run` consecutive nodes are summed in single precision; this sum is then added to the double-precision sum. The
-/// error is 3e-8 of the sum of the magnitudes of the terms (root mean square; at most 3e-7). The result of one target does not depend on the other
-/// targets.
+/// Number of consecutive terms that are summed in single precision before their sum is added in double precision. The functions below compute
+/// stokeslet_sum() and far_sum() with terms in single precision. Position differences have a relative error of 1e-7 even for close points, because
+/// the part of a position that single precision drops is stored separately. The error is 3e-8 of the sum of the magnitudes of the terms (root mean
+/// square; at most 3e-7). The result of one target does not depend on the other targets.
 constexpr int single_run = 64;
 void stokeslet_sum_in_single(const Charges& forces, const double* target, double* u);
 void far_sum_in_single(const Stresslets& nodes, const double* target, double* u);
@@ -110,7 +111,7 @@ struct StressletKernel {  ///< kernel for TreeSum: maps symmetric stresslet stre
 };
 struct NormalStressKernel {  ///< kernel for TreeSum: maps normals n to T_ijk n_k, with the components ij ordered as in `stresses`
   static constexpr int in = 3, out = 6;
-  static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // double precision, as it is evaluated once per shape
+  static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // double precision, because it is evaluated only once per shape
 };
 
 }  // namespace tanktread::stokes

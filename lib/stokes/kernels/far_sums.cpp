@@ -9,8 +9,8 @@ namespace {
 /// Number of nodes, of 48 or 72 bytes each, that fit into the cache and are summed for all targets before the next nodes are loaded.
 constexpr int nodes_in_cache = 4096;
 
-/// Computes component c at target k, u[3 k + c]. Calls sum(nodes, block, sums) for blocks of nodes and targets, and adds the results for all nodes.
-/// Target k has the position given[0][k], followed by the vector given[1][k] if Vectors is 2.
+/// Computes u[3 k + c], component c of the sum over all nodes at target k. sum(nodes, targets, sums) computes the sums over one block of nodes at one
+/// block of targets. Target k has the position given[0][k], followed by the vector given[1][k] if Vectors is 2.
 template <std::size_t Vectors, class Nodes, class Sum>
 void sums_by_blocks(const Nodes& nodes, const std::array<std::span<const Vec3>, Vectors>& given, double* u, const Sum& sum) {
   const int n = static_cast<int>(given[0].size());

@@ -9,9 +9,9 @@ namespace INSTRUCTIONS {
 
 IdentitySums identity_sums(int n, const double* x, const double* y, const double* z, const double* nx, const double* ny, const double* nz,
                            const double* x0, const double* n0) {
-  double p[3] = {}, isotropic = 0, dyadic[6] = {}, mixed[9] = {};  // sums over the nodes. p: IdentitySums::pressure. The other members add up to
-                                                                   // IdentitySums::shear. `isotropic`: terms with I. `dyadic`: terms with r r.
-                                                                   // `mixed`: (G n0) N
+  double p[3] = {}, isotropic = 0, dyadic[6] = {}, mixed[9] = {};  // sums over the nodes. p: IdentitySums::pressure. The other three add up to
+                                                                   // IdentitySums::shear. `isotropic`: factor of the identity I. `dyadic`: terms with
+                                                                   // r r. `mixed`: terms (G n0) N
   for (int k = 0; k < n; ++k) {
     const double r[3] = {x[k] - x0[0], y[k] - x0[1], z[k] - x0[2]}, normal[3] = {nx[k], ny[k], nz[k]};
     const double square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], inverse = square > 0 ? 1 / std::sqrt(square) : 0;

@@ -126,8 +126,8 @@ struct Sums {
   }
 };
 
-/// Computes sums over the points for a block of targets. `add` adds the contribution of point k, at the position r relative to the mirrored target;
-/// z0 is the height of the target itself above the wall.
+/// Computes sums over the points for a block of targets, which are given by their mirror images. add(k, r, z0, u) adds the contribution of point k to
+/// u: r is the vector from the mirror image to the point, and z0 the height of the target itself above the wall.
 template <class Add>
 void image_sum(const Charges& points, const double* target, double* value, const Add& add) {
   for (int p = 0; p < packs; ++p) {

@@ -8,7 +8,7 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-// Bernstein: number of Bernstein polynomials n_b for common degrees, known at compile time; 0 if n_b is known at run time only.
+// `Bernstein`: number n_b of Bernstein polynomials, given at compile time for common degrees; 0 if n_b is given at run time by `n_bernstein`.
 template <int Bernstein>
 void extract_all(int n_bernstein, int functions, const int* points, const double* extraction, const double* net,
                  double* __restrict bezier) {

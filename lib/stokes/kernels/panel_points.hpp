@@ -7,8 +7,8 @@
 namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 
-/// Bernstein polynomials at one pack of points (as many as fit into a register) of a PointTable. Degree: polynomial degree for common degrees, known
-/// at compile time; 0 if it is known at run time only.
+/// Bernstein polynomials at one pack of points (as many as fit into a register) of a PointTable. `Degree`: polynomial degree, given at compile time
+/// for common degrees; 0 if the degree is read from the table at run time.
 template <int Degree>
 struct Points {
   const int n;
@@ -38,7 +38,7 @@ struct Points {
     }
   }
 
-  /// Computes r = x - x0 and n = x_,s x x_,t, and returns r.n.
+  /// Computes r = x - x0 and `normal`, the vector product of the tangents x_,s and x_,t, and returns r.normal. `x`: Bezier points of the panel.
   Register height(const double* x, int n_b, const double* x0, Register (&r)[3], Register (&normal)[3]) const {
     Register a[3], b[3];
     for (int c = 0; c < 3; ++c) {
@@ -50,7 +50,8 @@ struct Points {
   }
 };
 
-/// Computes moment[n_c b + c] = sum over the points k of g[n_c k + c] B_b, for all Bernstein polynomials B_b of a table and values g at its points.
+/// Computes moment[n_c b + c], the sum of g[n_c k + c] B_b(k) over all points k of a table, for its Bernstein polynomials B_b. g: n_c values per
+/// point.
 template <int Degree, int n_c>
 void project(const PointTable& table, const Register* g, double* moment) {
   const int n = Degree ? Degree + 1 : table.degree + 1;
@@ -66,7 +67,7 @@ void project(const PointTable& table, const Register* g, double* moment) {
     }
 }
 
-/// Calls `use` with the class Sums for this degree if it is common, and otherwise with the class for a degree known at run time.
+/// Calls `use` with an object of Sums<degree> for the common degrees 3 and 4, and otherwise of Sums<0>, which reads the degree at run time.
 template <template <int> class Sums, class Use>
 void with_degree(int degree, const Use& use) {
   if (degree == 3) return use(Sums<3>());

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int wide = RegisterOf<float>::lanes;
 
-/// Coordinates of n points relative to an origin, scaled by a power of two and split into a single-precision part and the remainder.
+/// Coordinates of points relative to an origin, scaled by a power of two and split into a single-precision part (`place`) and the remainder (`rest`).
 template <int size>
 struct Split {
   alignas(register_bytes) float place[3][size], rest[3][size];
@@ -24,12 +24,12 @@ struct Split {
   }
 };
 
-/// Coordinates of consecutive nodes and of a block of targets, relative to the first of these nodes. They are scaled by the distance of the farthest
-/// target, so that powers of distances stay within the range of single precision in any units.
+/// Coordinates of consecutive nodes and of a block of targets, relative to the first of these nodes. The coordinates are scaled by the distance of
+/// the farthest target, so that powers of distances stay within the range of single precision in any units.
 struct Sight {
   Split<single_run> nodes;
   Split<far_block> targets;
-  alignas(register_bytes) float least[far_block];  // squared distance below which a node coincides with a target up to rounding
+  alignas(register_bytes) float least[far_block];  // squared distance below which a node counts as coincident with a target
   double scale;
 
   Sight(int n, const double* const (&x)[3], const double* target) {
@@ -48,7 +48,7 @@ struct Sight {
     }
   }
 
-  /// Computes the vectors r from the targets of one register to node k.
+  /// Computes the vectors r to node k from the targets of one register, which starts with target `first`.
   void difference(int first, int k, FloatRegister (&r)[3]) const {
     for (int c = 0; c < 3; ++c) {
       const FloatRegister place = as_it_stands(nodes.place[c][k] - load(&targets.place[c][first]));
@@ -63,8 +63,8 @@ void narrow(int n, const double* from, double origin, float (&to)[size]) {
   for (int k = 0; k < n; ++k) to[k] = static_cast<float>(from[k] - origin);
 }
 
-/// Adds the sums over n nodes, times a factor, to u. term(first, k, r, inverse, sum) adds the term of node k to `sum`, for the targets of the
-/// register that starts with target `first`; `inverse` is 1/|r|.
+/// Adds the sums over n nodes to u, times `factor`, which undoes the scaling of the coordinates. term(first, k, r, inverse, sum) adds the term of
+/// node k to `sum`, for the targets of the register that starts with target `first`; `inverse` is 1/|r|.
 template <class Term>
 inline void add_terms(const Sight& sight, int n, double factor, double* u, const Term& term) {
   for (int first = 0; first < far_block; first += wide) {
@@ -85,8 +85,8 @@ void add_differences(const Stresslets& nodes, const double* target, double* u) {
   const Sight sight(nodes.n, {nodes.x, nodes.y, nodes.z}, target);
   float v[3][single_run], n[3][single_run], v0[3][far_block];
   const double *const velocity[3] = {nodes.vx, nodes.vy, nodes.vz}, *const normal[3] = {nodes.nx, nodes.ny, nodes.nz};
-  for (int c = 0; c < 3; ++c) {  // values relative to the first node's velocity: these differences are small for close nodes, so that their rounding
-                                 // is harmless
+  for (int c = 0; c < 3; ++c) {  // velocities relative to the velocity of the first node: these differences are small for close nodes, so that their
+                                 // rounding is harmless
     narrow(nodes.n, velocity[c], velocity[c][0], v[c]);
     narrow(far_block, target + far_block * (3 + c), velocity[c][0], v0[c]);
     narrow(nodes.n, normal[c], 0, n[c]);

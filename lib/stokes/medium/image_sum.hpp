@@ -29,12 +29,12 @@ class ImageSum {
   /// Sets the positions of the nodes.
   void place(const std::vector<double> (&node)[3]);
 
-  /// Sets all targets, and the indices of the targets whose sums are wanted. Returns true if the targets, the indices or the nodes set by place()
-  /// have changed since the last call.
+  /// Sets all targets, and the indices of the targets (`wanted`) at which sum() returns the sums. Returns true if the targets, the indices or the
+  /// nodes set by place() have changed since the last call.
   bool want(std::vector<Vec3> targets, std::vector<int> wanted);
 
-  /// Returns the sums at the selected targets, one row per target, in the order of their selection. Source strengths of the nodes have 3 components
-  /// (forces) or the 6 components of S in the order 11, 22, 33, 12, 13, 23.
+  /// Returns the sums at the targets selected by want(), one row per target, in the order of `wanted`. `carried`: source strengths of the nodes, with
+  /// 3 components (forces) or the 6 components of S in the order 11, 22, 33, 12, 13, 23.
   Net sum(std::span<const std::vector<double>> carried);
 
   /// Returns the contribution of the nodes first, first + 1, ... to the sum at one target. `carried`: source strengths of these nodes. The caller

@@ -19,7 +19,7 @@ using std::numbers::pi;
 
 double delta(int i, int j) { return i == j ? 1 : 0; }
 
-/// Reduces a lattice basis: adds multiples of the other vectors to each vector while that makes it shorter.
+/// Reduces a lattice basis: adds multiples of the other lattice vectors to each lattice vector as long as it becomes shorter.
 void reduce(Mat3& vectors, int n) {
   for (bool changed = true; changed;) {
     changed = false;
@@ -49,8 +49,8 @@ struct Smooth {
       for (int m = 0; m < 16; ++m) {
         phi += power / (2 * m + 1);
         first += power * 2 / (2 * m + 3);
-        second -= power * 4 / (2 * m + 5);  // `first`, `second`: term 0 of their power series is 0. This adds term m + 1 divided by x^2, where
-                                            // (m + 1)/(m + 1)! = 1/m!
+        second -= power * 4 / (2 * m + 5);  // term 0 of the power series `first` and `second` is 0. Adds their term m + 1 divided by x^2, in which
+                                            // 1/m! replaces (m + 1)/(m + 1)!
         power *= -square / (m + 1);
       }
       const double scale = 2 * xi / std::sqrt(pi);
@@ -66,7 +66,7 @@ struct Smooth {
   }
 };
 
-/// Multiplies an array by a matrix (n, m) along its first index, which has length m, and moves the first index to the end.
+/// Multiplies an array by a matrix, shape (n, m), along the first index of the array, which has length m. Moves this index to the end.
 template <class Number>
 void contract(const Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& by, std::vector<Number>& array) {
   using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
@@ -118,8 +118,8 @@ PeriodicKernel::PeriodicKernel(Kind kind, const PeriodicCell& cell, const Mat3& 
   for (int d = 0; d < cell.n(); ++d) nearest = std::min(nearest, near[static_cast<std::size_t>(d)] * cell.spacing(d));
   if (cell.n() == 2) {
     const double waves = digits * std::max(cell.vectors().col(0).norm(), cell.vectors().col(1).norm()) / (2 * pi);
-    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // sets the length of the third period. Modes with an in-plane wave number k != 0 decay like
-                                                         // |k| z e^{-|k| z} and do not reach across it
+    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // sets the length of the third period. Modes with an in-plane wave number k != 0 decay with
+                                                         // the distance z like |k| z e^{-|k| z} and do not reach across this length
   }
   xi_ = std::sqrt(digits) / nearest;
   longest_wave_number_ = 2 * xi_ * std::sqrt(digits);
@@ -210,7 +210,7 @@ void PeriodicKernel::add_free(const Vec3& r, double factor, double* values) cons
     for (int c = 0; c < 6; ++c) values[6 * a + c] += (c < 3 ? 1 : 2) * scale * r[a] * r[stresses[c][0]] * r[stresses[c][1]];
 }
 
-/// Adds all images along the single lattice vector h, with the direction e, except the near images. They are added in pairs at +n h and -n h, and
+/// Adds all images along the single lattice vector h, with the direction e, except the near images. Images are added in pairs at +n h and -n h, and
 /// (I + e e)/|n h| is subtracted from each Stokeslet (2.43). The first `direct` pairs are summed directly. The sum over the other pairs is replaced
 /// by an integral over the variable 1/n and the first term of the Euler-Maclaurin formula.
 void PeriodicKernel::add_row(const Vec3& r, double* values) const {

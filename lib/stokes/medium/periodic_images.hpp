@@ -12,8 +12,8 @@ namespace tanktread::stokes {
 /// the lattice vectors.
 class PeriodicCell {
  public:
-  /// `vectors`: the first n columns are linearly independent lattice vectors. `reference` fixes the constant of the Stokeslet with one period. It is
-  /// the distance from a row of unit forces at which the axial velocity changes sign (2.43). If it is 0, the constant is undefined.
+  /// `vectors`: the first n columns are linearly independent lattice vectors. `reference`: distance from a row of unit forces at which the axial
+  /// velocity changes sign (2.43). It fixes the constant up to which the Stokeslet with one period is defined. If it is 0, the constant is arbitrary.
   PeriodicCell(const Mat3& vectors, int n, double reference = 0);
 
   int n() const { return n_; }
@@ -21,7 +21,7 @@ class PeriodicCell {
   double volume() const { return volume_; }         ///< volume of the cell; its area if there are n = 2 lattice vectors, its length if n = 1
   double reference() const { return reference_; }
 
-  /// Returns the lattice coordinates of a position. In directions that do not repeat they are lengths.
+  /// Returns the lattice coordinates of a position. Along directions that are not periodic, the coordinates are lengths.
   Vec3 coordinates(const Vec3& x) const { return inverse_ * x; }
 
   /// Returns the lowest and highest lattice coordinates of the rows of x.
@@ -60,8 +60,9 @@ class PeriodicCell {
 /// The columns of H are the lattice vectors, and n has integer components. xi is just large enough that A is negligible for all images that are not
 /// near. A near image contributes A to the sum (2.25). If its G is subtracted, only A - G remains, which is smooth.
 ///
-/// With two periods, the sum is computed with a third period. It is so long that only the mode k = 0 reaches across it, and this mode is subtracted.
-/// With the coordinate z along the unit vector e normal to the two periods, the area S of the cell and the third period L3,
+/// With two periods, the sum is computed with a third period. The third period is so long that only the mode with the wave vector k = 0 reaches
+/// across it, and this mode is subtracted. With the coordinate z along the unit vector e normal to the two periods, the area S of the cell and the
+/// third period L3,
 ///
 ///   G = G^P - (4 pi/(S L3)) z^2 (I - e e),   p_i = p^P_i + (8 pi/(S L3)) z e_i                                                  (2.27)
 ///
@@ -83,8 +84,8 @@ class PeriodicKernel {
   /// components with j != k are doubled.
   int components() const { return kind_ == Kind::stokeslet ? 6 : 18; }
 
-  /// Returns the sum at all positions s = (s[0][k_0], s[1][k_1], s[2][k_2]) of a grid. Component c is at index ((c n_0 + k_0) n_1 + k_1) n_2 + k_2,
-  /// where n_d is the size of s[d].
+  /// Returns the kernel sum at all positions (s[0][k_0], s[1][k_1], s[2][k_2]) of a grid. Component c is at index ((c n_0 + k_0) n_1 + k_1) n_2 +
+  /// k_2, where n_d is the size of s[d].
   std::vector<double> values(const std::array<std::vector<double>, 3>& s) const;
 
  private:

@@ -36,7 +36,7 @@ std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const
 }
 
 /// Returns the tolerance, reduced for the stresslet. The stresslet is singular by one order more than the Stokeslet. On cubic, tilted and oblong
-/// cells, its error was up to three times as large as the error of the Stokeslet.
+/// cells, the error of the stresslet sum was up to three times as large as the error of the Stokeslet sum.
 double sharper(double tolerance, PeriodicKernel::Kind kind) { return kind == PeriodicKernel::Kind::stresslet ? tolerance / 5 : tolerance; }
 
 /// Returns the number of Chebyshev nodes on [-1, 1] for interpolation to this tolerance of a function whose nearest poles are at the imaginary
@@ -117,7 +117,7 @@ struct Differences {
   std::array<int, 3> order;
 };
 
-/// Returns the velocity at node a due to source strengths with In components at each node.
+/// Returns the velocity at node a due to the source strengths `carried` of all nodes, with In components per node.
 template <int In>
 Eigen::Array4d product(const Differences& of, const double* table, int a, const double* carried) {
   const auto& [n0, n1, n2] = of.order;

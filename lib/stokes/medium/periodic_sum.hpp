@@ -15,8 +15,8 @@ namespace tanktread::stokes {
 
 /// Splits the kernel of a lattice into near images, which the caller treats like other sources, and a smooth sum over all other images
 /// (PeriodicKernel). Each source and each target is first moved into the cell. The smooth sum is interpolated at both sources and targets in lattice
-/// coordinates, as between clusters (TreeSum). With p nodes in one direction its error is of the order rho^(-p), rho = y + sqrt(1 + y^2), as in
-/// (2.9). Here y is the distance to the nearest image that is not near, divided by half the length of the cell in this direction.
+/// coordinates, as between clusters (TreeSum). With p nodes in one direction, the interpolation error is of the order rho^(-p), rho = y + sqrt(1 +
+/// y^2), as in (2.9). Here y is the distance to the nearest image that is not near, divided by half the length of the cell in this direction.
 class PeriodicSum {
  public:
   /// `tolerance`: error of the sum relative to the kernel at a distance of half a cell. `extent`: lowest and highest lattice coordinates of all
@@ -24,7 +24,7 @@ class PeriodicSum {
   PeriodicSum(PeriodicKernel::Kind kind, const PeriodicCell& cell, double tolerance, const std::array<Vec3, 2>& extent);
 
   const PeriodicCell& cell() const { return cell_; }
-  const std::vector<Vec3>& images() const { return images_; }  ///< lattice vectors H n of the near images, including 0
+  const std::vector<Vec3>& images() const { return images_; }  ///< lattice vectors of the near images, including 0
 
   /// Returns whether a PeriodicSum constructed for `extent` would be equal to this one.
   bool suits(const std::array<Vec3, 2>& extent) const;
@@ -33,8 +33,8 @@ class PeriodicSum {
   /// their distance is below 2^-40 times the distance of the target from the origin. Near the origin, rounding errors would exceed this threshold.
   Vec3 wrapped(const Vec3& x) const { return x - cell_.shift(x) + away_; }
 
-  /// Adds the smooth sum over all images that are not near, at targets in the cell: u[3 k + c]. Sources are positions in the cell, with the 3
-  /// components of a force or the 6 components of a stresslet in the order of StressletKernel.
+  /// Adds the smooth sum over all images that are not near to u[3 k + c], component c at target k. Sources and targets are positions in the cell. A
+  /// source has the 3 components of a force or the 6 components of a stresslet in the order of StressletKernel.
   void add_rest(const Charges& sources, std::span<const Vec3> targets, double* u);
 
   /// Returns the Lagrange polynomials of the interpolation nodes at positions in the cell, shape (number of positions, n_nodes).
@@ -56,11 +56,11 @@ class PeriodicSum {
   std::array<Vec3, 2> across_;  // lowest and highest coordinates of the interpolation box, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
-  std::array<std::vector<int>, 3> difference_;  // for each direction, entry n a + b (n: number of nodes): index of the difference of nodes a and b in
-                                                // the list of distinct differences
+  std::array<std::vector<int>, 3> difference_;  // for each direction with n nodes, entry n a + b: index of the difference of nodes a and b in the
+                                                // list of distinct differences
   std::array<std::size_t, 3> differences_;      // number of distinct differences of two nodes in each direction
-  std::vector<double> table_;  // entries m ((n_1 i + j) n_2 + k) + c, with m = components_: component c of the smooth kernel sum for the node
-                               // difference (i, j, k)
+  std::vector<double> table_;  // entry m ((n_1 i + j) n_2 + k) + c, with m = components_ and n_d = differences_[d]: component c of the smooth kernel
+                               // sum for the node difference (i, j, k)
   int components_ = 6;
   std::vector<Pack> scratch_;
 };

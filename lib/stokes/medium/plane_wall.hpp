@@ -9,7 +9,7 @@
 
 namespace tanktread::stokes {
 
-/// Wall through `point` with `normal` pointing into the fluid. It may move tangentially at a constant velocity.
+/// Wall through `point` with `normal` pointing into the fluid. The wall may move tangentially at a constant velocity, which is not stored here.
 class PlaneWall {
  public:
   PlaneWall(const Vec3& point, const Vec3& normal) : point_(point), normal_(normal.normalized()) {

@@ -9,7 +9,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// A cluster counts as flat if its smallest principal variance divided by its second largest is below this ratio.
+/// A cluster counts as flat if the smallest principal variance of its points divided by the middle one is below this ratio.
 constexpr double flat = 0.1;
 
 /// Returns the number of Chebyshev nodes along the longest axis of a box. With more nodes, clusters are usable at smaller distances, but each cluster
@@ -26,7 +26,7 @@ int chebyshev_order(double tolerance, double z) {
 /// which of two mirrored positions comes first. Clusters would then depend on the number of ranks, and sums would change by a part of the tolerance.
 constexpr int compared_bits = 33;
 
-/// Two extents count as equal if their ratio is above this value, so that rounding errors do not decide about the clusters either.
+/// Two lengths of a cluster count as equal if their ratio is above this value. Otherwise rounding errors would decide along which axis it is split.
 constexpr double equal_extents = 1 - 1e-6;
 
 /// Returns the axes rotated as little as possible so that one of them is the normal.

@@ -12,10 +12,10 @@ namespace tanktread::stokes {
 
 /// One box of a tree.
 struct Cluster : ChebyshevBox {
-  int first = 0, last = 0;       ///< range of its points, in the order of the tree
+  int first = 0, last = 0;       ///< range of the box's points, in the order of the tree
   int child[2] = {-1, -1};       ///< indices of the children; -1 for a leaf
-  int first_node = 0;            ///< index of its first Chebyshev node among the nodes of all clusters
-  int first_block = 0;           ///< index of its first block of nodes among the blocks of all clusters; a block has far_block nodes
+  int first_node = 0;            ///< index of the box's first Chebyshev node among the nodes of all clusters
+  int first_block = 0;           ///< index of the box's first block of nodes among the blocks of all clusters; a block has far_block nodes
   double radius = 0, reach = 0;  ///< radius: half the box's diagonal. reach: distance from the centre beyond which interpolation at the Chebyshev
                                  ///< nodes is accurate
   bool bare = false;             ///< true: the box has no Chebyshev nodes, because they would cost no less than its points; its points are
@@ -38,13 +38,13 @@ struct Cluster : ChebyshevBox {
 /// `reach`.
 class Clusters {
  public:
-  /// `leaf`: largest number of points in a leaf; only a cluster that cannot be split has more. `quantum`: a cluster is split so that the number of
-  /// groups in its first half is a multiple of `quantum`. The cost of n points or nodes is assumed to be proportional to n rounded up to a multiple
-  /// of `quantum`.
+  /// `leaf`: largest number of points in a leaf, except in a cluster that cannot be split. `quantum`: a cluster is split so that the number of groups
+  /// in its first half is a multiple of `quantum`. The cost of n points or nodes is assumed to be proportional to n rounded up to a multiple of
+  /// `quantum`.
   Clusters(double tolerance, int leaf, int quantum) : tolerance_(tolerance), leaf_(leaf), quantum_(quantum) {}
 
-  /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only, and errors of rounding
-  /// hardly ever change it.
+  /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only, and rounding errors hardly
+  /// ever change it.
   void place(const std::vector<double> (&x)[3], std::span<const int> starts);
 
   const std::vector<Cluster>& all() const { return clusters_; }  ///< parents before their children
@@ -57,7 +57,7 @@ class Clusters {
  private:
   struct Group {
     Vec3 centre;
-    double along;  // coordinate of `centre` along the axis along which the cluster of the group is split
+    double along;  // coordinate of `centre` on the axis along which the group's cluster is split
     int number;
   };
   double rounded(double x) const { return step_ * std::round(x / step_); }

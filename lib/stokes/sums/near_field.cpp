@@ -12,9 +12,9 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Returns the error permitted for one panel, relative to the integral over the whole surface. It is smaller than `tolerance`, because the errors of
-/// several panels add up, and because the error estimate rho^(-2 n) (2.9) omits factors that grow with the order. Factor and exponent were chosen
-/// from errors measured on deformed surfaces (tests/verify/layers.cpp).
+/// Returns the error permitted for one panel, relative to the integral over the whole surface. The permitted error is smaller than `tolerance`,
+/// because the errors of several panels add up, and because the error estimate rho^(-2 n) (2.9) omits factors that grow with the order. Factor and
+/// exponent were chosen from errors measured on deformed surfaces (tests/verify/layers.cpp).
 double share(double tolerance) { return 0.3 * std::pow(tolerance, 1.125); }
 
 Vec3 point(const double* bezier, int n_b, int b) { return {bezier[b], bezier[n_b + b], bezier[2 * n_b + b]}; }
@@ -48,7 +48,7 @@ int connected(const Panels& panels, std::vector<int>& surface) {
   return n;
 }
 
-/// Returns a conservative estimate of the distance from the panel beyond which `order` points per direction suffice for any target.
+/// Returns a conservative estimate of the distance from a panel beyond which `order` points per direction reach the accuracy `demand` for any target.
 double clearance(double area, double longest, const quadrature::Demand& demand, int order) {
   double d = longest;
   for (int k = 0; k < 2; ++k) {
@@ -84,7 +84,7 @@ void NearField::view(int e) {
   view.radius = std::sqrt(square);
   view.normal = u.cross(v).normalized();
   view.bulge = (point(points, t.n_bernstein, 0) - centre + u + v).norm();  // distance of each corner from the corner of the planar approximation
-  for (int j = 1; j < t.degree; ++j)  // includes all inner Bezier points, so that the result does not depend on the directions of s and t
+  for (int j = 1; j < t.degree; ++j)  // all inner Bezier points, so that the result does not depend on the directions of s and t
     for (int i = 1; i < t.degree; ++i)
       view.bulge = std::max(view.bulge, std::abs((point(points, t.n_bernstein, j * (t.degree + 1) + i) - centre).dot(view.normal)));
 }
@@ -127,9 +127,9 @@ bool NearField::on_same_surface(int e, std::span<const SelfPair> own) const {
   return !own.empty() && surface_[own.front().panel] == surface_[e];
 }
 
-/// A target off the surface may be on the side to which a panel bulges. Its distance from the planar approximation of the panel is therefore reduced
-/// by the height of the bulge. This costs one to three Gauss points per direction (tests/verify/layer_shapes.cpp). A target on the same surface needs
-/// no such reduction.
+/// Returns the distance of a target from the planar approximation of a panel, and the parameters of the Bernstein ellipses. If `across` is true
+/// (target not on the panel's surface), the distance is reduced by the height of the panel's bulge, because the panel may bulge towards the target.
+/// This costs one to three Gauss points per direction (tests/verify/layer_shapes.cpp). A target on the same surface needs no such reduction.
 quadrature::Sight NearField::sight(const View& view, const Vec3& target, bool across) {
   if (!across) return quadrature::sight(view.flat, target);
   const double height = (target - view.flat.centre).dot(view.normal);

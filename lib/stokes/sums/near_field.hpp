@@ -18,17 +18,19 @@ namespace tanktread::stokes {
 /// Selects near-singular quadrature rules that reach a tolerance. The rules depend on the current shape only, not on earlier shapes.
 class NearField {
  public:
-  /// `tolerance`: permitted error divided by int dG / r over the closed surface that contains the panel. This integral is estimated as sqrt(4 pi A),
-  /// where A is the area of this surface. `steep`: true for the double layer. Its integrand grows like 1 / r^2 at targets that are not on the closed
-  /// surface of the panel. At targets on this surface it grows like 1 / r, because the density at the target is subtracted. `off_surface`: true if
-  /// there are targets that are not on any surface.
+  /// `tolerance`: permitted error divided by the integral of 1/r over the closed surface that contains the panel, with r the distance from the
+  /// target. This integral is estimated as sqrt(4 pi A), where A is the area of the surface. `smooth_order`: see quadrature::Demand. `steep`: true
+  /// for the double layer. The integrand of the double layer grows like 1 / r^2 at targets that are not on the closed surface of the panel. At
+  /// targets on this surface it grows like 1 / r, because the density at the target is subtracted. `off_surface`: true if there are targets that are
+  /// not on any surface.
   NearField(const Panels& panels, double tolerance, int smooth_order, bool steep, bool off_surface);
 
-  /// Sets the shape from the Bezier points of the panels that are not symmetry images. The points must outlive the calls below. If a panel is an
-  /// image, rule() also needs the Bezier points of this panel.
+  /// Sets the shape from the Bezier points of the panels that are not symmetry images. The array must remain valid during later calls of list() and
+  /// rule(). If a panel is an image, rule() also needs the Bezier points of this panel.
   void update(const std::vector<double>& bezier, const PanelImages& images);
 
-  /// Includes periodic images of the panels. A periodic image of a panel is treated as part of a different surface. Must be called before update().
+  /// Includes images of the panels, on a lattice or in a wall. An image of a panel is treated as part of a different surface. Must be called before
+  /// update().
   void repeat() { across_gaps_ = true; }
 
   /// Returns the index of the closed surface that contains a panel.
@@ -64,7 +66,7 @@ class NearField {
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;
   std::vector<double> centre_[3], reach_;  ///< centre_: centre of each panel. reach_: squared distance from the centre beyond which the far rule
-                                           ///< suffices
+                                           ///< reaches the tolerance
   Vicinity vicinity_;
   std::vector<int> suspects_;
   std::map<std::pair<int, int>, PointTable> whole_;  ///< tensor Gauss rules on the whole panel, by (degree, order)

@@ -10,19 +10,20 @@
 
 namespace tanktread::stokes {
 
-/// Bernstein polynomials of one degree at the q x q Gauss nodes of the unit square: value[n_nodes b + k], k = q j + i, and derivatives.
+/// Bernstein polynomials of one degree and their derivatives at the q x q Gauss nodes of the unit square, q = `order`: value[n_nodes b + k] is
+/// polynomial b at node k = q j + i, which is node i along s and node j along t.
 struct NodeTable {
   int degree = 3, order = 4, n_bernstein = 16, n_nodes = 16;
   std::vector<double> value, along_s, along_t, weights;
 };
 
-/// One Bezier element. Component c of its Bezier point b = (p + 1) j + i is stored at index first_bezier + n_bernstein c + b.
+/// One Bezier element of degree p. Component c of its Bezier point b = (p + 1) j + i is stored at index first_bezier + n_bernstein c + b.
 struct Panel {
   const NodeTable* table = nullptr;
-  int functions = 0;                 ///< number m of basis functions
-  std::size_t first_point = 0;       ///< index of the first of its m control-point indices
+  int functions = 0;                 ///< number m of basis functions of the panel
+  std::size_t first_point = 0;       ///< position of the first of the panel's m control-point indices in a list for all panels
   std::size_t first_extraction = 0;  ///< index of the first entry of the element's extraction matrix, shape (m, n_bernstein), stored row by row
-  std::size_t first_bezier = 0;      ///< index of the first of its 3 n_bernstein Bezier coordinates
+  std::size_t first_bezier = 0;      ///< index of the first of the panel's 3 n_bernstein Bezier coordinates
   int first_node = 0;                ///< index of the first far node of the panel among the far nodes of all panels
 };
 
@@ -60,7 +61,7 @@ struct PanelImages {
   bool own(int e) const { return image[e] < 0; }
 };
 
-/// Computes the values of a field from its Bezier points at all far nodes, one array per component.
+/// Computes the values of a field at all far nodes from the field's Bezier points, one array per component.
 void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
 
 /// Computes Gauss weight times x_,s x x_,t at all far nodes: the outward normal times the area that the node represents.

@@ -11,19 +11,21 @@ namespace tanktread::stokes {
 namespace {
 
 /// Returns the number of radial points of a polar rule for a tolerance. Few points suffice, because the integrand is smooth along a ray. The number
-/// was chosen from errors measured on cube meshes with n >= 3 (tests/verify/layers.cpp).
+/// was chosen from errors measured on cube meshes with at least 3 elements per side (tests/verify/layers.cpp).
 int radial_points(double tolerance) { return std::max(4, static_cast<int>(std::ceil(-std::log10(tolerance))) - 1); }
 
-/// Returns the permitted distance of a corner from the position predicted by the tangents, relative to the distance of the corner from the target. If
-/// the distance is larger, more quadrature points are used. The permitted distance decreases with the tolerance. The constants were chosen from
-/// errors on spheroids of aspect ratio 10 (tests/verify/layer_shapes.cpp), whose tip radius is as small as their elements.
+/// Returns the permitted distance of an element's corner from the position that the tangents at the target predict, divided by the distance of the
+/// corner from the target. If the corner is farther from this position, more quadrature points are used. The permitted distance decreases with the
+/// tolerance. The constants were chosen from errors on spheroids of aspect ratio 10 (tests/verify/layer_shapes.cpp), whose tip radius is as small as
+/// their elements.
 double distortion_allowed(double tolerance) { return 0.5 * std::min(1., std::pow(1e4 * tolerance, 1. / 6)); }
 
-/// Maximum number of cached rules, and of their points (136 bytes each). The limit is needed because metrics change in a long run, and a strongly
-/// deformed shape may need rules of 25,000 points.
+/// Maximum number of cached rules (most_tables), and of the points of all cached rules (most_points, 136 bytes each). The limit is needed because
+/// metrics change in a long run, and a strongly deformed shape may need rules of 25,000 points.
 constexpr std::size_t most_tables = 1000, most_points = 1'000'000;
 
-/// Returns sum B_i(s) B_j(t) p_ij for the Bezier points p_ij. At corners and on sides of a panel most of the polynomials vanish.
+/// Returns sum_ij B_i(s) B_j(t) p_ij for the Bezier points p_ij. Terms with B_i = 0 or B_j = 0 are skipped: at corners and on sides of a panel these
+/// are most of them.
 Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
   Vec3 sum = Vec3::Zero();
   for (int j = 0; j < n; ++j) {

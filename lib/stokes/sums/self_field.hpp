@@ -15,15 +15,15 @@
 
 namespace tanktread::stokes {
 
-/// Points of spline surfaces, each given on every element whose closure contains it. Values are evaluated on the first of these elements.
+/// Points of spline surfaces, each given on every element whose closure contains the point. Values are evaluated on the first of these elements.
 using Sites = std::vector<std::vector<spline::Site>>;
 
-/// A site on one of the panels that contain it.
+/// A pair of a site and one of the panels that contain the site.
 struct SelfPair {
   int panel = 0;
   quadrature::Shear shear;         ///< metric of the panel at the site, rounded to a bin; the rule was constructed for this bin
-  quadrature::PolarOrders orders;  ///< raised orders if the panel is distorted, otherwise 0. If only the angular orders are 0, the rule is a tensor
-                                   ///< Gauss rule of the radial order
+  quadrature::PolarOrders orders;  ///< higher orders of the rule if the panel is distorted, otherwise 0. If only the angular orders are 0, the rule
+                                   ///< is a tensor Gauss rule of the radial order
   const PointTable* table = nullptr;
   std::vector<Pack> weights;      ///< weights of the rule times the area element of the unstressed surface
   std::vector<double> bernstein;  ///< Bernstein polynomials and their derivatives at the site: B_i(s), B_j(t), B_i'(s), B_j'(t)
@@ -39,13 +39,15 @@ class SelfField {
   /// Returns the pairs of site i and a panel that contains it, one pair per panel.
   std::span<SelfPair> operator[](int i) { return {&pairs_[first_[i]], first_[i + 1] - first_[i]}; }
 
-  /// Returns the singular quadrature rule of this site and panel for the current metric at the site. If the rule changes, discards stored weights.
+  /// Returns the singular quadrature rule of a site and panel for the current metric at the site. If the rule changes, discards the stored weights of
+  /// the pair.
   const PointTable& rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier);
 
   /// Discards all stored weights.
   void forget_weights();
 
-  /// Returns the value at site i of the field with the Bezier points `bezier`, and its derivatives with respect to s and t, on its first panel.
+  /// value() returns the value at site i of the field with the Bezier points `bezier`, and tangents() its derivatives with respect to s and t, both
+  /// on the first panel of the site.
   Vec3 value(int i, const Panels& panels, const std::vector<double>& bezier) const;
   std::pair<Vec3, Vec3> tangents(int i, const Panels& panels, const std::vector<double>& bezier) const;
 

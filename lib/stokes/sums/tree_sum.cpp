@@ -7,11 +7,13 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Maximum number of points of a leaf. On deformed spheres, half or twice as many points per leaf take 10 % more time.
+/// Maximum number of points in a leaf of the source tree and of the target tree. On deformed spheres, half or twice as many points per leaf take 10 %
+/// more time.
 constexpr int source_leaf = 256, target_leaf = 2 * far_block;
 
-/// Factor on the tolerance of clusters. Their error is proportional to the sum of |f| / r. Loads on a membrane are in equilibrium, so that velocities
-/// are an order of magnitude smaller than this sum. With this factor, the largest error on capsules in shear flow is a third of the tolerance.
+/// Factor on the tolerance of clusters. The error of clusters is proportional to the sum of |f| / r over the sources, with the force f and the
+/// distance r. Loads on a membrane are in equilibrium, so that velocities are an order of magnitude smaller than this sum. With this factor, the
+/// largest error on capsules in shear flow is a third of the tolerance.
 constexpr double allowance = 0.3;
 
 int blocks_of(int n) { return (n + far_block - 1) / far_block; }
@@ -97,8 +99,8 @@ void TreeSum::want(std::span<const int> rows) {
   ask();
 }
 
-/// Keeps only the pairs of clusters that belong to the part of the sum set by share(). Each part has an equal share of the work. It contains adjacent
-/// source clusters, so that only few parts compute the strengths of a given cluster.
+/// Keeps only the pairs of clusters that belong to the part of the sum set by share(). Each part has an equal share of the work. A part contains
+/// adjacent source clusters, so that only few parts compute the strengths of a given cluster.
 void TreeSum::take_part() {
   std::ranges::stable_sort(pairs_, {}, &Pair::source);
   long long before = 0, all = 0;
@@ -178,8 +180,8 @@ void TreeSum::mark(std::span<const int> wanted) {
   }
 }
 
-/// Divides `target` and `source` recursively into pairs of clusters, and stores the pairs that are far apart or cannot be divided further. The
-/// sources are displaced by the lattice vector images_[image].
+/// Divides the pair of clusters `target` and `source` recursively, and stores the pairs that are far apart or cannot be divided further. The sources
+/// are displaced by the lattice vector images_[image].
 void TreeSum::meet(const Cluster& target, const Cluster& source, int image) {
   if (!wanted_[&target - targets_.data()]) return;
   const Vec3& beyond = images_[static_cast<std::size_t>(image)];

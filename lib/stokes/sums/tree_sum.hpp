@@ -1,5 +1,5 @@
 #pragma once
-// The far-field sum in a time proportional to the number of nodes (treecode).
+// Far-field sums by a treecode, in a time proportional to the number of nodes.
 
 #include <array>
 #include <span>
@@ -22,9 +22,9 @@ class TreeSum {
   /// `tolerance`: error of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
   explicit TreeSum(double tolerance, Precision precision = Precision::full);
 
-  /// Sets the positions x of the nodes, and all n targets. The nodes starts[g] .. starts[g + 1] - 1 stay together in one cluster. The sums have n
-  /// rows for the targets, followed by n rows for each entry of `reflections`: row i + n k belongs to target i reflected by reflections[k - 1]. The
-  /// clusters of reflected targets are the reflections of the clusters of targets.
+  /// Sets the positions x of the nodes, and all n targets. The nodes starts[g] .. starts[g + 1] - 1 (group g) always stay in the same cluster. The
+  /// sums have n rows for the targets, followed by n rows for each entry of `reflections`: row i + n k belongs to target i reflected by reflections[k
+  /// - 1]. The clusters of reflected targets are the reflections of the clusters of targets.
   void place(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
              std::span<const surface::Reflection> reflections = {});
 
@@ -56,7 +56,7 @@ class TreeSum {
   int row(std::size_t k) const;
   void take_part();
   void ask();
-  /// Interacting clusters; each acts through its Chebyshev nodes or through its points.
+  /// A pair of interacting clusters. Each of the two acts through its Chebyshev nodes (true) or through its points (false).
   struct Pair {
     int target, source, image;
     bool target_nodes, source_nodes;
@@ -81,7 +81,7 @@ class TreeSum {
   std::vector<double> target_u_, node_u_;       // values at targets and at the Chebyshev nodes of target clusters
   std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: true if the sum of the row is requested. wanted_: true if the target cluster contains
                                                 // a requested row. has_nodes_: true if the target cluster has values at its Chebyshev nodes
-  std::vector<Pair> pairs_;                     // interactions of this part
+  std::vector<Pair> pairs_;                     // pairs of clusters whose interactions this part sums
   std::vector<char> in_use_;                    // flags of the source clusters whose Chebyshev nodes are used
   std::vector<Pack> scratch_;
   long long interactions_ = 0;

@@ -8,8 +8,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Maximum number of balls in a leaf. The balls of a leaf are tested one by one. With fewer balls per leaf, testing the boxes would cost as much as
-/// testing the balls.
+/// Maximum number of balls in a leaf. The balls of a leaf are tested one by one. With smaller leaves, testing the boxes of the tree would cost as
+/// much as testing the balls.
 constexpr int leaf = 64;
 
 }  // namespace
