@@ -55,6 +55,16 @@ FlowPlane plane_normal_to(Vec3 normal) {
   return plane;
 }
 
+std::optional<Mat3> axes_of_shear(const Mat3& gradient) {
+  constexpr double most = 1e-6;  // with which a gradient is written in a deck
+  const Eigen::JacobiSVD<Mat3> parts(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vec3 along = parts.matrixU().col(0), across = parts.matrixV().col(0), sizes = parts.singularValues();
+  if (!(sizes[0] > 0) || sizes[1] > most * sizes[0] || std::abs(along.dot(across)) > most) return {};
+  Mat3 axes;
+  axes << along.transpose(), along.cross(across).transpose(), across.transpose();
+  return axes;
+}
+
 FlowPlane flow_plane(const stokes::FlowOptions& flow) {
   if (flow.type != "linear" || flow.gradient->isZero(0)) return {};
   const Mat3& l = *flow.gradient;
@@ -64,10 +74,7 @@ FlowPlane flow_plane(const stokes::FlowOptions& flow) {
   const Vec3 values = varies.eigenvalues();
   if (values[0] < 1e-12 * values[2]) {
     FlowPlane plane = plane_normal_to(varies.eigenvectors().col(0));
-    const Eigen::JacobiSVD<Mat3> parts(l, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Vec3 along = parts.matrixU().col(0), across = parts.matrixV().col(0);
-    if (parts.singularValues()[1] < 1e-12 * parts.singularValues()[0] && std::abs(along.dot(across)) < 1e-12)
-      plane.of_shear.emplace() << along.transpose(), along.cross(across).transpose(), across.transpose();
+    plane.of_shear = axes_of_shear(l);
     return plane;
   }
   const Vec3 vorticity(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1));

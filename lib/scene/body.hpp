@@ -39,6 +39,10 @@ struct FlowPlane {
 /// The largest component of the direction b is positive.
 FlowPlane plane_normal_to(Vec3 normal);
 
+/// Returns the axes of a simple shear flow with this velocity gradient as rows: the direction of the flow, the normal of the plane of the flow, the
+/// direction of the gradient. Returns nothing for other flows.
+std::optional<Mat3> axes_of_shear(const Mat3& gradient);
+
 /// Returns the plane x1 x3 for every flow type except `linear`. For `linear`, returns the plane of the flow if the flow is planar, which means that
 /// the velocity has no component along the normal of the plane and does not change along the normal. Otherwise returns the plane normal to the
 /// vorticity, because points of the surface rotate about the vorticity, or the plane x1 x3 if there is no vorticity.

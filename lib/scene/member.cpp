@@ -141,6 +141,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.interface_motion = own.interface_motion();
     const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);
     particle.interface_speed = own.interface.relaxation * (own.flow.type == "duct" ? own.speed() : rate * body.radius);
+    particle.interface_turns = !own.periodic.present || own.periodic.turn != 0;  // otherwise, a net that has turned would not recur
     particle.kept_volume = body.volume;
     particle.measure = load_measure(own);
   }

@@ -26,7 +26,7 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
     if (!particle.slides()) continue;
     const spline::Block& block = particle.block;
     radius_ = std::min(radius_, particle.radius);
-    drops_.push_back({block, particle.interface_motion == "relaxed", particle.interface_speed, {}, {}, {}});
+    drops_.push_back({block, particle.interface_motion == "relaxed", particle.interface_turns, particle.interface_speed, {}, {}, {}});
     Drop& drop = drops_.back();
     const auto holds = [&](int e) { return e >= block.first_element && e < block.first_element + block.n_elements; };
     std::ranges::copy_if(layout.points(), std::back_inserter(drop.points), [&](int i) { return block.holds(i); });
@@ -99,23 +99,31 @@ double weight_of_axis(double m) {
 /// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. The area weight of a site is |b|, with the
 /// volume gradient b = dV/dx of its control point.
 Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
-  Mat3 moments = Mat3::Zero(), second = Mat3::Zero();
+  Mat3 moments = Mat3::Zero();
   Vec3 across = Vec3::Zero();
+  double inertia = 0;
   for (Eigen::Index i = 0; i < y.rows(); ++i) {
     const double area = b.row(i).norm();
     const Vec3 n = normals.row(i).transpose(), arm = Vec3(y.row(i).transpose()).cross(n);
     moments += area * arm * arm.transpose();
     across += area * arm * u.row(i).dot(n);
-    second += area * y.row(i).transpose() * y.row(i);
+    inertia += area * y.row(i).squaredNorm() * 2 / 3;
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(moments);
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(moments / inertia);
   Vec3 rotation = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
     const Vec3 axis = axes.eigenvectors().col(k);
-    const double inertia = second.trace() - axis.dot(second * axis);
-    rotation += weight_of_axis(axes.eigenvalues()[k] / inertia) * axis.dot(across) / inertia * axis;
+    rotation += weight_of_axis(axes.eigenvalues()[k]) * axis.dot(across) / inertia * axis;
   }
   return rotation;
+}
+
+/// Returns the centroid of a drop from its control points x and b = dV/dx, approximately: exactly that of a polyhedron with the volumes b.x/3.
+Eigen::RowVector3d approximate_centroid(const Net& x, const Net& b) {
+  const Eigen::RowVector3d mean = x.colwise().mean();
+  const Net y = x.rowwise() - mean;
+  const Eigen::VectorXd volumes = b.cwiseProduct(y).rowwise().sum();
+  return mean + 0.75 * volumes.transpose() * y / volumes.sum();
 }
 
 /// State of a drop: at its control points the positions x, the volume gradient b = dV/dx and the fluid velocity v; at its collocation sites the
@@ -125,14 +133,20 @@ struct Moving {
   Net places, normals, velocities;
 };
 
-/// Returns the rigid motion W (4.14) with which the mesh of a drop moves. It consists of a velocity and a rotation about the mean of the control
-/// points.
-RigidMotion shared_motion(const Moving& drop) {
-  const Eigen::RowVector3d middle = drop.x.colwise().mean();
-  const Net from_mean = drop.x.rowwise() - middle, y = drop.places.rowwise() - middle;
-  const Vec3 of_fluid = mean_rotation(from_mean, drop.b, drop.v);
-  const Eigen::RowVector3d mean = mean_motion(from_mean, drop.b, drop.v - rotated(of_fluid, from_mean));
-  return {mean.transpose(), rotation_of_shape(y, drop.normals, drop.b, drop.velocities.rowwise() - mean)};
+/// Rigid motion W (4.14): a velocity and a rotation about `centre`.
+struct MotionOfShape {
+  Vec3 centre;
+  RigidMotion motion;
+};
+
+/// Returns the rigid motion W (4.14) with which the mesh of a drop moves. `turns`: false if the rotation is to be zero.
+MotionOfShape motion_of_shape(const Moving& drop, bool turns) {
+  const Eigen::RowVector3d centre = approximate_centroid(drop.x, drop.b);
+  const Net from_centre = drop.x.rowwise() - centre, y = drop.places.rowwise() - centre;
+  const Vec3 of_fluid = mean_rotation(from_centre, drop.b, drop.v);
+  const Eigen::RowVector3d mean = mean_motion(from_centre, drop.b, drop.v - rotated(of_fluid, from_centre));
+  const Vec3 rotation = turns ? rotation_of_shape(y, drop.normals, drop.b, drop.velocities.rowwise() - mean) : Vec3(Vec3::Zero());
+  return {centre.transpose(), {mean.transpose(), rotation}};
 }
 
 /// Returns the rotation about the mean of the control points that fits `from` best to `to`.
@@ -166,16 +180,16 @@ void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
 Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const {
   Net u = sites_ * v;
   const Net places = sites_ * x;
-  std::vector<RigidMotion> shared;
+  std::vector<MotionOfShape> shapes;
   for (const Drop& drop : drops_) {
     const auto own = [&](const Net& net) { return drop.block.rows(net); };
-    shared.push_back(shared_motion({own(x), own(b), own(v), own(places), own(normals), own(u)}));
+    shapes.push_back(motion_of_shape({own(x), own(b), own(v), own(places), own(normals), own(u)}, drop.turns));
   }
   const auto cross = [&](const Net& at, const Net& n, const Net& along, std::vector<int> Drop::* rows, Net& velocities) {
     for (size_t d = 0; d < drops_.size(); ++d) {
-      const Vec3 middle = drops_[d].block.rows(x).colwise().mean().transpose();
+      const auto& [centre, motion] = shapes[d];
       for (const int i : drops_[d].*rows) {
-        const Vec3 whole = shared[d].velocity + shared[d].angular_velocity.cross(Vec3(at.row(i).transpose()) - middle);
+        const Vec3 whole = motion.velocity + motion.angular_velocity.cross(Vec3(at.row(i).transpose()) - centre);
         const Eigen::RowVector3d with = whole.transpose() + along.row(i);
         rest.row(i) += velocities.row(i) - with;
         velocities.row(i) = with + n.row(i).dot(velocities.row(i) - with) * n.row(i);

@@ -58,6 +58,7 @@ class InterfaceMotion {
   struct Drop {
     spline::Block block;
     bool relaxed;
+    bool turns;  // false: the rigid motion W (4.14) has no rotation
     double speed;
     std::vector<int> points;      // rank-owned control points
     std::vector<int> places;      // indices of this drop's sites among the sites of VelocityProjection

@@ -36,6 +36,7 @@ struct Particle {
   bool by_traction = false;  ///< whether the unknown on a rigid body is its traction (2.40) rather than the density w of a double layer (2.23)
   std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface: "material", "normal" or "relaxed"
   double interface_speed = 0;                 ///< speed of the mesh relaxation of a drop, length/time
+  bool interface_turns = true;                ///< true if the mesh of an elongated drop turns with its shape; false: it never turns as a whole
   std::optional<double> kept_volume;  ///< volume V0 to be conserved, for example after a change of mesh; if not set, the volume of the initial net
 
   /// Loads in addition to elasticity and bending, on `space`. For a rigid body the work of the loads gives the force and torque on it.

@@ -68,8 +68,9 @@ class Run:
         if not self.several:
             return ["particle"]
         names = sorted({name.split("/")[0] for name in self.series if "/" in name}, key=lambda name: (len(name), name))
-        return [name for kind in self.deck.get("Particles", {}) for name in names  # `cell 3` is the third of `cell`
-                if re.fullmatch(rf"{re.escape(str(kind))}( \d+)?", name)]
+        of_kinds = [name for kind in self.deck.get("Particles", {}) for name in names  # `cell 3` is the third of `cell`
+                    if re.fullmatch(rf"{re.escape(str(kind))}( \d+)?", name)]
+        return list(dict.fromkeys(of_kinds))
 
     def of(self, particle, name):
         """Returns a series (rows,) of one particle by its name in `particles`."""
