@@ -64,7 +64,7 @@ struct AdaptationOptions {
 std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
 /// Returns the elements and directions to coarsen. An element is merged along a direction if the merged element, of twice the length, stays below
-/// `coarsening margin` times every limit of (P-37).
+/// `coarsening margin` times every limit of marks().
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
 /// add_films() marks elements that are longer than `film resolution` times sqrt(width x R_C), where width is the width of the adjacent film. This

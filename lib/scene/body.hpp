@@ -29,7 +29,7 @@ struct FlowPlane {
   bool holds_flow = true;  ///< false if the flow is not planar; the Taylor parameter D is then measured in the plane of the longest and the shortest
                            ///< axis of inertia
 
-  bool fixed() const { return axes.isIdentity(0); }                     ///< returns true if the plane is x1 x3
+  bool fixed() const { return axes.isIdentity(0); }                     ///< returns true if this is the plane x1 x3
   Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of x along the rows of `axes`
   Net turned(const Net& x) const { return fixed() ? x : Net(x * axes.transpose()); }
   std::string description() const;

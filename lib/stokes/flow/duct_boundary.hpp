@@ -91,7 +91,7 @@ class BoundaryProfile : public DuctProfile {
   double radius_, flow_rate_;
   int n_elements_;
   std::vector<double> x_, y_, dx_, dy_, f_, g_;  // values at the nodes of (2.17). x_, y_: position relative to the centroid. dx_, dy_: line element.
-                                                 // f_: v_c. g_: psi
+                                                 // f_, g_: real part v_c and imaginary part psi of F
 };
 
 }  // namespace tanktread::stokes

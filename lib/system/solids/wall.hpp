@@ -88,8 +88,9 @@ class Wall {
   /// Returns the lowest and highest coordinates of the wall in the axes of the cell.
   std::array<Vec3, 2> across() const { return cell_->range(surface_.net); }
 
-  /// Converts control values of a traction f, one row per site, to control values on the space of the layer. Changes f only if the wall is periodic:
-  /// f is then a periodic spline, but the space is not periodic. `from_space` multiplies by the transpose of this map.
+  /// Converts the control values of a traction f, one row per collocation site of the wall, to control values on the space of layer(). Changes f only
+  /// if the wall is periodic, because f is then a periodic spline, whereas this space is not periodic. from_space() multiplies by the transpose of
+  /// this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
   void from_space(stokes::Rows<float>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
