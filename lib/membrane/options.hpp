@@ -15,7 +15,7 @@ class StrainEnergy;
 
 /// Options of the membrane: the keys `Membrane/*`.
 struct Options {
-  std::string law = "neo-Hookean";         ///< neo-Hookean, Skalak, Mooney-Rivlin, Evans-Skalak, expression (3.3), surface tension (3.4)
+  std::string law = "neo-Hookean";         ///< neo-Hookean, Skalak, Mooney-Rivlin, Evans-Skalak (all 3.3), expression, surface tension (3.4)
   std::optional<double> capillary_number;  ///< Ca = mu rate R_C/G_s, for a drop mu rate R_C/sigma, see modulus(); 0.3 if Ca, G_s and sigma are not
                                            ///< given
   std::optional<double> shear_modulus;     ///< G_s, force/length

@@ -20,7 +20,7 @@ namespace tanktread::motion {
 struct AdaptationOptions {
   double radius = 1;                                       ///< particle radius R_C; not a key of the deck
   bool enabled = false;
-  std::string indicator = "error";                         ///< `error` (1.5) or `variation` (P-37)
+  std::string indicator = "error";                         ///< `error` (1.5) or `variation` (1.4)
   double surface_tolerance = 4e-4;                         ///< tolerance of the estimated error of the surface position (1.5), length
   std::optional<double> load_tolerance;                    ///< tolerance of the estimated load error (1.5), force/length^2; if empty, not used
   /// L_ref, reference length of an element; this and the next five members are set only if the indicator is `variation`
@@ -30,7 +30,7 @@ struct AdaptationOptions {
   std::optional<double> reference_traction_variation;      ///< T_ref, reference variation of the traction (force per current area), force/length^3
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
   std::optional<double> limit_aspect_ratio;                ///< D_ref, largest aspect ratio of an element
-  std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (P-37)
+  std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (1.4)
   /// largest allowed length of an element next to a thin film of fluid, divided by sqrt(film width x R_C); set if there are films
   std::optional<double> film_resolution;
   static constexpr double default_film_resolution = 0.7;   ///< default of film_resolution; 0.5 for rigid bodies among several particles
@@ -55,7 +55,7 @@ struct AdaptationOptions {
   AdaptationOptions coarser(double factor) const;
 };
 
-/// Returns the elements and directions to refine (P-37), in the order of elements(mesh). An element is refined along the direction a if
+/// Returns the elements and directions to refine (1.4), in the order of elements(mesh). An element is refined along the direction a if
 ///
 ///   L_a > L_min  and  ( L_a > L_ref min{1, (phi_ref / phi_a)^kappa}  or  L_a / L_b > D_ref )
 ///

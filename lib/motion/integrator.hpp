@@ -49,9 +49,9 @@ void begin(coupling::Dynamics& dynamics, State& state);
 void freeze(coupling::Dynamics& dynamics, State& state, double time);
 void refreeze(coupling::Dynamics& dynamics, const State& state, double time);
 
-/// If the motion is not smooth in time at the time of the state (a kink), restarts the state and returns true. The restart keeps only position, step
-/// and frozen layer operator, and computes the slope after the kink. Otherwise returns false. `advance` calls this function first; until then the
-/// state has the slope before the kink.
+/// Restarts the state and returns true if the motion is not smooth in time at the time of the state (a kink); otherwise returns false. The restart
+/// keeps only position, step size and frozen layer operator, and computes the slope (velocity) after the kink. `advance` calls this function first.
+/// Until then the state contains the slope before the kink.
 bool cross_kink(coupling::Dynamics& dynamics, State& state);
 
 /// Report of one call of `advance`.

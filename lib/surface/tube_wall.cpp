@@ -15,8 +15,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Returns int_0^x (1 + (g - 1)/(1 + y^4)) dy with g = `grading`: up to a constant factor, the number of elements between 0 and x. x is in units of w
-/// (see tube_wall()).
+/// Returns the number of elements between 0 and x, up to a constant factor: int_0^x (1 + (g - 1)/(1 + y^4)) dy with g = `grading`. x is a position
+/// along the wall, divided by the length w (see tube_wall()).
 double count(double x, double grading) {
   const double r = std::numbers::sqrt2;
   const double bell =

@@ -42,7 +42,8 @@ class Membranes {
   /// replaces it by M0^-1 times `other`. Where possible, the two systems with M0 are solved in one call, because six columns of right-hand sides are
   /// divided among the ranks more evenly than three.
   Net load(const Net& x, Net work, Net* other = nullptr);
-  Net strong_load(const Net& x) const;                                            ///< values of the load (P-3) at the collocation sites
+  Net strong_load(const Net& x) const;                                            ///< values of the strong form -div_s tau of the load at the
+                                                                                  ///< collocation sites
   Net solved(Net work) const { return layout_.solved(mass(), std::move(work)); }  ///< M0^-1 times a net
 
   bool viscous() const { return viscous_.has_value(); }  ///< true if a membrane or interface is viscous

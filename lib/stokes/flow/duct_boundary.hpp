@@ -66,7 +66,8 @@ class OutlineSpace {
   std::vector<OutlineSite> sites_;
 };
 
-/// Velocity u = v_c - r^2/4: r is the distance from the centroid of the section; v_c is harmonic with v_c = r^2/4 on the outline     (P-34, P-35)
+/// Velocity u = v_c - r^2/4 (equations 34 and 35 of Maestre et al. 2017). r is the distance from the centroid of the section; v_c is harmonic with
+/// v_c = r^2/4 on the outline.
 /// The unknowns are the cubic spline sigma = q dl/dt with the flux q = dv_c/dn, and a constant kappa. They satisfy these equations at collocation
 /// points x0 on the outline:
 ///   int G sigma dt + kappa = int (v_c - v_c(x0)) dG/dn dl,   int sigma dt = 0,   G = -ln|x - x0|/(2 pi)                     (2.15)

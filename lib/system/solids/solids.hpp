@@ -119,8 +119,8 @@ class Solids {
   std::optional<PlateFactors> plates_;  // set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
                                         // each plate
-  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced; without the present
-                                        // `layer_`
+  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced; those of the current
+                                        // `layer_` are not included
 };
 
 }  // namespace tanktread::coupling
