@@ -16,8 +16,8 @@ class StrainEnergy;
 /// Options of the membrane: the keys `Membrane/*`.
 struct Options {
   std::string law = "neo-Hookean";         ///< neo-Hookean, Skalak, Mooney-Rivlin, Evans-Skalak (all 3.3), expression, surface tension (3.4)
-  std::optional<double> capillary_number;  ///< Ca = mu rate R_C/G_s, for a drop mu rate R_C/sigma, see modulus(); 0.3 if Ca, G_s and sigma are not
-                                           ///< given
+  std::optional<double> capillary_number;  ///< Ca = mu rate R_C/G_s, for a drop mu rate R_C/sigma (see modulus()); 0.3 if the deck gives none of Ca,
+                                           ///< G_s and sigma
   std::optional<double> shear_modulus;     ///< G_s, force/length
   std::optional<double> surface_tension;   ///< sigma, force/length
   std::optional<double> area_dilatation;   ///< area dilatation C of the laws Skalak and Evans-Skalak, 1 if the deck does not give it; not set for

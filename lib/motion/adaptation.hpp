@@ -67,11 +67,12 @@ std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metr
 /// `coarsening margin` times every limit of marks().
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
-/// add_films() marks elements that are longer than `film resolution` times sqrt(width x R_C), where width is the width of the adjacent film. This
-/// limit also holds for elements shorter than L_min. Earlier marks are kept. keep_films() removes merges whose merged element would be longer than
-/// `coarsening margin` times this limit. `lengths` (of elements, along s and t) and `widths` (of films) are in the order of elements(mesh).
+/// Marks elements that are longer than `film resolution` times sqrt(width x R_C), where width is the width of the adjacent film. This limit also
+/// holds for elements shorter than L_min. Earlier marks are kept. `lengths` (of elements, along s and t) and `widths` (of films) are in the order of
+/// elements(mesh).
 void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
                std::vector<spline::Mark>& marks);
+/// Removes merges whose merged element would be longer than `coarsening margin` times the limit of add_films().
 void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
                 std::vector<spline::Merge>& merges);
 

@@ -45,8 +45,8 @@ struct Conserved {
   ModeKind kind;
 };
 
-/// Mode Re(mode e^{rate t}) of the linearised motion: a displacement of the control points, or if there are surface fields, a change of positions and
-/// fields. It is scaled to a largest displacement of 1. If no control point moves, it is scaled to a largest component of 1.
+/// Eigenmode Re(mode e^{rate t}) of the linearised motion: a displacement of the control points and, if there are surface fields, a change of the
+/// fields. It is scaled such that the largest displacement is 1. If no control point moves, the largest component is 1.
 struct Mode {
   std::complex<double> rate;
   Net real, imaginary;

@@ -30,7 +30,8 @@ struct FlowPlane {
                            ///< axis of inertia
 
   bool fixed() const { return axes.isIdentity(0); }                     ///< returns true if this is the plane x1 x3
-  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of x along the rows of `axes`
+  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of the vector x along the three directions that
+                                                                        ///< are the rows of `axes`
   Net turned(const Net& x) const { return fixed() ? x : Net(x * axes.transpose()); }
   std::string description() const;
 };

@@ -144,7 +144,7 @@ std::vector<Vec2> through(const Channel& channel, const std::vector<double>& kno
 
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
   std::vector<double> knots = channel->knots(channel->elements()), periodic;
-  if (channel->repeats()) {  // moves both ends of the wall to a quarter of an element after a knot of the periodic splines
+  if (channel->repeats()) {  // moves both ends of the wall, relative to the knots of the periodic splines, to a quarter of an element after a knot
     periodic.assign(knots.begin(), knots.end() - 1);
     const double before = 0.75 * (knots.back() - periodic.back());
     knots.insert(knots.begin(), knots.front() - before);

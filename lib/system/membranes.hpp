@@ -48,7 +48,8 @@ class Membranes {
 
   bool viscous() const { return viscous_.has_value(); }  ///< true if a membrane or interface is viscous
   void place_viscous(const Net& x);                      ///< sets the surface of viscous_work() and viscous_load()
-  Net viscous_work(const Net& v) const;                  ///< C v, the virtual work of the viscous stresses (3.10) at the velocity v
+  Net viscous_work(const Net& v) const;                  ///< returns C v, the virtual work of the viscous stresses (3.10) at the velocity v on the
+                                                         ///< surface passed to place_viscous()
   Net viscous_load(const Net& x, const Net& v) { return load(x, viscous_work(v)); }
 
   /// Sets the shape x for work_change() and viscous_work_change(). `sums`: surface integrals that work() computed at x.

@@ -71,8 +71,9 @@ class ParticleSystem {
 /// Builds the system for the particles of the scene: a coupled system, or a free rigid body.
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
-/// deforming() builds a coupled system of particles. free_body() builds a system that consists of one free rigid body.
+/// Builds a coupled system of particles.
 std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+/// Builds a system that consists of one free rigid body.
 std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 }  // namespace tanktread

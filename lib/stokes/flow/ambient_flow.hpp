@@ -74,7 +74,7 @@ class AmbientFlow {
   /// matrix.
   Mat3 change() const { return moment_.amplitude * moment_.turn; }
 
-  /// Returns the duct flow; null if there is none.
+  /// Returns the duct flow; null if this is a flow of another type.
   const std::shared_ptr<const DuctFlow>& duct() const { return duct_; }
 
  private:

@@ -52,7 +52,7 @@ class RigidParticles {
   RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature);
 
   bool empty() const { return bodies_.empty(); }
-  bool prescribed() const;  ///< true if the motion of any body is prescribed
+  bool prescribed() const;  ///< returns whether the motion of at least one body is prescribed
 
   /// Moves every body to the position that fits the rows of the body in x best. Replaces these rows by the control points of the moved body.
   void place(Net& x);
@@ -77,11 +77,12 @@ class RigidParticles {
   /// Sets the motion, force and torque of body p to values that were not computed from (2.23). Sets the rows of the body in v to the control values
   /// of this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
-  /// On a lattice, the solve for the velocities uses the image of each body in the cell. enter() is called before the solve. For each body, it
-  /// computes the ambient velocity at the body minus that at its image; the solve subtracts this difference from a prescribed velocity. shifts[p]:
-  /// position of particle p minus the position of its image. `gradient`: velocity gradient of the flow. carry() is called after the solve. If
-  /// particle p is a body, it moves the body from its image back to its own position: adds `along` to the centre and `faster` to the velocity.
+  /// On a lattice, the solve for the velocities uses the image of each body in the cell. enter() must be called before the solve. For each body, it
+  /// computes the ambient velocity at the body minus the ambient velocity at its image; the solve subtracts this difference from a prescribed
+  /// velocity. shifts[p]: position of particle p minus the position of its image. `gradient`: velocity gradient of the flow.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
+  /// Moves particle p, if it is a body, from its image back to its own position after the solve: adds `along` to its centre and `faster` to its
+  /// velocity.
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
 
   /// Returns whether particle p is a rigid body. The members below refer to the latest evaluated velocities.

@@ -78,8 +78,8 @@ class Tube {
   /// (2.23).
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
-  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: origin along x1 of the frame of a straight
-  /// wall; by default the particle's centroid.
+  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: x1 coordinate of the origin of the frame of
+  /// wall() if the wall is straight; by default the x1 coordinate of the particle's centroid.
   void place(const Net& x, std::optional<double> centroid = {});
 
   /// Returns the lattice of a periodic duct; not set for other ducts.

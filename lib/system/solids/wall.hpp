@@ -109,10 +109,10 @@ class Wall {
   const Net& pumped() const { return pumped_; }              ///< wall traction in the open, empty tube per unit pressure drop: A^-1 c (2.13), with
                                                              ///< the operator A
 
-  /// Return weights, one row per control point A, for inner products with tractions on the wall. flow_weights: int N_A c dG, with c =
-  /// flow_of_forces(x); the inner product is mu times the flow rate that the traction causes. force_weights: int N_A e1 dG; the inner product is the
-  /// axial force of the traction.
+  /// Returns weights int N_A c dG, one row per control point A, with c = flow_of_forces(x). Their inner product with a traction on the wall is mu
+  /// times the flow rate that the traction causes.
   Net flow_weights() const;
+  /// Returns weights int N_A e1 dG, one row per control point A. Their inner product with a traction on the wall is its axial force.
   Net force_weights() const;
 
   /// Returns mu times the flow rate along the duct due to a unit force, one row per point of `at` and one column per direction of the force. If the
