@@ -76,10 +76,11 @@ void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vec
 void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
                 std::vector<spline::Merge>& merges);
 
-/// Return the elements and directions to refine (marks) and to coarsen (merges), from estimated errors (1.5). An element is refined along a direction
-/// if its length along this direction is greater than L_min and one of its errors exceeds the tolerance of this error. It is merged into an element
-/// of twice the length if all errors of that element are below `coarsening margin` times their tolerances.
+/// Returns the elements and directions to refine, from estimated errors (1.5). An element is refined along a direction if its length along this
+/// direction is greater than L_min and one of its errors exceeds the tolerance of this error.
 std::vector<spline::Mark> marks(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
+/// Returns the elements and directions to coarsen, from estimated errors (1.5). An element is merged into an element of twice the length if all
+/// errors of the merged element are below `coarsening margin` times their tolerances.
 std::vector<spline::Merge> merges(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
 
 }  // namespace tanktread::motion

@@ -161,14 +161,16 @@ class Layer {
   const std::vector<double>& weights() const { return weight_; }
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
-  /// values() evaluates a field at the far nodes. moments() returns the integral of a function h times each basis function (the transpose of
-  /// values()). `g`: h times area and quadrature weight at each far node.
+  /// Evaluates a field, given by its control values, at the far nodes.
   void values(const Net& field, std::vector<double> (&value)[3]);
+  /// Returns the integral of a function h times each basis function, the transpose of values(). `g`: h times area and quadrature weight at each far
+  /// node.
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
-  /// Return the number of kernel evaluations and the computing times since construction. Times are divided into `setup`, `far`, `near`, `self` and
-  /// `assembly`, and further phases for a lattice or a wall.
+  /// Returns the number of kernel evaluations since construction.
   const Evaluations& evaluations() const { return evaluations_; }
+  /// Returns the computing times since construction, divided into `setup`, `far`, `near`, `self` and `assembly`, and further phases for a lattice or
+  /// a wall.
   const Phases& phases() const { return phases_; }
 
  private:

@@ -37,9 +37,8 @@ struct MeshOptions {
   spline::PolarMesh polar_mesh() const;
   int axis() const { return pole_axis.value()[1] - '1'; }
 
-  /// Return the number of control points of the mesh, and the number of elements of its T-mesh.
-  double n_points() const;
-  double n_elements() const;
+  double n_points() const;    ///< returns the number of control points of the mesh
+  double n_elements() const;  ///< returns the number of elements of its T-mesh
 };
 
 /// Options `Particle/initial shape` of the deck: the shape at the start of a run, if it is not the resting shape. Exactly one of `map`, `stretch`,

@@ -99,10 +99,10 @@ class Tube {
   /// Not collective, except if the duct repeats or its pressure drop is prescribed: then every rank must call it with the same x.
   void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
-  /// Stores the operators of the current shape as low-precision blocks for the Jacobian. `frozen_response` applies them: it returns the response u at
-  /// the particle's collocation points. If the wall's system is solved by iteration, `frozen_response` returns 0. The Jacobian then omits u. This is
-  /// accurate enough, because the contribution of u is small and smooth.
+  /// Stores the operators of the current shape as low-precision blocks for the Jacobian.
   void freeze();
+  /// Returns the response u at the particle's collocation points, computed with the operators that freeze() stored. If the wall's system is solved by
+  /// iteration, returns 0. The Jacobian then omits u. This is accurate enough, because the contribution of u is small and smooth.
   Net frozen_response(const Net& f, const Net& v = {});
 
   /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
