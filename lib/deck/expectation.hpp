@@ -16,7 +16,7 @@ struct Expectation {
   std::string name;               ///< name of the section, chosen by the user
   std::string series;             ///< name of the series; by default `name`
   double value = 0;               ///< expected value (required)
-  double tolerance = 0;           ///< largest error that passes (required): absolute, or relative to `value`
+  double tolerance = 0;           ///< largest error of a value that meets the expectation (required): absolute, or relative to `value`
   std::string kind = "absolute";  ///< kind of the tolerance: absolute or relative
   std::optional<double> at;       ///< time of the expected value; if not set, the last time
   std::string source;             ///< source of the expected value, for example a publication

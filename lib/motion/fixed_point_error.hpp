@@ -29,7 +29,7 @@ class FixedPointError {
 
  private:
   int most_;
-  std::deque<std::pair<Net, Net>> before_;  // x_j, f_j, latest last
+  std::deque<std::pair<Net, Net>> before_;  // pairs of an earlier iterate x_j and its correction f_j, latest last
 };
 
 }  // namespace tanktread::motion

@@ -20,8 +20,8 @@
 
 namespace tanktread {
 
-/// Plane through the centroid in which the Taylor parameter D and tank-treading are measured. The rows of `axes` are the first in-plane direction a,
-/// the normal (cross product of b and a) and the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
+/// Plane through the centroid of the particle in which the Taylor parameter D and tank-treading are measured. The rows of `axes` are the first
+/// in-plane direction a, the normal (cross product of b and a) and the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
 struct FlowPlane {
   Mat3 axes = Mat3::Identity();
   std::optional<Mat3> of_shear;  ///< rows: direction of a simple shear flow, normal of the plane, direction of the velocity gradient. Set only for a

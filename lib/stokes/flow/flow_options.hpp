@@ -14,7 +14,7 @@ namespace tanktread::stokes {
 /// One plate that bounds a flow, or two parallel plates at a distance.
 struct Plates {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< point on the first plate; unit normal into the fluid
-  std::optional<double> distance;                     ///< distance of the second plate; none if not set
+  std::optional<double> distance;                     ///< distance of the second plate from the first; if not set, there is no second plate
   std::optional<Vec3> velocity, second_velocity;      ///< velocities of the first and the second plate; a plate whose velocity is not set moves with
                                                       ///< the ambient flow
 };
@@ -23,7 +23,7 @@ struct Plates {
 struct FlowOptions {
   std::string type = "simple shear";  ///< quiescent, uniform, simple shear, four-roll, planar hyperbolic, uniaxial extension, linear, parabolic,
                                       ///< duct, or the name of a registered flow
-  double shear_rate = 1.0;            ///< rate of simple shear, four-roll, planar hyperbolic and uniaxial extension, units 1/time; otherwise 1
+  double shear_rate = 1.0;            ///< rate of simple shear, four-roll, planar hyperbolic and uniaxial extension, units 1/time; 1 for other types
   double viscosity = 1.0;             ///< mu of the outer fluid
   std::optional<double> roll_parameter;  ///< parameter a of the four-roll flow (equation 48 of Maestre et al. 2017, see AmbientFlow); set for
                                          ///< `four-roll`

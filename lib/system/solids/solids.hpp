@@ -116,7 +116,7 @@ class Solids {
   Net normals_;                        // at the collocation points
   Net flux_;                           // int N_A n dG
   std::vector<Rod> rods_;
-  std::optional<PlateFactors> plates_;  // set if all solids are plates
+  std::optional<PlateFactors> plates_;  // inverse of the operator by Fourier series; set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
                                         // each plate
   stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced; those of the current

@@ -186,7 +186,7 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which leak() evaluates the velocity; set up at its first call
+  std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which leak() evaluates the velocity; set up at the first call of leak()
   Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate through the inlet and in the axial force. weigh_flow() sets
                                       // these and all following members
   Net flow_of_wall_;  // weights w for a velocity u on the wall: w.u is the flow rate through the inlet due to the wall traction that cancels u
