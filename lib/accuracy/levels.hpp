@@ -10,8 +10,8 @@ namespace tanktread::accuracy {
 /// Values of the keys of a deck, including defaults, as texts by the path of the key (deck::Document::values).
 using Values = std::map<std::string, std::string>;
 
-/// Levels of refinement of the three parts of the discretisation: mesh, time integration and quadrature. Usually they are equal. The error of one
-/// part is measured by two runs whose levels differ only in this part.
+/// Levels of refinement of the three parts of the discretisation: mesh, time integration and quadrature. The three levels of a run are usually equal.
+/// To measure the error of one part, two runs are compared whose levels differ only in this part.
 struct Level {
   int mesh = 0, time = 0, quadrature = 0;
 

@@ -58,9 +58,9 @@ std::vector<double> norms(const std::vector<Curve>& differences) {
   return found;
 }
 
-/// Returns the expected errors of the levels, up to a common factor, for `estimated`. By default these are expected_error() of each level. If there
-/// are at least 4 levels and level 2 was also computed with a looser time tolerance (`looser`), the share of time integration in the error is
-/// measured. This share is then assumed to decrease with the time tolerance, and the rest of the error like expected_error().
+/// Returns the errors to expect at the levels, up to a common factor; estimated() uses them. By default these are expected_error() of each level. If
+/// there are at least 4 levels and level 2 was also computed with a looser time tolerance (`looser`), the part of the error due to time integration
+/// is measured. This part is assumed to decrease with the time tolerance, and the rest of the error like expected_error().
 std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
                                     const std::optional<Outcome>& looser) {
   std::vector<double> sizes;

@@ -24,12 +24,12 @@ struct Request {
   std::string text() const;
 };
 
-/// Reads one request. Throws UserError if the text has another form or the value is not positive.
+/// Reads one request. Throws UserError if the text does not have the form described at Request or the value is not positive.
 Request request_of(const std::string& text);
 
 /// Options `Accuracy/*` of the deck.
 struct Options {
-  bool present = false;  ///< true if the deck has this section, which then gives at least one request
+  bool present = false;  ///< true if the deck has the section Accuracy, which then contains at least one request
   std::vector<Request> requests;
   std::optional<double> wall_clock_limit;  ///< seconds that all levels together may take; no limit if not set
   int levels = 7;                          ///< largest number of levels

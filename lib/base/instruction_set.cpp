@@ -9,7 +9,8 @@
 namespace tanktread {
 namespace {
 
-constexpr std::array<const char*, 3> names{"baseline", "avx2", "avx512"};  // names in the order of InstructionSet
+constexpr std::array<const char*, 3> names{"baseline", "avx2", "avx512"};  // names of the instruction sets, in the order of the enumeration
+                                                                           // InstructionSet
 
 InstructionSet widest() {
 #ifdef SEVERAL_INSTRUCTION_SETS

@@ -16,11 +16,12 @@ struct Expectation {
   std::string name;               ///< name of the section, chosen by the user
   std::string series;             ///< name of the series; by default `name`
   double value = 0;               ///< expected value (required)
-  double tolerance = 0;           ///< largest error that passes (required): absolute, or relative to `value`
+  double tolerance = 0;           ///< largest error of a value that meets the expectation (required): absolute, or relative to `value`
   std::string kind = "absolute";  ///< kind of the tolerance: absolute or relative
   std::optional<double> at;       ///< time of the expected value; if not set, the last time
   std::string source;             ///< source of the expected value, for example a publication
-  std::string not_binding;        ///< reason why a missed expectation is only reported; if empty, a missed expectation makes the run fail
+  std::string not_binding;        ///< if empty, the expectation is binding: the run fails if it is missed. Otherwise the reason why a missed
+                                  ///< expectation is only reported
 
   void declare(Section& section);
 };
@@ -31,10 +32,10 @@ struct Expectations {
   void declare(Section& section);
 };
 
-/// Throws UserError if the series of an expectation with empty `not_binding` is not among `names`. The message suggests the closest name.
+/// Throws UserError if the series of a binding expectation (`not_binding` is empty) is not among `names`. The message suggests the closest name.
 void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names);
 
-/// Returns one sentence per expectation with empty `not_binding` and a time after `end`. A run that ends at `end` cannot meet these expectations.
+/// Returns one sentence per binding expectation (`not_binding` is empty) whose time is after `end`, because a run that ends at `end` cannot meet it.
 std::vector<std::string> too_late(const std::vector<Expectation>& expectations, double end);
 
 /// Result of the comparison of one expectation with the results.

@@ -1,9 +1,10 @@
 #pragma once
 // Materials of membranes. A constitutive law is the stored energy per unstressed area, Psi, as a function of the two surface invariants
 //
-//   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)  (P-5 lacks the -2)
+//   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)
 //
-// with the principal stretches l1 and l2. Psi is a force per length (energy per area), and so are all of its derivatives.
+// with the principal stretches l1 and l2. Equation 5 of Maestre et al. 2017 lacks the -2 of I1. Psi is a force per length (energy per area), and so
+// are all of its derivatives.
 
 #include <array>
 #include <memory>
@@ -24,7 +25,7 @@ struct Response {
   Number psi11, psi12, psi22;  ///< second derivatives
 };
 
-/// Neo-Hookean law, Psi = G_s/2 (I1 - 1 + 1/(I2 + 1)), with the shear modulus G_s; strain softening. (3.3)  P-7
+/// Neo-Hookean law, Psi = G_s/2 (I1 - 1 + 1/(I2 + 1)), with the shear modulus G_s; strain softening (3.3).
 struct NeoHookean {
   double shear_modulus = 1;
 
@@ -45,7 +46,7 @@ struct NeoHookean {
 };
 
 /// Skalak's law of a strain-hardening membrane, Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2), with the shear modulus G_s (3.3). C sets the resistance to
-/// area changes. P-8
+/// area changes.
 struct Skalak {
   double shear_modulus = 1;
   double area_dilatation = 1;  ///< C, dimensionless resistance to area changes

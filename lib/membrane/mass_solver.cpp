@@ -33,7 +33,7 @@ Eigen::VectorXd MassSolver::solve_scalar(const Eigen::SparseMatrix<double>& s, c
   return solve(s, columns, first).col(0);
 }
 
-/// Returns S^-1 d, with S = s, for the given components of d. The other components of d must be zero.
+/// Returns S^-1 d with the matrix S = s. Solves only for the columns `components` of d; all other columns of d must be zero.
 Net MassSolver::solve(const Eigen::SparseMatrix<double>& s, const Net& d, std::span<const int> components) {
   const Eigen::VectorXd scale = diagonal_.cwiseQuotient(s.diagonal()).cwiseSqrt();
   const auto precondition = [&](const Net& r) { return Net(scale.asDiagonal() * reference_.solve(scale.asDiagonal() * r, components)); };

@@ -49,7 +49,7 @@ class MaxwellElement : public Field {
   Eigen::VectorXd relabelled(const Net&) const override { return Eigen::VectorXd::Zero(size()); }
   std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
   surface::FieldsAt values_at() const override;  ///< logarithm of the strain tensor C^ab x_,a x_,b (3.23), nine Cartesian components
-  /// Interpolates the logarithm of the strain C (3.23) in orthonormal frames of the surface, so that C stays positive definite.
+  /// Interpolates the logarithm of the strain C (3.23), with components in orthonormal frames of the surface, so that C stays positive definite.
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 
  private:
@@ -70,15 +70,15 @@ class MaxwellElement : public Field {
   MaxwellSpring spring_;
   double time_;
   std::vector<Group> groups_;
-  std::vector<Eigen::Index> first_;                     // for each element, index of the first row of `unit_` with its Gauss points
-  // g^11, sqrt(g^11 g^22), g^22 of the shape `initial`, one row per Gauss point; each coefficient is a component of C (3.23) divided by the
-  // corresponding entry
+  std::vector<Eigen::Index> first_;                     // for each element, index of its first Gauss point, which is a row of `unit_`
+  // g^11, sqrt(g^11 g^22), g^22 of the shape `initial`, one row per Gauss point; a coefficient q is a component of C (3.23) divided by the
+  // corresponding entry of `unit_`
   Net unit_;
   Net x_;
   std::vector<ReferencePoint> relaxed_;                 // stress-free surface at the Gauss points, batch after batch
   Eigen::VectorXd rate_;
   double dissipation_ = 0;
-  Eigen::VectorXd q_, known_q_;  // q_: coefficients set last. known_q_: coefficients stored by linearise()
+  Eigen::VectorXd q_, known_q_;  // q_: coefficients that set_state() set last. known_q_: coefficients at the last call of linearise()
   Net known_x_;
   std::vector<Eigen::Matrix3d> known_rates_;  // d(rate)/dq at each Gauss point
 };

@@ -50,8 +50,8 @@ class Membrane {
   /// Returns the energy of each element of the space, zero for elements that are not given.
   std::vector<double> element_energies(const Net& x, std::span<const int> elements) const;
 
-  /// Computes the load d_A = int tau^ab R_A,a g_b dGamma = dE/dx_A, with R_A the spline functions, shape (N, 3); d is set to zero first (3.6, P-31,
-  /// P-32). A row is complete if the whole support of its function is in `elements`. Units force.
+  /// Computes the load d_A = int tau^ab R_A,a g_b dGamma = dE/dx_A, with R_A the spline functions, shape (N, 3); d is set to zero first (3.6). A row
+  /// is complete if the whole support of its function is in `elements`. Units force.
   void load(const Net& x, std::span<const int> elements, Net& d) const;
   Net load(const Net& x) const;
 
@@ -59,8 +59,8 @@ class Membrane {
   TensionSummary tension_summary(const Net& x) const;
   ElementTensions element_tensions(const Net& x, std::span<const int> elements) const;
 
-  /// Returns the strong form of the load, t = -div_s tau (P-3), at a parametric point. It uses second derivatives of the current and the unstressed
-  /// net, and leaves out bending. The result is a force per current area.
+  /// Returns the strong form of the load, t = -div_s tau (equation 3 of Maestre et al. 2017), at a parametric point. It uses second derivatives of
+  /// the current and the unstressed net, and leaves out bending. The result is a force per current area.
   Vec3 strong_load(const Net& x, const spline::Site& site) const;
 
   /// Evaluates the strong form of the load at the collocation points `targets`, as the average over the elements that meet there. Sets only the rows

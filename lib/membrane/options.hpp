@@ -15,12 +15,13 @@ class StrainEnergy;
 
 /// Options of the membrane: the keys `Membrane/*`.
 struct Options {
-  std::string law = "neo-Hookean";         ///< neo-Hookean (P-7), Skalak (P-8), Mooney-Rivlin, Evans-Skalak, expression, surface tension (3.4)
-  std::optional<double> capillary_number;  ///< Ca = mu rate R_C/G_s, for a drop mu rate R_C/sigma, see modulus(); 0.3 if Ca, G_s and sigma are not
-                                           ///< given
+  std::string law = "neo-Hookean";         ///< neo-Hookean, Skalak, Mooney-Rivlin, Evans-Skalak (all 3.3), expression, surface tension (3.4)
+  std::optional<double> capillary_number;  ///< Ca = mu rate R_C/G_s, for a drop mu rate R_C/sigma (see modulus()); 0.3 if the deck gives none of Ca,
+                                           ///< G_s and sigma
   std::optional<double> shear_modulus;     ///< G_s, force/length
   std::optional<double> surface_tension;   ///< sigma, force/length
-  std::optional<double> area_dilatation;   ///< area dilatation C of the laws Skalak and Evans-Skalak, 1 if not given; empty for other laws
+  std::optional<double> area_dilatation;   ///< area dilatation C of the laws Skalak and Evans-Skalak, 1 if the deck does not give it; not set for
+                                           ///< other laws
   double global_area_dilatation = 0;        ///< modulus K that keeps the total area (3.26), divided by the shear modulus G_s
   double leaf_modulus = 0;                  ///< modulus kbar of the area difference of a bilayer's leaflets (3.27) divided by the bending modulus E_b
   std::optional<double> leaf_difference;    ///< stress-free area difference of the leaflets divided by that of a sphere of equal area
@@ -30,9 +31,10 @@ struct Options {
   std::string stress_free = "resting";     ///< the stress-free shape before pre-inflation: resting, sphere, spheroid, file
   std::optional<double> reduced_volume;    ///< reduced volume of a stress-free spheroid; only for that shape
   std::optional<std::string> stress_free_file;
-  int area_order = 0;                      ///< Gauss points per direction for the area elasticity; 0: the Gauss rule of the rest of the law
+  int area_order = 0;                      ///< number of Gauss points per direction at which the area elasticity is evaluated; 0: the Gauss points of
+                                           ///< the rest of the law
   double pre_inflation = 0.0;              ///< inflation alpha: the unstressed shape is X = centre + (x - centre)/(1 + alpha)
-  std::string load = "weak";               ///< form of the load: weak (virtual work, 3.5) or strong (-div_s tau, P-3)
+  std::string load = "weak";               ///< form of the load: weak (virtual work, 3.5) or strong (-div_s tau)
   std::string load_measure = "reference";  ///< area to which the load per area refers: reference (unstressed, 3.7) or current (3.6)
   std::optional<double> bending_modulus;   ///< bending modulus E_b, force x length; no bending if neither E_b nor bending_number is given
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or E_b/(sigma R_C^2)

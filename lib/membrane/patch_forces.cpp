@@ -18,9 +18,10 @@ void PatchForce::declare(deck::Section& section) {
       if (!section.given(key)) throw UserError(section.path(key) + " is missing: a force on a membrane needs `direction`, `radius` and `force`.");
   section.key("direction", direction, deck::any(), "1",
               "vector from the centroid of the unstressed shape towards the middle of the membrane patch that the force acts on; its "
-              "length has no effect (required)");
+              "length has no effect (required; the default is not used)");
   section.key("radius", radius, deck::positive(), "length",
-              "radius of the patch of the unstressed membrane that the force acts on, seen along `direction` (required)");
+              "radius of the membrane patch that the force acts on: the largest distance of a point of the patch, on the unstressed membrane, from "
+              "the ray from the centroid along `direction` (required; the default is not used)");
   section.key("force", force, deck::any(), "force",
               "components x1, x2, x3 of the total force on the membrane patch that the keys `direction` and `radius` of this force define "
               "(required; the default is not used). Its density per unstressed area varies like (1 - d^2/radius^2)^2 with the distance d from "

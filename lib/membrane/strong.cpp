@@ -1,4 +1,4 @@
-// The strong form of the load, t = -div_s tau (P-3), by dual numbers.
+// The strong form of the load, t = -div_s tau (equation 3 of Maestre et al. 2017), by dual numbers.
 
 #include <Eigen/Geometry>
 

@@ -54,9 +54,11 @@ class Surfactant : public Field {
   Net load_change(const Net& dx, const Eigen::VectorXd& dc) const override;
   Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dc, const Net& slip_change) const override;
   void freeze(const Net& x) override;
-  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< includes only diffusion: solves (M + shift D K) c = m with the
-                                                                                 ///< mass matrix M, the stiffness matrix K (both of the shape stored
-                                                                                 ///< by freeze()) and the diffusivity D
+  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< includes only diffusion: solves (M + shift D K) c = m for the
+                                                                                 ///< concentration c, with the contents m that have the coefficients
+                                                                                 ///< r, and returns the coefficients of M c. M: mass matrix, K:
+                                                                                 ///< stiffness matrix (both of the shape stored by freeze()), D:
+                                                                                 ///< diffusivity
   void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
   Eigen::VectorXd conserved() const override { return share_; }

@@ -36,13 +36,14 @@ class SymmetricSolver {
   /// Returns the symmetric field x, shape (N, 3), with A x = b. Uses only the rows of b at the fundamental points.
   Net solve(const Net& b) const;
 
-  /// Solves for the given components only; the other components of x are zero.
+  /// Solves only for the given components of the field x; all other components of x are zero.
   Net solve(const Net& b, std::span<const int> components) const;
 
  private:
   /// Components whose systems have the same matrix.
   struct Part {
-    std::vector<int> components, points;  // components that share LU factors; fundamental points at which these components may be nonzero
+    std::vector<int> components, points;  // components: components of the vector field that share LU factors. points: points of the fundamental
+                                          // domain (one per symmetry orbit) at which these components may be nonzero
     std::vector<int> unknown;             // for each point of the surface: index of the unknown of its fundamental point; -1 if it has none
     Eigen::VectorXd images;               // m_a, number of points in the orbit of each fundamental point
     DirectSolver solver;

@@ -106,7 +106,7 @@ AdaptationOptions AdaptationOptions::coarser(double factor) const {
 namespace {
 
 /// Returns the largest allowed length of an element: the smallest value of L_ref min{1, (phi_ref / phi)^kappa} over all quantities phi whose
-/// reference variation phi_ref is set (P-37).
+/// reference variation phi_ref is set (1.4).
 double allowed_length(const surface::MidLine& line, const AdaptationOptions& options) {
   double factor = 1;
   const auto heed = [&](const std::optional<double>& reference, double variation) {

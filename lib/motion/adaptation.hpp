@@ -20,7 +20,7 @@ namespace tanktread::motion {
 struct AdaptationOptions {
   double radius = 1;                                       ///< particle radius R_C; not a key of the deck
   bool enabled = false;
-  std::string indicator = "error";                         ///< `error` (1.5) or `variation` (P-37)
+  std::string indicator = "error";                         ///< `error` (1.5) or `variation` (1.4)
   double surface_tolerance = 4e-4;                         ///< tolerance of the estimated error of the surface position (1.5), length
   std::optional<double> load_tolerance;                    ///< tolerance of the estimated load error (1.5), force/length^2; if empty, not used
   /// L_ref, reference length of an element; this and the next five members are set only if the indicator is `variation`
@@ -30,7 +30,7 @@ struct AdaptationOptions {
   std::optional<double> reference_traction_variation;      ///< T_ref, reference variation of the traction (force per current area), force/length^3
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
   std::optional<double> limit_aspect_ratio;                ///< D_ref, largest aspect ratio of an element
-  std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (P-37)
+  std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (1.4)
   /// largest allowed length of an element next to a thin film of fluid, divided by sqrt(film width x R_C); set if there are films
   std::optional<double> film_resolution;
   static constexpr double default_film_resolution = 0.7;   ///< default of film_resolution; 0.5 for rigid bodies among several particles
@@ -55,7 +55,7 @@ struct AdaptationOptions {
   AdaptationOptions coarser(double factor) const;
 };
 
-/// Returns the elements and directions to refine (P-37), in the order of elements(mesh). An element is refined along the direction a if
+/// Returns the elements and directions to refine (1.4), in the order of elements(mesh). An element is refined along the direction a if
 ///
 ///   L_a > L_min  and  ( L_a > L_ref min{1, (phi_ref / phi_a)^kappa}  or  L_a / L_b > D_ref )
 ///
@@ -64,21 +64,23 @@ struct AdaptationOptions {
 std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
 /// Returns the elements and directions to coarsen. An element is merged along a direction if the merged element, of twice the length, stays below
-/// `coarsening margin` times every limit of (P-37).
+/// `coarsening margin` times every limit of marks().
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
-/// add_films() marks elements that are longer than `film resolution` times sqrt(width x R_C), where width is the width of the adjacent film. This
-/// limit also holds for elements shorter than L_min. Earlier marks are kept. keep_films() removes merges whose merged element would be longer than
-/// `coarsening margin` times this limit. `lengths` (of elements, along s and t) and `widths` (of films) are in the order of elements(mesh).
+/// Marks elements that are longer than `film resolution` times sqrt(width x R_C), where width is the width of the adjacent film. This limit also
+/// holds for elements shorter than L_min. Earlier marks are kept. `lengths` (of elements, along s and t) and `widths` (of films) are in the order of
+/// elements(mesh).
 void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
                std::vector<spline::Mark>& marks);
+/// Removes merges whose merged element would be longer than `coarsening margin` times the limit of add_films().
 void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
                 std::vector<spline::Merge>& merges);
 
-/// Return the elements and directions to refine (marks) and to coarsen (merges), from estimated errors (1.5). An element is refined along a direction
-/// if its length along this direction is greater than L_min and one of its errors exceeds the tolerance of this error. It is merged into an element
-/// of twice the length if all errors of that element are below `coarsening margin` times their tolerances.
+/// Returns the elements and directions to refine, from estimated errors (1.5). An element is refined along a direction if its length along this
+/// direction is greater than L_min and one of its errors exceeds the tolerance of this error.
 std::vector<spline::Mark> marks(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
+/// Returns the elements and directions to coarsen, from estimated errors (1.5). An element is merged into an element of twice the length if all
+/// errors of the merged element are below `coarsening margin` times their tolerances.
 std::vector<spline::Merge> merges(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
 
 }  // namespace tanktread::motion

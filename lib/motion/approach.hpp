@@ -13,7 +13,7 @@ namespace tanktread::motion {
 /// Result of approach_steady: the weaker flows for which a steady shape was found on the way to the full flow.
 struct Approach {
   std::vector<double> amplitudes;  ///< flow amplitudes at which a steady shape was found, ascending; 1 is the amplitude of the scene
-  SteadyReport last;               ///< report of the last search: at the full flow (amplitude 1), or the search that failed
+  SteadyReport last;               ///< report of the last search, which was either at the full flow (amplitude 1) or failed
 
   bool arrived() const { return !amplitudes.empty() && amplitudes.back() == 1; }
   std::string text() const;  ///< returns a sentence that lists the amplitudes at which a steady shape was found

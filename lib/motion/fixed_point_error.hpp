@@ -17,7 +17,7 @@ namespace tanktread::motion {
 /// step.
 class FixedPointError {
  public:
-  /// `most`: largest number m of earlier iterates.
+  /// `most`: largest number m of earlier iterates x_j that the estimate (4.32) uses.
   explicit FixedPointError(int most) : most_(most) {}
 
   /// Stores the iterate x_k and its correction f_k, which must be finite. Returns the estimate (4.32) of the error x_k - x*, where x* is the fixed
@@ -29,7 +29,7 @@ class FixedPointError {
 
  private:
   int most_;
-  std::deque<std::pair<Net, Net>> before_;  // x_j, f_j, latest last
+  std::deque<std::pair<Net, Net>> before_;  // pairs of an earlier iterate x_j and its correction f_j, latest last
 };
 
 }  // namespace tanktread::motion

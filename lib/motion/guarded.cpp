@@ -9,11 +9,13 @@ namespace tanktread::motion {
 
 namespace {
 
-enum Outcome { fine, told_to_stop, failed, exhausted };  // outcomes on one rank, from best to worst; the worst on any rank is the common outcome
+enum Outcome { fine, told_to_stop, failed, exhausted };  // outcomes of a call on one rank, from best to worst; the worst outcome of all ranks is the
+                                                         // common outcome
 
 }  // namespace
 
-/// Returns whether `act` succeeded on all ranks; `act` returns whether its result is finite. `told`: whether this rank received a stop signal.
+/// Calls `act` and returns whether it succeeded on all ranks. `act` returns true if its result is finite. `told`: true if this rank received a stop
+/// signal.
 bool GuardedDynamics::done(bool told, const std::function<bool()>& act) {
   int mine = told ? told_to_stop : fine;
   std::string reason;

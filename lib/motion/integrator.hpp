@@ -43,15 +43,15 @@ void forget(State& state);
 /// Computes the slope dx/dt at the state, if the state has no slope yet.
 void begin(coupling::Dynamics& dynamics, State& state);
 
-/// freeze() assembles the layer operators of the Jacobian at the shape and the time of the state. refreeze() assembles them at the shape `frozen` and
-/// its time, if the state has this shape. If the lattice moves, both functions finally set the time of the motion to `time`, in a step that begins at
-/// the time of the state.
+/// Assembles the layer operators of the Jacobian at the shape and the time of the state, and stores both in State::frozen and State::frozen_time. If
+/// the lattice moves, finally sets the time of the motion to `time`, in a step that begins at the time of the state.
 void freeze(coupling::Dynamics& dynamics, State& state, double time);
+/// Assembles the layer operators of the Jacobian at the shape State::frozen and its time, if the state has this shape. Sets the time like freeze().
 void refreeze(coupling::Dynamics& dynamics, const State& state, double time);
 
-/// If the motion is not smooth in time at the time of the state (a kink), restarts the state and returns true. The restart keeps only position, step
-/// and frozen layer operator, and computes the slope after the kink. Otherwise returns false. `advance` calls this function first; until then the
-/// state has the slope before the kink.
+/// Restarts the state and returns true if the motion is not smooth in time at the time of the state (a kink); otherwise returns false. The restart
+/// keeps only position, step size and frozen layer operator, and computes the slope (velocity) after the kink. `advance` calls this function first.
+/// Until then the state contains the slope before the kink.
 bool cross_kink(coupling::Dynamics& dynamics, State& state);
 
 /// Report of one call of `advance`.

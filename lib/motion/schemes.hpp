@@ -110,7 +110,7 @@ int rkc2_stages(double dt, double rho);
 /// velocity evaluation if nothing is assembled.
 double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations);
 
-/// The Crank-Nicolson scheme (P-38) of the paper by Maestre et al. (2017), by default with its sub-iteration and its step rule (4.1):
+/// The Crank-Nicolson scheme of the paper by Maestre et al. (2017), equation 38, by default with its sub-iteration and its step rule (4.1):
 ///
 ///   x^{k+1} = x_n + dt/2 (v(x_n) + v(x^k))   until  |x^{k+1} - x^k|_2 / (R_C sqrt(m_C)) <= 1e-7;
 ///   after more than 8 sub-iterations, the step is repeated with 0.75 dt; after fewer than 4, the next step is 1.33 dt.

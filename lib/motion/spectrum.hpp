@@ -27,7 +27,8 @@ struct SpectrumOptions {
   std::string method = "dense";    ///< dense, krylov
   std::optional<double> shift;     ///< shift for krylov, 1/time
   int block = 3;                   ///< block size for krylov
-  std::optional<Vec3> parity;      ///< parity of the modes under reflections of x1, x2, x3; empty: parity of the shape
+  std::optional<Vec3> parity;      ///< parity of the modes under reflections of x1, x2, x3: 1 symmetric, -1 antisymmetric. If not set, the modes have
+                                   ///< the symmetry of the shape
   double difference = 1e-5;        ///< size of the displacements in the finite differences for the Jacobian, divided by the particle radius R_C
 
   void declare(deck::Section& section);
@@ -44,8 +45,8 @@ struct Conserved {
   ModeKind kind;
 };
 
-/// Mode Re(mode e^{rate t}) of the linearised motion: a displacement of the control points, or if there are surface fields, a change of positions and
-/// fields. It is scaled to a largest displacement of 1. If no control point moves, it is scaled to a largest component of 1.
+/// Eigenmode Re(mode e^{rate t}) of the linearised motion: a displacement of the control points and, if there are surface fields, a change of the
+/// fields. It is scaled such that the largest displacement is 1. If no control point moves, the largest component is 1.
 struct Mode {
   std::complex<double> rate;
   Net real, imaginary;

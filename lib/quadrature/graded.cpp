@@ -66,7 +66,8 @@ constexpr double smallest = 1e-8;
 /// would choose the direction for square parts, so the result would not respect the symmetry of the shape.
 constexpr double square = 1.01;
 
-/// Largest number of parts of an element, above which the integral is NaN. Even a target on the element needs only some hundreds of parts.
+/// Largest number of parts into which an element is divided; if more are needed, the integral is NaN. Even a target on the element needs only some
+/// hundreds of parts.
 constexpr int most_parts = 100'000;
 
 }  // namespace

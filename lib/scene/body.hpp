@@ -20,8 +20,8 @@
 
 namespace tanktread {
 
-/// Plane through the centroid in which the Taylor parameter D and tank-treading are measured. The rows of `axes` are the first in-plane direction a,
-/// the normal (cross product of b and a) and the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
+/// Plane through the centroid of the particle in which the Taylor parameter D and tank-treading are measured. The rows of `axes` are the first
+/// in-plane direction a, the normal (cross product of b and a) and the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
 struct FlowPlane {
   Mat3 axes = Mat3::Identity();
   std::optional<Mat3> of_shear;  ///< rows: direction of a simple shear flow, normal of the plane, direction of the velocity gradient. Set only for a
@@ -29,8 +29,9 @@ struct FlowPlane {
   bool holds_flow = true;  ///< false if the flow is not planar; the Taylor parameter D is then measured in the plane of the longest and the shortest
                            ///< axis of inertia
 
-  bool fixed() const { return axes.isIdentity(0); }                     ///< returns true if the plane is x1 x3
-  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of x along the rows of `axes`
+  bool fixed() const { return axes.isIdentity(0); }                     ///< returns true if this is the plane x1 x3
+  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of the vector x along the three directions that
+                                                                        ///< are the rows of `axes`
   Net turned(const Net& x) const { return fixed() ? x : Net(x * axes.transpose()); }
   std::string description() const;
 };

@@ -14,17 +14,18 @@ namespace tanktread {
 /// Exact solution for a sphere, spheroid or ellipsoid in a flow without strain. Force and traction depend only on the motion relative to the flow.
 struct ExactBody {
   stokes::Ellipsoid ellipsoid;
-  Mat3 axes;  ///< principal axes in space, as columns
+  Mat3 axes;  ///< columns: principal axes of the ellipsoid, in coordinates of space
   Vec3 centre;
-  Vec3 velocity, angular_velocity;  ///< velocities relative to the flow, in components along the principal axes
+  Vec3 velocity, angular_velocity;  ///< velocities of the body relative to the flow, in components along the principal axes
   double viscosity;
 
   Vec3 force() const;   ///< returns the force on the body
   Vec3 torque() const;  ///< returns the torque on the body about its centre
 
-  /// Return quantities at the point of the exact surface that lies in the direction of x from the centre: the pressure p = -t.n up to a constant,
-  /// with t the traction on the body, and the unit normal.
+  /// Returns the pressure p = -t.n up to a constant, with the traction t on the body, at the point of the exact surface that lies in the direction of
+  /// x from the centre.
   double pressure(const Vec3& x) const;
+  /// Returns the unit normal n at this point.
   Vec3 normal(const Vec3& x) const;
 
   /// Returns false if the pressure is zero everywhere, which is the case if the body only rotates about axes of revolution.

@@ -25,7 +25,8 @@ struct Member {
   spline::Block block;
   std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; this object is shared by members with equal spaces
   std::shared_ptr<const membrane::Membrane> membrane;  ///< membrane; shared if also the materials and the unstressed shapes are equal
-  spline::Place place;    ///< parametric point of the material point whose phase angle is recorded; it does not change if the mesh adapts
+  spline::Place place;    ///< parametric point of the material point whose phase angle is recorded. The parametric point does not change if the mesh
+                          ///< adapts
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
   PhaseAngle phase_angle;
 

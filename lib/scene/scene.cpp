@@ -389,7 +389,7 @@ bool may_change_on_resume(const std::string& path) {
     const bool of_fields = of_particle.starts_with("Interface/fields/") || of_particle.starts_with("Interface/surfactant/");
     return (of_particle.starts_with("Interface/") && !of_fields) || of_particle.starts_with("Adaptation/");
   }
-  if (path == "Output/power balance" || path == "Contact/limiter") return false;  // series of the results depend on these keys
+  if (path == "Output/power balance" || path == "Contact/limiter") return false;  // these keys decide which series the results contain
   for (const char* fixed :
        {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall", "Interface/fields", "Interface/surfactant",
         "Output/series"})

@@ -100,7 +100,8 @@ struct ContactOptions {
 struct Scene : ParticleKind {
   stokes::FlowOptions flow;
   std::shared_ptr<const deck::Units> units;  ///< units of the deck's values; null if the deck does not set them
-  std::vector<ParticleKind> particles;  ///< sections Particles/<name>; if empty, the scene has one particle, with its options in the base class
+  std::vector<ParticleKind> particles;  ///< particles of the sections Particles/<name>; if empty, the scene has one particle, whose options are in
+                                        ///< the base class ParticleKind
   ContactOptions contact;
   DomainOptions domain;
   WallOptions wall;

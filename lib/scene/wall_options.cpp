@@ -30,9 +30,9 @@ void WallOptions::declare(deck::Section& section) {
               "velocity of the second wall, which Wall/distance adds: three numbers, tangential to the wall. If not given, the wall moves "
               "with the flow of Flow/type. Flow/history changes it in time");
   section.key("elements per period", elements_per_period, deck::between(4, 200), "1",
-              "number of elements of each plane wall along the longer of its two periods; along the shorter one, elements are about as "
-              "long. If not given, elements are as long as a twelfth of Wall/distance (with a single wall, of R_C, the radius of the "
-              "sphere with the particle's volume), but at most 48 per period");
+              "number of elements of each plane wall along the longer of its two periods; along the shorter period, elements have about the "
+              "same length. If not given: the smallest number for which elements are no longer than a twelfth of Wall/distance (with a single "
+              "wall, of R_C, the radius of the sphere with the particle's volume), but at most 48");
   section.key("contact gap", contact_gap, deck::between(1e-6, 1), "R_C",
               "smallest allowed gap between a particle and the plane wall, divided by R_C, the radius of the sphere with the volume of the "
               "smallest particle. If a gap is smaller, the run ends with a checkpoint");

@@ -6,7 +6,7 @@
 
 namespace tanktread::spline {
 
-/// Representation of the surface on the faces around an extraordinary point.
+/// Rule by which the surface is represented on the faces around an extraordinary point.
 enum class ExtraordinaryRule {
   g1,             ///< one bi-quartic element per face, with continuous tangent planes (G1; Maestre et al. 2017); not nested under refinement
   catmull_clark,  ///< limit surface of Catmull-Clark subdivision, in bicubic pieces that shrink towards the extraordinary point; nested under

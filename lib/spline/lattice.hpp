@@ -10,7 +10,7 @@
 
 namespace tanktread::spline {
 
-/// A vertex and a direction at this vertex. The direction is an index (slot), 0 .. 3 counter-clockwise.
+/// A vertex of the lattice and one of the edges that start there, in the direction with the index `slot` (see Lattice).
 struct Ray {
   int vertex, slot;
 };

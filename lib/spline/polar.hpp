@@ -14,7 +14,8 @@ namespace tanktread::spline {
 /// Representation of the surface around a pole.
 enum class PoleRule {
   plain,             ///< one function per pole, only continuous (C0) there; elements at a pole have one side that is collapsed to the pole
-  bezier_transform,  ///< functions of `plain`, but degenerate elements at the poles are replaced by non-degenerate pieces (P-A.1, P-A.2)
+  bezier_transform,  ///< functions of `plain`, but degenerate elements at the poles are replaced by non-degenerate pieces (equations A.1 and A.2 of
+                     ///< Maestre et al. 2017)
   c1,                ///< three functions per pole, so that tangent planes are continuous; elements have a collapsed side as in `plain`
 };
 
@@ -66,7 +67,8 @@ Space space(const PolarMesh& mesh);
 /// which have the same control points.
 Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 
-// Conversion of a degenerate bicubic Bezier element, one side of which is a pole, to bicubic elements without a degenerate side (P-A.1, P-A.2).
+// Conversion of a degenerate bicubic Bezier element, one side of which is a pole, to bicubic elements without a degenerate side (equations A.1 and
+// A.2 of Maestre et al. 2017).
 
 /// Indices (i, j, k), i + j + k = 3, of the Bezier points T_ijk of a cubic triangle, in the order in which the points are stored. The triangle
 /// approximates a degenerate element with local coordinates u and v, whose side u = 1 is the pole. The barycentric coordinates are r = u,
@@ -75,16 +77,17 @@ Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 constexpr std::array<std::array<int, 3>, 10> triangle_points{
     {{0, 0, 3}, {1, 0, 2}, {2, 0, 1}, {3, 0, 0}, {0, 1, 2}, {1, 1, 1}, {2, 1, 0}, {0, 2, 1}, {1, 2, 0}, {0, 3, 0}}};
 
-/// Returns the matrix of (P-A.1), shape (10, 16). The matrix maps the 16 Bezier points Q_ij of a degenerate element to the 10 Bezier points T_ijk of
-/// the triangle that approximates the element best. The points Q_i0 .. Q_i3 define a cubic curve in v. For each i, this curve is approximated by a
-/// curve of degree 3 - i by least squares with fixed ends (Hu 2001). The pole is the mean of Q_30 .. Q_33.
+/// Returns the matrix of equation A.1 of Maestre et al. 2017, shape (10, 16). The matrix maps the 16 Bezier points Q_ij of a degenerate element to
+/// the 10 Bezier points T_ijk of the triangle that approximates the element best. The points Q_i0 .. Q_i3 define a cubic curve in v. For each i, this
+/// curve is approximated by a curve of degree 3 - i by least squares with fixed ends (Hu 2001). The pole is the mean of Q_30 .. Q_33.
 Eigen::MatrixXd triangle_of_degenerate();
 
 /// Corners (U, V) = (0,0), (1,0), (1,1), (0,1) of a quadrilateral in a triangle, as barycentric coordinates with respect to the triangle.
 using Corners = std::array<Eigen::Vector3d, 4>;
-/// Returns the matrix of (P-A.2), shape (16, 10). The matrix maps the control points of a cubic Bezier triangle to the Bezier points of a bicubic
-/// quadrilateral in the triangle. The quadrilateral has the local coordinates U and V; Bezier points are numbered along U first. The representation
-/// is exact, because barycentric coordinates are bilinear functions of U and V, and a cubic polynomial of bilinear functions is bicubic.
+/// Returns the matrix of equation A.2 of Maestre et al. 2017, shape (16, 10). The matrix maps the control points of a cubic Bezier triangle to the
+/// Bezier points of a bicubic quadrilateral in the triangle. The quadrilateral has the local coordinates U and V; Bezier points are numbered along U
+/// first. The representation is exact, because barycentric coordinates are bilinear functions of U and V, and a cubic polynomial of bilinear
+/// functions is bicubic.
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners);
 
 /// Returns the three quadrilaterals into which lines from the barycentre to the mid-sides divide a triangle with Bezier points T_ijk. Order: at the
@@ -97,13 +100,13 @@ struct PolePiece {
   Corners corners;             ///< corners of the piece, in barycentric coordinates of the triangle that contains it
   Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 
-  /// Returns the local coordinates on this piece of the point (u, v) of the degenerate element; nothing if the point is neither inside the piece nor
-  /// on its boundary. At the pole v is ignored.
+  /// Returns the local coordinates on this piece of the point (u, v) of the degenerate element; returns nothing if the point is neither inside the
+  /// piece nor on its boundary. At the pole v is ignored.
   std::optional<std::array<double, 2>> local(double u, double v) const;
 };
 
-/// Returns the 3 * 2^subdivisions pieces of a degenerate element: it is divided in v into 2^subdivisions parts, and (P-A.1) and (P-A.2) convert each
-/// of them to three pieces.
+/// Returns the 3 * 2^subdivisions pieces of a degenerate element: it is divided in v into 2^subdivisions parts, and equations A.1 and A.2 of Maestre
+/// et al. 2017 convert each of them to three pieces.
 std::vector<PolePiece> pole_pieces(int subdivisions);
 
 }  // namespace tanktread::spline

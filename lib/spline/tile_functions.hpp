@@ -28,7 +28,8 @@ struct TileFunctions {
   Tiling tiling;                      ///< Bezier mesh
   std::vector<int> anchor;            ///< lattice vertex of each function
   std::vector<int> irregular;         ///< for each element: corner (0 .. 3) that is an extraordinary point, or -1
-  std::vector<Contribution> entries;  ///< coefficients by ascending anchor; none on elements at extraordinary points
+  std::vector<Contribution> entries;  ///< Bezier coefficients of all functions, in ascending order of the anchor; elements at extraordinary points
+                                      ///< have no entries
   std::vector<Knots> knots;           ///< knots of each anchor
 };
 TileFunctions tile_functions(const TMesh& mesh);

@@ -122,7 +122,8 @@ struct Transfer::State {
   const Space& from;
   const Space& to;
   Sampling sampling;
-  std::vector<int> copied;         // for each new control point, the old control point from which it is copied, or -1
+  std::vector<int> copied;         // for each new control point, the index of the old control point from which its value is copied; -1 if it is
+                                   // fitted
   std::optional<Fit> rest;         // least-squares fit of the control points that are not copied
   mutable std::optional<Fit> all;  // least-squares fit of all control points, created if it is needed
 

@@ -253,8 +253,8 @@ void Layer::take_constant_moments(int component) {
   take_moments_of([&](int, int i) { return i == component ? 1. : 0.; });
 }
 
-/// Computes the far sum of the double layer by clusters, sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k over the far nodes q, with the
-/// density f, its mean m and the constant f0 that is subtracted from f at the target. The sum is exactly 0 for a uniform density.
+/// Computes the far sum of the double layer by clusters, sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k. The sums are over the far nodes q. f
+/// is the density, m its mean, and f0 the constant that is subtracted from f for the target. The sum is exactly 0 for a uniform density.
 void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
   const Vec3 mean = mean_density();
   take_moments(mean);

@@ -75,8 +75,9 @@ class Layer {
   /// (2.1) and (2.2) for each element; if empty, it is 1.
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
-  /// Sets the unstressed surface, which Measure::reference needs. The unstressed areas are stored for all far nodes and all points of singular rules.
-  /// `present`: for each element, whether Measure::by_element selects the current area (true) or the unstressed area (false).
+  /// Sets the unstressed surface, to whose area the densities refer with Measure::reference. The unstressed areas are stored for all far nodes and
+  /// all points of singular rules. `present`: for each element, whether Measure::by_element selects the current area (true) or the unstressed area
+  /// (false).
   void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
   /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites (one site of each orbit). If the far sum
@@ -160,14 +161,16 @@ class Layer {
   const std::vector<double>& weights() const { return weight_; }
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
-  /// values() evaluates a field at the far nodes. moments() returns the integral of a function h times each basis function (the transpose of
-  /// values()). `g`: h times area and quadrature weight at each far node.
+  /// Evaluates a field, given by its control values, at the far nodes.
   void values(const Net& field, std::vector<double> (&value)[3]);
+  /// Returns the integral of a function h times each basis function, the transpose of values(). `g`: h times area and quadrature weight at each far
+  /// node.
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
-  /// Return the number of kernel evaluations and the computing times since construction. Times are divided into `setup`, `far`, `near`, `self` and
-  /// `assembly`, and further phases for a lattice or a wall.
+  /// Returns the number of kernel evaluations since construction.
   const Evaluations& evaluations() const { return evaluations_; }
+  /// Returns the computing times since construction, divided into `setup`, `far`, `near`, `self` and `assembly`, and further phases for a lattice or
+  /// a wall.
   const Phases& phases() const { return phases_; }
 
  private:
@@ -177,13 +180,13 @@ class Layer {
     const Net& at;                        ///< positions
     const Net& f0;                        ///< for each target, the constant subtracted from the density of a double layer
     std::span<const int> in_tree;         ///< ascending indices of the targets that are in the tree of clusters
-    bool sites;                           ///< true if the targets are sites of the surfaces
+    bool sites;                           ///< true if the targets are sites of the surfaces, false if they are off the surfaces
     const Near* kept = nullptr;
   };
   template <class Real>
   class RowSums;
 
-  /// Images of the surfaces on a lattice; unused without a cell.
+  /// Data for the images of the surfaces on a lattice; unused if no periodic cell is set.
   struct Lattice {
     std::optional<PeriodicCell> cell;
     Repetition how;
@@ -200,8 +203,8 @@ class Layer {
   struct Reference {
     std::vector<double> bezier, weight;  // bezier: Bezier points of the unstressed surface. weight: quadrature weights of this surface at the far
                                          // nodes, areas included
-    std::vector<bool> present;           // per element: with Measure::by_element, true if the density refers to the element's current area, false:
-                                         // unstressed area
+    std::vector<bool> present;           // used with Measure::by_element; one entry per element: true if the density is per current area of the
+                                         // element, false if it is per unstressed area
   };
 
   bool single() const { return kernel_ == Kernel::single_layer; }

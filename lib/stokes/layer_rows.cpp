@@ -48,7 +48,7 @@ struct FarBasis {
     for (int a = 0; a < padded; ++a) rows.push_back(a < m ? row_of_point[all.points(e)[a]] : spare_row);
   }
 
-  /// Returns the far nodes of the k-th panel, without weights and normals.
+  /// Returns the far nodes of the k-th panel. Does not set their weights and normals.
   PanelNodes<Real> nodes(const LayerSurface& surface, const std::vector<double> (&x)[3], std::size_t k) const {
     const Panel& p = surface.panels[panels[k]];
     PanelNodes<Real> nodes;

@@ -38,11 +38,11 @@ class LayerSurface {
   /// Returns the reflections of all symmetry images except the identity. The reflections are about the centre of the current shape.
   const std::vector<surface::Reflection>& reflections() const { return images_.reflections; }
 
-  /// Sets the shape. Returns false, at no cost, if the shape is unchanged.
+  /// Sets the control net x of the surface. If it is the current net, does nothing and returns false; otherwise returns true.
   bool place(const Net& x);
 
-  /// site() returns the position of site i. value() returns the value at site i of the field with the Bezier points `of`.
-  Vec3 site(int i) const { return value(i, bezier); }
+  Vec3 site(int i) const { return value(i, bezier); }  ///< returns the position of site i
+  /// Returns the value at site i of the field with the Bezier points `of`.
   Vec3 value(int i, const std::vector<double>& of) const { return self_field.value(i, panels, of); }
 
   /// Returns the pairs of site i and a panel that contains it, one pair per panel. These pairs need singular rules. The list is empty for the rule

@@ -135,8 +135,8 @@ void Layer::image_moments(int e, const Vec3& at, std::vector<Mat3>& moments) {
     moments[b] = factor(e) * (wall.axes().transpose() * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&own[9 * b]) * wall.axes());
 }
 
-/// Adds the contribution of the images in the wall to the rows `a`. For a double layer at sites, this includes the term of (2.2) that subtracts the
-/// density at the site.
+/// Adds the contribution of the mirror images of the panels in the plane wall to the matrix rows `a` of the targets. For a double layer at sites,
+/// this includes the term of (2.2) that subtracts the density at the site.
 template <class Real>
 void Layer::add_image_rows(std::span<const int> targets, const Net* at, Rows<Real>& a) {
   const Panels& panels = surface_.panels;

@@ -71,7 +71,8 @@ class Channel {
   ChannelOptions own_;
   Outline outline_;
   std::optional<CubicCurve> factors_;
-  // half_: half widths of the outline along x2 and x3. height_: length to which the relative depth of a `step` refers (a half width, or the radius)
+  // half_: half widths of the outline along x2 and x3. height_: length by which the depth of a `step` is multiplied: half_[0] or half_[1] if the
+  // cross-section is scaled only along x2 or x3, otherwise the radius of the outline
   double half_[2] = {1, 1}, height_ = 1;
   double first_ = 0, last_ = 0;           // smallest (first_) and largest (last_) arc length s at which the cross-section or the direction of the
                                           // channel changes

@@ -24,9 +24,9 @@ struct Disc {
   double gap(double squared_distance) const { return radius - std::sqrt(std::max(squared_distance, 0.)); }
 };
 
-/// Returns a Disc that is valid for pieces of the surface within the distance r of x. The disc touches the outline at `foot`, the point of the
-/// outline nearest to x, and the curvature of the disc is at least the curvature of the outline at this point. If a point of the outline lies inside
-/// the disc, the radius is reduced such that the circle passes through this point.
+/// Returns a disc that gives the lower bound (see Disc) for every piece of the surface within the distance r of x. The disc touches the outline at
+/// `foot`, the point of the outline nearest to x. Its curvature is at least the curvature of the outline at `foot`. If a point of the outline would
+/// lie inside the disc, the radius is reduced such that the circle passes through this point.
 Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double r, double tolerance) {
   if (foot.distance < tolerance) return {foot.x, 0};
   const PlaneJet at = outline.at(foot.side, foot.u);
@@ -49,7 +49,8 @@ struct ElementPart {
   Disc disc{Vec2::Zero(), 0};
   double bound = -std::numeric_limits<double>::infinity();  // lower bound of the distance of the piece from the outline
   Vec3 corner = Vec3::Zero();                               // corner of the piece farthest from the centre of `disc`
-  // true if the piece is more curved along the column index of `points` than along the row index, so that it is bisected along the column index
+  // direction in which the piece is bisected, the one in which it is more curved. true: along the column index of `points`, false: along the row
+  // index
   bool bends_across = false;
 
   /// Returns an upper bound of the distance from x to the points of the piece, in the plane x2 x3.

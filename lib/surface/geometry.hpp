@@ -25,14 +25,14 @@ Point point(const spline::Space& space, const Net& net, const spline::Site& site
 /// Returns the value of the field with control values `net` at a site (element and local coordinates).
 Vec3 value(const spline::Space& space, const Net& net, const spline::Site& site);
 
-/// Returns the mean curvature chi = 1/2 div n (P-36); 1/R for a sphere. Units 1/length.
+/// Returns the mean curvature chi = 1/2 div n with the outward normal n; 1/R for a sphere. Units 1/length.
 double mean_curvature(const spline::Space& space, const Net& net, const spline::Site& site);
 
 /// Integral measures by Gauss quadrature. Volume, centroid and moments are exact for the polynomials involved; the area, whose integrand is not a
 /// polynomial, is approximated with the same Gauss points.
 struct Measures {
   double area = 0, volume = 0;
-  Vec3 centroid;        ///< centroid of the volume (P-42)
+  Vec3 centroid;        ///< centroid of the enclosed volume
   Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG (6.1), with y the position relative to the centroid
 };
 
@@ -95,7 +95,7 @@ class Geometry {
 
   const BezierMap& bezier() const { return map_; }
 
-  /// Returns the volume V = 1/3 oint x.n dG (P-43), exactly. V is a homogeneous cubic function of the control points x, so V = x.(dV/dx)/3.
+  /// Returns the volume V = 1/3 oint x.n dG, exactly. V is a homogeneous cubic function of the control points x, so V = x.(dV/dx)/3.
   double volume(const Net& net) const;
 
   /// Computes the flux vector b_A = dV/dx_A, the integral of N_A n over the surface (2.8), exactly, summed over the given elements in ascending
@@ -139,7 +139,7 @@ class Geometry {
 Measures measures(const spline::Space& space, const Net& net);
 double volume(const spline::Space& space, const Net& net);
 
-/// Returns exactly the velocity U (6.4) of the centroid (P-42) of the volume enclosed by the surface x, if its control points move with velocity v.
+/// Returns exactly the velocity U (6.4) of the centroid of the volume enclosed by the surface x, if its control points move with velocity v.
 Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v);
 
 }  // namespace tanktread::surface

@@ -11,7 +11,7 @@
 
 namespace tanktread::surface {
 
-/// A mid-line of an element, along s at t = 1/2 or along t at s = 1/2 (P-36): its length L, and |phi(end) - phi(start)| / L for three fields phi: the
+/// A mid-line of an element, along s at t = 1/2 or along t at s = 1/2 (1.3): its length L, and |phi(end) - phi(start)| / L for three fields phi: the
 /// traction (per current area), the velocity and the mean curvature chi. Units: length, and the unit of phi per length.
 struct MidLine {
   double length = 0, traction = 0, velocity = 0, curvature = 0;
@@ -69,7 +69,7 @@ struct Errors {
 struct Resolution {
   double length = 0;  ///< mean length of the element's edges along the direction
   Errors errors;
-  Errors merged;  ///< errors of the merged element of twice the length; estimated as 16 times `errors` if there is no such element
+  Errors merged;  ///< errors of the element after merging, with twice the length; estimated as 16 times `errors` if there is no such element
 };
 
 /// Returns the estimated discretisation errors along s and along t for each element of elements(mesh), in this order. A line of sample points ends at

@@ -309,7 +309,8 @@ void ChannelOptions::declare(deck::Section& list) {
            "working directory, then in the directory of the deck");
   list.key("bend radius", bend_radius, deck::positive(), "length",
            "radius of the circular arc along which the centre line of the channel bends; straight if not given");
-  list.key("bend start", bend_start, deck::any(), "length", "arc length s of the centre line of the channel at which its bend begins");
+  list.key("bend start", bend_start, deck::any(), "length",
+           "arc length s of the centre line of the channel at which its bend begins. Up to there, the centre line is the x1 axis and s = x1");
   list.key("bend angle", bend_angle, deck::between(0.01, 180.), "degrees",
            "angle, in degrees, by which the centre line of the channel turns in its bend, from x1 towards x2");
   list.key("start", start, deck::any(), "length",

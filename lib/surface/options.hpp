@@ -37,9 +37,8 @@ struct MeshOptions {
   spline::PolarMesh polar_mesh() const;
   int axis() const { return pole_axis.value()[1] - '1'; }
 
-  /// Return the number of control points of the mesh, and the number of elements of its T-mesh.
-  double n_points() const;
-  double n_elements() const;
+  double n_points() const;    ///< returns the number of control points of the mesh
+  double n_elements() const;  ///< returns the number of elements of its T-mesh
 };
 
 /// Options `Particle/initial shape` of the deck: the shape at the start of a run, if it is not the resting shape. Exactly one of `map`, `stretch`,
@@ -118,8 +117,11 @@ struct ChannelOptions {
   std::string directions = "x2 x3";      ///< directions in which the cross-section is scaled
   std::optional<std::string> points;     ///< path of the file with the factors that scale the cross-section; set for the profile `file`
   std::optional<double> bend_radius;     ///< radius of the arc of the centre line; not set for a straight centre line
-  double bend_start = 0, bend_angle = 90;  ///< bend_start: x1 at which the arc begins. bend_angle: angle of the arc, from x1 towards x2, degrees
-  std::optional<double> start, end;      ///< ends of the modelled part, as coordinates along the centre line
+  double bend_start = 0, bend_angle = 90;  ///< bend_start: arc length s of the centre line at which the arc begins (up to there, s = x1). bend_angle:
+                                           ///< angle of the arc, from x1 towards x2, degrees
+  std::optional<double> start, end;      ///< arc lengths s of the centre line at which the computed part of the channel begins and ends; if not set,
+                                         ///< 4 R_T before the first and after the last change of cross-section or direction (R_T: radius of the
+                                         ///< circle with the area of the inlet)
   std::optional<int> axial_elements;     ///< number of elements along the wall; if not set, it is chosen from the shape of the wall
 
   void declare(deck::Section& list);

@@ -92,7 +92,7 @@ class Outline {
   bool inside(const Vec2& p) const { return distance(p) > 0; }
 
   /// Returns the point of the outline nearest to p. p must be within the distance r of x. `its`, the point of the outline nearest to x, limits the
-  /// search. Unlike in nearest(), the distance in the result is not negative outside.
+  /// search. The distance in the result is not signed, whereas nearest() returns a negative distance if p is outside the outline.
   Nearest nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const;
 
   /// Returns the number of elements of each side if `elements` elements are distributed in proportion to the lengths of the sides, with at least

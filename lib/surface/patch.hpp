@@ -49,7 +49,7 @@ template <class Value>
 using Grid = std::array<std::array<Value, cells + 1>, cells + 1>;
 Grid<Vec3> sample(const Patch& patch);
 
-/// Returns coordinate c (0, 1 or 2) of the positions on this grid.
+/// Returns coordinate c (0, 1 or 2) of the positions that sample(patch) returns.
 Grid<double> sample(const Patch& patch, int c);
 
 /// The Bezier points of one element of a surface.

@@ -15,8 +15,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Rows of control points; each row is a circle about the axis. Control point A of row k = row[A] is at profile[2 k] times across[A] in the plane
-/// normal to the axis, and at the height profile[2 k + 1]. across[A] has length 1, except at a C1 pole.
+/// Rows of control points; each row is a circle about the axis. Control point A belongs to row k = row[A]. Its position is profile[2 k] times
+/// across[A] in the plane normal to the axis, and profile[2 k + 1] along the axis. across[A] is a vector of length 1, except at a C1 pole.
 struct Circles {
   std::vector<int> row;
   std::vector<Eigen::Vector2d> across;
@@ -83,7 +83,7 @@ class Sector {
     const Net net = circles_.net(profile);
     for (const Node& node : nodes_) add(node, net, m);
     if (!c1_)
-      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // keeps the control points at the poles on the axis
+      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // the control points of the poles stay on the axis
         m.matrix.row(k).setZero(), m.matrix.col(k).setZero();
         m.matrix(k, k) = 1, m.gradient[k] = 0;
       }

@@ -18,7 +18,7 @@ struct Quality {
   Vec3 folded_place = Vec3::Zero();
 
   /// Largest aspect ratio of an element: the ratio of the mean lengths of the tangents a1 and a2, or the inverse ratio if it is larger. For a
-  /// straight element this is L_alpha/L_beta of (P-37).
+  /// straight element this is L_alpha/L_beta of (1.4).
   double aspect_ratio = 1;
   int stretched_element = 0;
 };

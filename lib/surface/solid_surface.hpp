@@ -19,7 +19,8 @@ struct SolidSurface {
   Net net;
   std::vector<std::vector<spline::Site>> sites;
   Eigen::SparseMatrix<double> open_from_periodic;
-  /// numbers of equal elements along the two directions of a plate; {0, 0} for other surfaces. Collocation point i grid[1] + j has the indices (i, j)
+  /// numbers of equal elements along the two directions of a plate, each with one collocation point; {0, 0} for other surfaces. The collocation point
+  /// with the indices (i, j) along the two directions is `sites`[i grid[1] + j]
   std::array<int, 2> grid{0, 0};
 
   int n_points() const { return static_cast<int>(sites.size()); }  ///< number of coefficients of a density

@@ -45,14 +45,14 @@ struct RepeatingLine {
 /// period. The part of this element before the seam is the last piece of `open`, and the part after the seam is piece 0.
 RepeatingLine repeating(const std::vector<double>& knots, const std::array<double, 2>& ends);
 
-/// Returns the collocation points of the tensor product of two lines; the index on the second line runs fastest.
+/// Returns the collocation points of the tensor product of two lines; the index on the line `around` runs fastest.
 std::vector<std::vector<spline::Site>> sites_of(const Line& along, const Line& around);
 
 /// Returns the Kronecker product a x b, without entries that are zero up to round-off.
 Eigen::SparseMatrix<double> kronecker(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// Returns the space of products of two lines: s runs along the first one, t along the second one. Control point i n + k belongs to function i of the
-/// first and function k of the second line, which has n functions.
+/// Returns the tensor-product space of two lines: s runs along the line `along`, t along the line `around`. Control point i n + k belongs to function
+/// i of `along` and function k of `around`, where n is the number of functions of `around`.
 spline::Space product(const Line& along, const Line& around);
 
 }  // namespace tanktread::surface

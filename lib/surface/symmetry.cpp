@@ -89,8 +89,8 @@ class ImageSearch {
     return true;
   }
 
-  /// Finds, for each control point of element e, its image on the element `other`. Compares basis functions in addition to positions, because control
-  /// points coincide where two sides of a wall meet at a corner.
+  /// Finds, for each control point of element e, its image on the element `other`. Returns false if a control point has no image there. Compares
+  /// basis functions in addition to positions, because control points coincide where two sides of a wall meet at a corner.
   bool same_basis(const Turn& turn, int e, int other) {
     const spline::Element &from = space_.elements[e], &to = space_.elements[other];
     if (from.points.size() != to.points.size()) return false;

@@ -90,7 +90,7 @@ struct FundamentalElements {
   std::vector<int> element;
   std::vector<double> weight;
 
-  bool whole() const;  ///< returns whether all weights are 1: only the identity maps any of these elements onto itself
+  bool whole() const;  ///< returns whether all weights are 1, that is, no symmetry except the identity maps one of these elements onto itself
 };
 
 /// Returns one element per orbit, with its weight. `points(e)` returns the control points of element e.

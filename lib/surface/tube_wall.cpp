@@ -15,8 +15,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Returns int_0^x (1 + (g - 1)/(1 + y^4)) dy with g = `grading`: up to a constant factor, the number of elements between 0 and x. x is in units of w
-/// (see tube_wall()).
+/// Returns the number of elements between 0 and x, up to a constant factor: int_0^x (1 + (g - 1)/(1 + y^4)) dy with g = `grading`. x is a position
+/// along the wall, divided by the length w (see tube_wall()).
 double count(double x, double grading) {
   const double r = std::numbers::sqrt2;
   const double bell =
@@ -144,7 +144,7 @@ std::vector<Vec2> through(const Channel& channel, const std::vector<double>& kno
 
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
   std::vector<double> knots = channel->knots(channel->elements()), periodic;
-  if (channel->repeats()) {  // moves both ends of the wall to a quarter of an element after a knot of the periodic splines
+  if (channel->repeats()) {  // moves both ends of the wall, relative to the knots of the periodic splines, to a quarter of an element after a knot
     periodic.assign(knots.begin(), knots.end() - 1);
     const double before = 0.75 * (knots.back() - periodic.back());
     knots.insert(knots.begin(), knots.front() - before);

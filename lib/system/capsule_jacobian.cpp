@@ -83,13 +83,13 @@ Net CapsuleJacobian::inflation(const Net& c) {
   return along.allFinite() ? along : c;
 }
 
-/// Returns B v - shift B J dx, with
+/// Returns P B P v + (1 - P) v - shift B J dx, with the operator B of (4.2) and
 ///
-///   B v = P B P v + (1 - P) v,   B J dx = P (grad v_inf dx - (1/mu) R^{-1} A M0^{-1} H dx)                                         (4.3)
+///   B J dx = P (grad v_inf dx - (1/mu) R^{-1} A M0^{-1} H dx)                                                                      (4.3)
 ///
 /// P is the volume projection (2.8), v_inf the ambient velocity, R the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the
-/// membrane tangent. `work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies B v is v, and B J
-/// dx is 0. The layers and the tube are applied once, to the sum of all loads.
+/// membrane tangent. `work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies, B is the identity
+/// and B J dx is 0. The layers and the tube are applied once, to the sum of all loads.
 Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& work) {
   const bool moves = v.size() > 0 && has_system(), displaced = dx.size() > 0;
   if (!moves && !displaced) return v;

@@ -26,8 +26,9 @@ class CapsuleJacobian {
     Net rate, slip;
   };
 
-  /// `by_sites`: whether the ambient velocity is evaluated at the collocation sites. `tube`, `interface`: null if there is no tube or if no control
-  /// points slide. `work`: counters of operations, which this object increases. References must outlive this object.
+  /// `by_sites`: true if the ambient velocity is evaluated at the collocation sites, false if its uniform gradient acts on the control points.
+  /// `tube`, `interface`: null if there is no tube or if no control points slide. `work`: counters of operations, which this object increases.
+  /// References must outlive this object.
   CapsuleJacobian(const CapsuleParameters& parameters, const stokes::AmbientFlow& flow, bool by_sites, const Targets& targets, Membranes& membranes,
                   const Volumes& volumes, FrozenLayers& frozen, Tube* tube, InterfaceMotion* interface, Work& work);
 
@@ -38,7 +39,7 @@ class CapsuleJacobian {
   /// volume projection P (2.8), so that the correction e2 of (4.30), which TR-BDF2 computes with the Jacobian, conserves the volumes.
   bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }
 
-  /// Returns B v, or v if control points slide along an interface.
+  /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.
   Net left(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
   RateChange velocity_change(const Net& dx, const Net& work);  ///< returns J dx as `rate`
   /// Returns the left-hand side B (dx - shift J dx) of an implicit step as `rate`, or dx - shift J dx if control points slide. `slip` is not

@@ -39,8 +39,8 @@ inline Work operator+(Work a, const Work& b) {
 struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid
   std::vector<Particle> particles{1};                            ///< particles in stacking order; the space of a single particle need not be set
-  bool strong_load = false;                                      ///< true: membrane load from the pointwise equilibrium (P-3) at the
-                                                                 ///< collocation sites, false: from virtual work (3.5)
+  bool strong_load = false;                                      ///< true: membrane load -div_s tau from the pointwise equilibrium at the collocation
+                                                                 ///< sites, false: from virtual work (3.5)
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;

@@ -84,8 +84,8 @@ class InterfaceMotion {
     Net x, rest, density;  // rest: fluid velocity minus rigid motion and relaxation velocity, v - W - w of (4.6), at the sites where u is evaluated;
                            // density: force density M0^{-1} dE1/dx at the collocation sites, with the mesh energy E1 of (4.6)
   };
-  Latest latest_, known_;  // latest_: data of the last call of `velocity`. known_: copy of latest_ made by `linearise`; empty if the last call of
-                           // `velocity` was at another shape
+  Latest latest_, known_;  // latest_: data of the last call of velocity(). known_: copy of latest_ made by linearise(x); empty if the last call of
+                           // velocity() was at a shape other than x
   Net x_, flux_, normals_;  // shape, b = dV/dx and normals at which the system was linearised
 };
 

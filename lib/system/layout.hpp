@@ -14,7 +14,7 @@ namespace tanktread::coupling {
 /// The functions that exchange nets (one row per control point) return equal nets on all ranks; they are collective.
 class Layout {
  public:
-  /// References must outlive this object. The time of all exchanges is recorded in `phases`. Collective.
+  /// `space`, `symmetry` and `phases` must outlive this object. The time of all exchanges between ranks is recorded in `phases`. Collective.
   Layout(const spline::Space& space, const surface::Symmetry& symmetry, Phases& phases);
 
   const Ranks& ranks() const { return ranks_; }

@@ -52,7 +52,7 @@ void place(std::span<Particle> particles);
 /// Returns the distinct materials of the particles and, if there are several, the index of the material of each element.
 membrane::Materials materials(std::span<const Particle> particles);
 
-/// Returns the area (unstressed or current) to which the loads of all particles refer; by_element if the particles differ.
+/// Returns the area (unstressed or current) to which the loads of all particles refer; Measure::by_element if it is not the same for all particles.
 stokes::Measure measure(std::span<const Particle> particles);
 
 /// Returns, for each element, whether its load is per current area rather than per unstressed area.

@@ -34,9 +34,10 @@ class Targets {
   /// Gathers the velocity at the targets on all ranks. `shared`: see Layout::gather. Collective.
   void gather(bool shared, Net& at_targets) const;
 
-  /// Return the control values of the velocity whose values at the targets are `at_targets`. With collocation, `control_values` is collective and
-  /// divides the work among the ranks, and in `serial_control_values` every rank does all the work.
+  /// Returns the control values of the velocity whose values at the targets are `at_targets`. With collocation, this function is collective and
+  /// divides the work among the ranks.
   Net control_values(Net at_targets) const;
+  /// Returns the same control values as control_values(). With collocation, every rank does all the work.
   Net serial_control_values(const Net& at_targets) const;
 
   /// Returns the control values of the field whose values at the collocation sites are `at_sites`. Collective.

@@ -77,8 +77,8 @@ class ShapeCoordinates {
   static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
   struct Translation {
     Eigen::VectorXd coordinates;  // orthonormal
-    Net field, rest;              // field: control values of the translation. rest: field - across(coordinates), the part of the translation that
-                                  // across() omits
+    Net field, rest;              // field: control values of a rigid translation of a drop. rest: field - across(coordinates), the tangential part of
+                                  // this translation, which across() omits
   };
   Eigen::Index shape_size() const { return static_cast<Eigen::Index>(all_.size() + rigid_.size()); }
   Net of_shape(const Eigen::VectorXd& y) const;

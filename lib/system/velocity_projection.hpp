@@ -34,9 +34,12 @@ class VelocityProjection {
   const Eigen::SparseMatrix<double>& values() const { return values_; }        ///< matrix of the basis functions N_A at the sites, shape
                                                                                ///< (sites, N)
   Net normals(const Net& x) const;                                             ///< unit normals of the surface x at the sites
-  Net control_values(const Net& at_sites) const;                               ///< control values of v (4.21), symmetric if the scene is symmetric
-  Eigen::VectorXd scalar_values(const Eigen::VectorXd& at_sites) const;  ///< control values of a scalar that is equal at all symmetry images, such as
-                                                                         ///< a normal component
+  Net control_values(const Net& at_sites) const;                               ///< returns the control values v (4.21) of the field with the values u
+                                                                               ///< = `at_sites` at the sites; v is symmetric if the scene is
+                                                                               ///< symmetric
+  Eigen::VectorXd scalar_values(const Eigen::VectorXd& at_sites) const;  ///< returns the control values of a scalar field with the values `at_sites`
+                                                                         ///< at the sites. The field must be equal at all symmetry images, such as a
+                                                                         ///< normal component
 
  private:
   surface::Symmetry symmetry_;

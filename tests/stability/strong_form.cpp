@@ -1,4 +1,5 @@
-// The strong form t = -div_s tau (P-3) at the Greville points of a coarse mesh, compared with the weak form on the same mesh with the same steps.
+// The strong form t = -div_s tau (equation 3 of Maestre et al. 2017) at the Greville points of a coarse mesh, compared with the weak form on the
+// same mesh with the same steps.
 //
 // Second derivatives of a cubic surface are only of second order, and the load computed from them is not the gradient of an energy. The capsule is
 // stretched faster than the flow can stretch it, until the step size goes to zero. The paper reports this for its structured mesh with poles; the

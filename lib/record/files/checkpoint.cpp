@@ -116,11 +116,12 @@ namespace {
 
 std::string numbered(const char* name, std::size_t k) { return name + std::to_string(k); }
 
-/// store() adds control nets to a checkpoint under the names `<name>0`, `<name>1`, ... stored() returns the nets with these names.
+/// Adds control nets to a checkpoint under the names `<name>0`, `<name>1`, ...
 void store(const std::vector<Net>& nets, const char* name, Checkpoint& checkpoint) {
   for (std::size_t k = 0; k < nets.size(); ++k) checkpoint.arrays[numbered(name, k)] = nets[k];
 }
 
+/// Returns the control nets that are in a checkpoint under the names `<name>0`, `<name>1`, ...
 std::vector<Net> stored(const char* name, const Checkpoint& checkpoint) {
   std::vector<Net> nets;
   for (std::size_t k = 0; checkpoint.arrays.contains(numbered(name, k)); ++k) nets.emplace_back(checkpoint.arrays.at(numbered(name, k)));

@@ -30,10 +30,11 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-/// new_file() creates an HDF5 file in memory. image() returns its bytes, which write_whole() then writes to the disk in one piece. So write errors,
-/// from which HDF5 does not recover, occur outside of HDF5 and are reported with the system's reason. The bytes are not copied. They are valid until
-/// the file is changed or closed.
+/// Creates an HDF5 file in memory.
 Id new_file();
+/// Returns the bytes of a file in memory, which write_whole() then writes to the disk in one piece. So write errors, from which HDF5 does not
+/// recover, occur outside of HDF5 and are reported with the system's reason. The bytes are not copied and must not be used after the file is changed
+/// or closed.
 std::string_view image(const Id& file);
 
 /// Opens an existing file for reading. Throws RunFailure if the system cannot open it as a file, std::runtime_error if it is not an HDF5 file.
@@ -61,8 +62,9 @@ std::vector<std::string> datasets(hid_t file, const std::string& group);
 void attribute(const Id& object, const std::string& key, const std::string& text);
 void attribute(const Id& object, const std::string& key, std::span<const std::int64_t> values);
 
-/// Return the text of the attribute `key` of the dataset or group `name`, and the names of all its attributes.
+/// Returns the text of the attribute `key` of the dataset or group `name`.
 std::string read_attribute(hid_t file, const std::string& name, const std::string& key);
+/// Returns the names of all attributes of the dataset or group `name`.
 std::vector<std::string> attribute_names(hid_t file, const std::string& name);
 
 }  // namespace tanktread::output::hdf

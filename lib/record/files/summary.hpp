@@ -14,7 +14,7 @@ using Entries = std::vector<std::pair<std::string, Value>>;  ///< named values, 
 
 struct Summary {
   std::string status = "done";  ///< `done`, `steady`, `stopped: <by what>` or `failed: <reason>`
-  Entries<double> final;  ///< last value of every series; steady problems add drag, drag_error, ...
+  Entries<double> final;  ///< last value of every series; steady problems add values such as drag and drag_error
   Entries<std::string> final_in_si;  ///< last values of series with a physical unit, in SI units; empty if the deck does not set its units
   Entries<std::vector<double>> final_vectors;  ///< last values of vectors, as lists: drag, torque
   std::vector<deck::Verdict> expect;

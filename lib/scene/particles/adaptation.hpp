@@ -20,9 +20,10 @@ struct Adapted {
   std::unique_ptr<Body> body;  ///< null if the mesh does not change
   motion::State state;
   bool finer = true;    ///< true if the mesh was refined, false if it was coarsened
-  double change = 0;    ///< largest displacement of the current and the unstressed surface by the transfer to the new mesh, divided by R_C
-  int refused = 0;      ///< number of bisections of elements left out because they exceed `Adaptation/levels`
-  bool full = false;    ///< true if bisections were left out because of `Adaptation/largest number of points`
+  double change = 0;    ///< largest distance, divided by R_C, by which the transfer to the new mesh has displaced a point of the current or the
+                        ///< unstressed surface
+  int refused = 0;      ///< number of bisections of elements that were left out because they would exceed `Adaptation/levels`
+  bool full = false;    ///< true if bisections were left out because the mesh would exceed `Adaptation/largest number of points`
 };
 
 /// Refines the elements that the indicator marks. If no element is refined, merges elements that the indicator allows to be longer. Transfers the

@@ -63,7 +63,7 @@ class Limiter {
   double step_ = 0;
   std::vector<Held> held_;
   Net load_;                                  // load vector (virtual work per control point) of the contact forces that acted during the step
-  std::shared_ptr<coupling::Evaluation> base_;  // evaluation of the system with `load_`
+  std::shared_ptr<coupling::Evaluation> base_;  // evaluation of the system under the contact forces `load_`
 };
 
 }  // namespace tanktread

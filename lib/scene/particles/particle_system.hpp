@@ -43,7 +43,8 @@ class ParticleSystem {
                                                                  ///< fields
   virtual const Body& body() const = 0;
   virtual Net start() const = 0;                                                 ///< returns State::x at time zero
-  virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if the mesh of body() has changed
+  virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if this has changed the mesh of
+                                                                                 ///< body()
   virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
   /// Discards data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
   /// therefore discards them after each checkpoint.
@@ -52,8 +53,9 @@ class ParticleSystem {
   /// fails.
   virtual bool hold_apart(motion::State&, double /*step*/) { return true; }
   virtual coupling::Contacts contacts() const { return {}; }                      ///< returns the current contacts
-  virtual void hold_by(const coupling::Contacts&) {}  ///< applies the forces of the given contacts, on the current mesh, from now on
-  virtual bool adapt(motion::State& state, RunTotals& totals) = 0;  ///< adapts meshes after a step; returns true if body() has changed its mesh
+  virtual void hold_by(const coupling::Contacts&) {}  ///< sets the contact forces that act from now on; they refer to the current mesh
+  virtual bool adapt(motion::State& state, RunTotals& totals) = 0;  ///< adapts meshes after a step; returns true if this has changed the mesh of
+                                                                    ///< body()
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::Work work() const = 0;
@@ -69,8 +71,9 @@ class ParticleSystem {
 /// Builds the system for the particles of the scene: a coupled system, or a free rigid body.
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
-/// Build a coupled system of particles, or a system that consists of one free rigid body.
+/// Builds a coupled system of particles.
 std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+/// Builds a system that consists of one free rigid body.
 std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 }  // namespace tanktread

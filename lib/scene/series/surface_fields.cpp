@@ -128,7 +128,7 @@ surface::FieldsAt SurfaceFields::values_at(std::size_t p) const {
 
 void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
   const auto& loads = capsule_.particles()[p].loads;
-  const auto& parts = members_[p].scene.loads;  // registered loads that the deck uses; they are the last entries of the particle's `loads`
+  const auto& parts = members_[p].scene.loads;  // user-defined loads that the deck uses; they are the last entries of `loads`
   for (std::size_t k = 0; k < parts.size(); ++k)
     parts[k].add_columns(loads[loads.size() - parts.size() + k]->values(members_[p].own(shape(y))), to);
   for (std::size_t k = 0; k < all_.size(); ++k) {

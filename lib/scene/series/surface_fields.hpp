@@ -76,7 +76,7 @@ class SurfaceFields {
     std::size_t particle;
     std::unique_ptr<membrane::Field> field;
     membrane::Surfactant* surfactant = nullptr;  // `field` if it is a surfactant, otherwise null
-    const membrane::FieldParts::Chosen* part = nullptr;  // registered part (see deck::Parts) that made this field; null for a built-in field
+    const membrane::FieldParts::Chosen* part = nullptr;  // user-defined part (see deck::Parts) that created this field; null for a built-in field
   };
 
   Net transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);

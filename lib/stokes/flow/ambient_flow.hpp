@@ -10,12 +10,12 @@
 
 namespace tanktread::stokes {
 
-/// The flow in the absence of the particle: the flow of a duct (P-33), or in unbounded space
+/// The flow in the absence of the particle: the flow of a duct (see DuctFlow), or in unbounded space
 ///
 ///   v(x) = v_0 + L x + (x.H x) d,   tr L = 0,  H d = 0                                                                   (2.20)
 ///
 ///   simple shear         rate (x3, 0, 0)
-///   four-roll (P-48)     rate/2 ((1+a) x1 + (1-a) x3, 0, (-1+a) x1 - (1+a) x3)
+///   four-roll            rate/2 ((1+a) x1 + (1-a) x3, 0, (-1+a) x1 - (1+a) x3)
 ///   planar hyperbolic    rate (x1, 0, -x3): four-roll with a = 1
 ///   uniaxial extension   rate (-x1/2, -x2/2, x3)
 ///   linear               L as given;   uniform   v_0 as given;   quiescent   0
@@ -74,7 +74,7 @@ class AmbientFlow {
   /// matrix.
   Mat3 change() const { return moment_.amplitude * moment_.turn; }
 
-  /// Returns the duct flow; null if there is none.
+  /// Returns the duct flow; null if this is a flow of another type.
   const std::shared_ptr<const DuctFlow>& duct() const { return duct_; }
 
  private:

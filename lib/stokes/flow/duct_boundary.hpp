@@ -66,7 +66,8 @@ class OutlineSpace {
   std::vector<OutlineSite> sites_;
 };
 
-/// Velocity u = v_c - r^2/4: r is the distance from the centroid of the section; v_c is harmonic with v_c = r^2/4 on the outline     (P-34, P-35)
+/// Velocity u = v_c - r^2/4 (equations 34 and 35 of Maestre et al. 2017). r is the distance from the centroid of the section; v_c is harmonic with
+/// v_c = r^2/4 on the outline.
 /// The unknowns are the cubic spline sigma = q dl/dt with the flux q = dv_c/dn, and a constant kappa. They satisfy these equations at collocation
 /// points x0 on the outline:
 ///   int G sigma dt + kappa = int (v_c - v_c(x0)) dG/dn dl,   int sigma dt = 0,   G = -ln|x - x0|/(2 pi)                     (2.15)
@@ -91,7 +92,7 @@ class BoundaryProfile : public DuctProfile {
   double radius_, flow_rate_;
   int n_elements_;
   std::vector<double> x_, y_, dx_, dy_, f_, g_;  // values at the nodes of (2.17). x_, y_: position relative to the centroid. dx_, dy_: line element.
-                                                 // f_: v_c. g_: psi
+                                                 // f_, g_: real part v_c and imaginary part psi of F
 };
 
 }  // namespace tanktread::stokes

@@ -27,9 +27,9 @@ std::unique_ptr<DuctProfile> rectangle_profile(const surface::Vec2& sides);
 /// Returns the profile selected by TubeOptions: a closed form or the boundary-element profile.
 std::unique_ptr<DuctProfile> duct_profile(const surface::TubeOptions& options, const surface::Outline& outline);
 
-/// Unidirectional flow v = (v_1(x2, x3), 0, 0) with  mu (v_1,22 + v_1,33) = p_,1 = -G  and v_1 = 0 on the wall                  (P-33)
-/// with a given mean velocity in the section. Only the pressure p = -G x1 depends on x1. For channels with varying section, a derived class overrides
-/// the velocities; all other members then refer to the inlet.
+/// Unidirectional flow v = (v_1(x2, x3), 0, 0) with  mu (v_1,22 + v_1,33) = p_,1 = -G  and v_1 = 0 on the wall (equation 33 of Maestre et al.
+/// 2017), with a given mean velocity in the section. Only the pressure p = -G x1 depends on x1. For channels with varying section, a derived class
+/// overrides the velocities; all other members then refer to the inlet.
 class DuctFlow {
  public:
   DuctFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity);

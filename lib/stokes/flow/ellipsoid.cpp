@@ -22,7 +22,7 @@ Vec3 Ellipsoid::force(double viscosity, const Vec3& velocity) const {
   return 16 * pi * viscosity * velocity.array() / (chi + alpha.array() * semi_axes.array().square());
 }
 
-/// Returns the vector w of `force_density`, with components w_i = K_i omega_i.
+/// Returns the vector w that force_density() uses, w_i = K_i omega_i, with the coefficients K_i given there for a rotation about axis i.
 Vec3 Ellipsoid::rotlet(double viscosity, const Vec3& angular_velocity) const {
   const Vec3 s = semi_axes.cwiseAbs2();
   Vec3 k;

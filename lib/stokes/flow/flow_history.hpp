@@ -17,9 +17,9 @@ struct FlowHistory {
   std::optional<std::vector<double>> times;       ///< times of the table, in order; two equal times are a jump
   std::optional<std::vector<double>> amplitudes;  ///< amplitudes at `times`, linear in between, constant before and after; 1 if only angles are
                                                   ///< given
-  std::optional<std::vector<double>> angles;      ///< angles at `times`, in degrees; 0 if not given
+  std::optional<std::vector<double>> angles;      ///< rotation angles of the flow at `times`, in degrees; if not given, the flow is not rotated
   std::optional<std::string> file;                ///< file with the columns time, amplitude, angle
-  std::optional<std::string> axis;                ///< axis of rotation; set if angles are given
+  std::optional<std::string> axis;                ///< axis about which the flow is rotated; set if angles are given
   std::optional<double> mean, amplitude, frequency, phase;  ///< parameters of the sine: mean + amplitude sin(2 pi frequency t + phase), phase in
                                                             ///< degrees
 

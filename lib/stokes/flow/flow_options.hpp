@@ -14,23 +14,25 @@ namespace tanktread::stokes {
 /// One plate that bounds a flow, or two parallel plates at a distance.
 struct Plates {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< point on the first plate; unit normal into the fluid
-  std::optional<double> distance;                     ///< distance of the second plate; none if not set
-  std::optional<Vec3> velocity, second_velocity;      ///< velocities of the plates; if not set, a plate moves with the ambient flow
+  std::optional<double> distance;                     ///< distance of the second plate from the first; if not set, there is no second plate
+  std::optional<Vec3> velocity, second_velocity;      ///< velocities of the first and the second plate; a plate whose velocity is not set moves with
+                                                      ///< the ambient flow
 };
 
 /// Options `Flow/*` of the deck: the ambient flow and the outer fluid. The plane of the flow is the x1 x3 plane.
 struct FlowOptions {
   std::string type = "simple shear";  ///< quiescent, uniform, simple shear, four-roll, planar hyperbolic, uniaxial extension, linear, parabolic,
                                       ///< duct, or the name of a registered flow
-  double shear_rate = 1.0;            ///< rate of simple shear, four-roll, planar hyperbolic and uniaxial extension, units 1/time; otherwise 1
+  double shear_rate = 1.0;            ///< rate of simple shear, four-roll, planar hyperbolic and uniaxial extension, units 1/time; 1 for other types
   double viscosity = 1.0;             ///< mu of the outer fluid
-  std::optional<double> roll_parameter;  ///< parameter a of the four-roll flow (P-48)
-  std::optional<Mat3> gradient;          ///< L_ij = dv_i/dx_j; set for `linear`
-  std::optional<Vec3> velocity;          ///< set for `uniform`
+  std::optional<double> roll_parameter;  ///< parameter a of the four-roll flow (equation 48 of Maestre et al. 2017, see AmbientFlow); set for
+                                         ///< `four-roll`
+  std::optional<Mat3> gradient;          ///< velocity gradient L_ij = dv_i/dx_j of the flow type `linear`
+  std::optional<Vec3> velocity;          ///< velocity of the flow type `uniform`
   std::optional<Vec3> gravity;           ///< gravitational acceleration, for particles with a density difference
   std::optional<double> mean_velocity;   ///< mean velocity, flow rate/(area of the section); set for `duct`
   std::string held = "flow rate";        ///< quantity of `duct` that is held constant when particles disturb the flow: flow rate, pressure drop
-  std::optional<std::string> profile;      ///< round, plane; set for `parabolic`
+  std::optional<std::string> profile;      ///< round (v_1 depends on x2 and x3) or plane (v_1 depends only on x3); set for `parabolic`
   std::optional<double> maximum_velocity;  ///< velocity of `parabolic` at x2 = x3 = 0, units length/time
   std::optional<double> half_width;        ///< distance from the axis or mid-plane at which the velocity of `parabolic` vanishes, length
   std::optional<Vec3> pressure_gradient;   ///< gradient of the mean pressure over a periodic cell with plates or posts, units force/length^3

@@ -28,7 +28,7 @@ std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& si
 /// assembled only for representatives.
 struct Original {
   int point;               ///< index of the representative in the ring: the smallest of the indices of all points that maps move to the given point
-  const Congruence* from;  ///< map that moves the representative to the given point; an element of the list given to originals()
+  const Congruence* from;  ///< map that moves the representative to the given point; points into the list passed to originals()
 };
 
 /// Returns the orbit representative of each of the n_around points of a ring.

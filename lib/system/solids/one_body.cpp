@@ -35,7 +35,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   const spline::Space& space = *particle.space;
   stokes::Layer double_layer(stokes::Layer::Kernel::double_layer, space, space.collocation, quadrature);
   double_layer.place(own);
-  double_layer.assemble(all, matrix);  // assembles -H, because the viscosity contrast is -1
+  double_layer.assemble(all, matrix);  // assembles -H (H: double layer), because the viscosity contrast is -1
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature);
   layer.place(own);
   const Vec3 centre = bodies.rest_centre(p);

@@ -20,8 +20,8 @@ Mat3 unit_strain(int k);
 Mat3 strain_of_products(const Eigen::Matrix<double, 5, 1>& products);
 
 /// Force densities that cause given velocities on the body: the six unit rigid motions, the five unit strains and, if `quadratic`, the 18 fields y_j
-/// y_k e_i with y = x - centre, in the axes of the net `surface`. The force density in any affine flow is a combination of the first eleven, and in a
-/// quadratic flow (2.20) a combination of all twenty-nine.
+/// y_k e_i with y = x - centre. Components are along the coordinate axes in which the net `surface` is given. The force density in any affine flow is
+/// a combination of the first eleven, and in a quadratic flow (2.20) a combination of all twenty-nine.
 struct RigidModes {
   RigidModes(RigidTractions& body, const Net& surface, const Vec3& centre, bool quadratic);
 

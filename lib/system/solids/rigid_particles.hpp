@@ -52,7 +52,7 @@ class RigidParticles {
   RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature);
 
   bool empty() const { return bodies_.empty(); }
-  bool prescribed() const;  ///< true if the motion of any body is prescribed
+  bool prescribed() const;  ///< returns whether the motion of at least one body is prescribed
 
   /// Moves every body to the position that fits the rows of the body in x best. Replaces these rows by the control points of the moved body.
   void place(Net& x);
@@ -63,24 +63,26 @@ class RigidParticles {
   void push(const Net& work);
 
   // The next six functions apply only to bodies whose unknown is the double-layer density w (2.23), not to bodies whose unknown is the traction.
-  void add_load(Net& load) const;            ///< adds the load df (2.23) in the rows of bodies whose force and torque are given
+  void add_load(Net& load) const;            ///< adds the load df (2.23) of the bodies whose force and torque are given, in the rows of these bodies
   void add_lacking(Net& v) const;            ///< adds the collocation-error correction (OwnLacking) of the velocity -(1/mu) R^-1 A df that the load
                                              ///< df of a body induces on the body
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
-  void complete(const Net& w, Net& v) const;  ///< completes the double layer (2.23) in the rows of bodies: subtracts w, and adds the
-                                              ///< collocation-error correction (OwnLacking) of the layer. Then adds the rigid motion <w> if force and
-                                              ///< torque are given, and otherwise the correction of the load completing_load()
-  Net completing_load(const Net& w) const;   ///< load (mu/R_C) <w> of bodies with prescribed motion, with <w> the rigid motion nearest to w (2.23); 0
-                                             ///< in other rows
+  void complete(const Net& w, Net& v) const;  ///< completes the left-hand side v of (2.23), in the rows of bodies. First subtracts the density w and
+                                              ///< adds the collocation-error correction (OwnLacking) of its double layer. If force and torque of the
+                                              ///< body are given, then adds the rigid motion <w>; otherwise adds the collocation-error correction of
+                                              ///< the single layer of the load completing_load()
+  Net completing_load(const Net& w) const;   ///< returns the load (mu/R_C) <w> of bodies with prescribed motion, with <w> the rigid motion nearest to
+                                             ///< w (2.23); 0 in the rows of other particles
   void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
   /// Sets the motion, force and torque of body p to values that were not computed from (2.23). Sets the rows of the body in v to the control values
   /// of this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
-  /// On a lattice, the solve for the velocities uses the image of each body in the cell. Before the solve, `enter` sets for each body the ambient
-  /// velocity at the body minus the ambient velocity at its image. shifts[p]: position of particle p minus the position of its image. `gradient`:
-  /// velocity gradient of the flow. After the solve, `carry` moves particle p back from its image if it is a body: adds `along` to the centre and
-  /// `faster` to the velocity.
+  /// On a lattice, the solve for the velocities uses the image of each body in the cell. enter() must be called before the solve. For each body, it
+  /// computes the ambient velocity at the body minus the ambient velocity at its image; the solve subtracts this difference from a prescribed
+  /// velocity. shifts[p]: position of particle p minus the position of its image. `gradient`: velocity gradient of the flow.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
+  /// Moves particle p, if it is a body, from its image back to its own position after the solve: adds `along` to its centre and `faster` to its
+  /// velocity.
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
 
   /// Returns whether particle p is a rigid body. The members below refer to the latest evaluated velocities.

@@ -167,8 +167,8 @@ void RigidTractions::place(const Net& x, std::span<const Vec3> centres, std::opt
   layer_.place(x, at_, responds() && !repeats_);
 }
 
-/// Returns the collocation-error corrections (2.11) for the unknowns y, one per column of z (a density): the work of this density in the residual
-/// velocity, computed from `left_`. In a channel the residual on the wall is included (2.42).
+/// Returns the collocation-error corrections (2.11) for the unknowns y. Each column of z is a force density; its correction is its work in the
+/// residual velocity, computed from the weighted residual `left_`. In a channel the residual on the wall is included (2.42).
 Eigen::VectorXd RigidTractions::lacks(const Net& y, const Eigen::MatrixXd& z) {
   Eigen::VectorXd work = z.transpose() * left_;
   if (!walls_.tube || !walls_.tube->fixed() || !alone_) return work;

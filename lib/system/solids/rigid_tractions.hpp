@@ -39,12 +39,14 @@ namespace tanktread::coupling {
 /// of forces are linear in the error of one density. In a channel the residual on the wall is included (2.42). The matrix is dense, which limits the
 /// number of control points to a few thousand.
 ///
-/// If the fluid has other boundaries, A includes the velocity that f causes through these boundaries: images on a lattice, the wall of a tube and its
-/// pressure drop, plates and posts (2.47), and deformable particles. v_inf then includes the flow that these boundaries cause without bodies. The
-/// additions to A are smooth, and A remains self-adjoint. The densities are found by GMRES, together with the velocity of deformable particles
-/// (2.52), and the preconditioner is the factored operator of the bodies without these additions. Drops and capsules of viscosity ratio 1 without
-/// surface viscosity do not change A. The pressure drop of a duct flow is corrected like a force, unless there are deformable particles; this
-/// correction includes the interpolation error of v_inf (2.41).
+/// The fluid may have other boundaries: images on a lattice, the wall of a tube and its pressure drop, plates and posts (2.47), and deformable
+/// particles. These boundaries change the solution as follows:
+/// - A includes the velocity that f causes through the boundaries, and v_inf includes the flow that they cause without bodies. The additions to A are
+///   smooth, and A remains self-adjoint. Drops and capsules of viscosity ratio 1 without surface viscosity do not change A.
+/// - The matrix with the additions is not factored. GMRES finds the densities, together with the velocity of deformable particles (2.52). Its
+///   preconditioner is the factored operator of the bodies without the additions.
+/// - The pressure drop of a duct flow is corrected like a force, unless there are deformable particles. This correction includes the interpolation
+///   error of v_inf (2.41).
 class RigidTractions {
  public:
   /// `space`: common space of all particles. `unstressed`, `rest`: control nets of all particles, unstressed and at rest. `own`: collocation points
@@ -86,8 +88,8 @@ class RigidTractions {
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
              std::optional<Surroundings> around = {});
 
-  /// Returns the force densities, shape (N, 3), that cause these velocities at the collocation sites of the latest net. Neither motions of the bodies
-  /// nor corrections of the collocation error are included. All particles must be bodies. Collective.
+  /// Returns the force densities, shape (N, 3), that cause these velocities at the collocation sites of the net passed to place() last. Neither
+  /// motions of the bodies nor corrections of the collocation error are included. All particles must be bodies. Collective.
   Net density(const Net& velocities);
 
   /// Returns the correction of the pressure drop (2.7) for the collocation error. `f`: force density on freely moving bodies at the net x. `v`:
@@ -98,10 +100,10 @@ class RigidTractions {
   /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
   SolvedBody integrals(std::size_t p, const Net& f);
 
-  /// Returns the collocation sites of all particles at the latest net.
+  /// Returns the positions of the collocation sites of all particles on the net passed to place() last.
   const Net& sites() const { return at_; }
 
-  BodyLayer& layer() { return layer_; }  ///< returns the single layer at the latest net
+  BodyLayer& layer() { return layer_; }  ///< returns the single layer on the net passed to place() last
 
   /// Returns whether the bodies with the net x are inside the tube and in front of the plane wall. If there is a tube, call Tube::place(x) before.
   bool inside(const Net& x) const;
@@ -123,7 +125,7 @@ class RigidTractions {
   /// Solves the given linear system for a traction. `unknowns`: initial guess, replaced by the solution. Returns the number of iterations. If the
   /// solve does not converge, throws RunFailure and leaves `unknowns` unchanged. Collective.
   int solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
-  void forget_recycled() const;  ///< discards the data of earlier solves that the solver and the tube's wall keep
+  void forget_recycled() const;  ///< discards the data of earlier solves that the iterative solvers of this equation and of the tube's wall keep
   Tube* tube() const { return walls_.tube; }
   stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + residual_.evaluations(); }
 
@@ -146,8 +148,8 @@ class RigidTractions {
   bool repeats_ = false;
   Krylov krylov_;
   double tolerance_;
-  std::optional<Surroundings> around_;  // surroundings at the latest net
-  Net x_, at_;                          // the latest net, and the collocation sites
+  std::optional<Surroundings> around_;  // surroundings passed to place() last
+  Net x_, at_;                          // x_: net passed to place() last. at_: positions of the collocation sites on this net
   Eigen::VectorXd left_;   // int N_A (v - v_inf - (1/mu) A f) dG for the latest density f: weighted residual of (2.40), from which (2.11) computes
                            // corrections
   std::vector<Vec3> centres_;

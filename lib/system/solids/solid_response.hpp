@@ -17,8 +17,8 @@ namespace tanktread::coupling {
 struct SolidScene {
   std::shared_ptr<Solids> solids;
   std::vector<stokes::PlaneWall> planes;  ///< the plates among the solids, with normals into the fluid
-  Vec3 driving_gradient = Vec3::Zero();   ///< gradient of the mean pressure at the amplitude 1 of the flow, force/length^3; between plates, v_inf
-                                          ///< includes its effect
+  Vec3 driving_gradient = Vec3::Zero();   ///< gradient of the mean pressure that drives the fluid, at the amplitude 1 of the flow, force/length^3.
+                                          ///< Between plates, the ambient velocity v_inf already includes its effect
   quadrature::Options quadrature;
 };
 

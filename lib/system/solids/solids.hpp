@@ -56,7 +56,7 @@ class Solids {
   /// `solids` need not outlive this object.
   Solids(const std::vector<Solid>& solids, const Parameters& parameters, Phases& phases);
 
-  /// Force density and uniform velocity of (2.46).
+  /// Solution of (2.46): the force density f and the uniform velocity U.
   struct Flow {
     Net force;  ///< control values of f
     Vec3 drift = Vec3::Zero();
@@ -71,14 +71,14 @@ class Solids {
   /// Returns whether all points `at` are outside of all cylinders and their images.
   bool outside(const Net& at) const;
 
-  /// Returns the solution of (2.46) for the velocity u at the collocation points and the force F.
+  /// Returns the solution f, U of (2.46) for given right-hand sides: the velocity u at the collocation points, and the force F.
   Flow solve(const Net& u, const Vec3& force) const;
 
   /// Computes the rows `rows` of u, the velocity at points `at` off the solids due to the solution `flow`. Not collective. `kept`: near-field
   /// corrections from an earlier layer().near(at, rows); if null, they are computed here.
   void velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept = nullptr);
 
-  std::vector<Vec3> forces(const Net& f) const;  ///< returns int f dG of each solid
+  std::vector<Vec3> forces(const Net& f) const;  ///< returns the integral of the force density f over each solid
 
   /// Returns the power int f.V dG of a force density f, with the prescribed velocities V of the solids.
   double power(const Net& f) const { return f.cwiseProduct(areas_.asDiagonal() * velocities_).sum(); }
@@ -116,11 +116,11 @@ class Solids {
   Net normals_;                        // at the collocation points
   Net flux_;                           // int N_A n dG
   std::vector<Rod> rods_;
-  std::optional<PlateFactors> plates_;  // set if all solids are plates
+  std::optional<PlateFactors> plates_;  // inverse of the operator by Fourier series; set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
                                         // each plate
-  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced; without the present
-                                        // `layer_`
+  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced; those of the current
+                                        // `layer_` are not included
 };
 
 }  // namespace tanktread::coupling

@@ -78,8 +78,8 @@ class Tube {
   /// (2.23).
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
-  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: origin along x1 of the frame of a straight
-  /// wall; by default the particle's centroid.
+  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: x1 coordinate of the origin of the frame of
+  /// wall() if the wall is straight; by default the x1 coordinate of the particle's centroid.
   void place(const Net& x, std::optional<double> centroid = {});
 
   /// Returns the lattice of a periodic duct; not set for other ducts.
@@ -99,10 +99,10 @@ class Tube {
   /// Not collective, except if the duct repeats or its pressure drop is prescribed: then every rank must call it with the same x.
   void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
-  /// Stores the operators of the current shape as low-precision blocks for the Jacobian. `frozen_response` applies them: it returns the response u at
-  /// the particle's collocation points. If the wall's system is solved by iteration, `frozen_response` returns 0. The Jacobian then omits u. This is
-  /// accurate enough, because the contribution of u is small and smooth.
+  /// Stores the operators of the current shape as low-precision blocks for the Jacobian.
   void freeze();
+  /// Returns the response u at the particle's collocation points, computed with the operators that freeze() stored. If the wall's system is solved by
+  /// iteration, returns 0. The Jacobian then omits u. This is accurate enough, because the contribution of u is small and smooth.
   Net frozen_response(const Net& f, const Net& v = {});
 
   /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
@@ -186,7 +186,7 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  std::unique_ptr<BetweenSitesOfWall> between_;  // set up at the first call of leak()
+  std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which leak() evaluates the velocity; set up at the first call of leak()
   Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate through the inlet and in the axial force. weigh_flow() sets
                                       // these and all following members
   Net flow_of_wall_;  // weights w for a velocity u on the wall: w.u is the flow rate through the inlet due to the wall traction that cancels u

@@ -88,8 +88,9 @@ class Wall {
   /// Returns the lowest and highest coordinates of the wall in the axes of the cell.
   std::array<Vec3, 2> across() const { return cell_->range(surface_.net); }
 
-  /// Converts control values of a traction f, one row per site, to control values on the space of the layer. Changes f only if the wall is periodic:
-  /// f is then a periodic spline, but the space is not periodic. `from_space` multiplies by the transpose of this map.
+  /// Converts the control values of a traction f, one row per collocation site of the wall, to control values on the space of layer(). Changes f only
+  /// if the wall is periodic, because f is then a periodic spline, whereas this space is not periodic. from_space() multiplies by the transpose of
+  /// this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
   void from_space(stokes::Rows<float>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
@@ -108,10 +109,10 @@ class Wall {
   const Net& pumped() const { return pumped_; }              ///< wall traction in the open, empty tube per unit pressure drop: A^-1 c (2.13), with
                                                              ///< the operator A
 
-  /// Return weights, one row per control point A, for inner products with tractions on the wall. flow_weights: int N_A c dG, with c =
-  /// flow_of_forces(x); the inner product is mu times the flow rate that the traction causes. force_weights: int N_A e1 dG; the inner product is the
-  /// axial force of the traction.
+  /// Returns weights int N_A c dG, one row per control point A, with c = flow_of_forces(x). Their inner product with a traction on the wall is mu
+  /// times the flow rate that the traction causes.
   Net flow_weights() const;
+  /// Returns weights int N_A e1 dG, one row per control point A. Their inner product with a traction on the wall is its axial force.
   Net force_weights() const;
 
   /// Returns mu times the flow rate along the duct due to a unit force, one row per point of `at` and one column per direction of the force. If the

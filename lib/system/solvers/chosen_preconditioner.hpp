@@ -19,7 +19,7 @@ class RecycledProducts {
   /// Records a product y = A z of the current solve. apply() uses this product from the next solve on.
   void record(const Eigen::VectorXd& z, const Eigen::VectorXd& y) { present_.push_back({z, y}); }
 
-  /// Ends the current solve. From now on, apply() uses the products recorded in this solve.
+  /// Ends the current solve: later calls of apply() also use the products recorded in this solve.
   void refresh();
 
   /// Computes out = Z Y^T in + P (in - Y Y^T in) (2.24). The columns of Z and Y are the stored z and y = A z; P is the preconditioner `other`.

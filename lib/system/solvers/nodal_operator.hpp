@@ -46,8 +46,8 @@ class NodalOperator {
   /// quadrature::Options.
   void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const std::string& far_sum, const Assemble& assemble);
 
-  /// Divides the work of the treecode into `parts` equal parts, one per rank. This rank computes part number `part`. `everybody`: the targets of all
-  /// ranks.
+  /// Divides the work of the treecode among the ranks, in `parts` equal parts. This rank computes the part with the index `part`. `everybody`: the
+  /// targets of all ranks.
   void share(int part, int parts, std::vector<int> everybody);
 
   /// Computes the rows of u = A f at the rank-owned targets; other rows are unchanged. If ranks share the sums, computes this rank's contribution to

@@ -65,8 +65,8 @@ struct SolverOptions {
   /// if directly.
   bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
 
-  /// Returns `system`; if it sets no solver, with the solver for all systems. If it sets neither a solver nor a parameter list, also with the
-  /// parameter list for all systems.
+  /// Returns the options `system` of one kind of system, with missing options filled in. If `system` does not set a solver, the solver is `krylov`.
+  /// If it sets neither a solver nor a parameter list, the parameter list is `belos`.
   IterativeOptions of(IterativeOptions system) const;
 
   void declare(deck::Section& section);

@@ -1,4 +1,4 @@
-// Tests of the rule P-37 on artificial metrics.
+// Tests of the rule (1.4) on artificial metrics.
 
 #include <gtest/gtest.h>
 

@@ -35,7 +35,7 @@ TEST(Polar, FunctionsSumToOneAndUseEveryControlPoint) {
       EXPECT_EQ(e.degree, 3);
       EXPECT_EQ(e.extraction->rows(), Eigen::Index(e.points.size()));
       EXPECT_LT((e.extraction->colwise().sum().array() - 1).abs().maxCoeff(), 1e-14);
-      if (rule != PoleRule::bezier_transform) {  // (P-A.1) has negative entries
+      if (rule != PoleRule::bezier_transform) {  // the matrix of the Bezier transform has negative entries
         EXPECT_GE(e.extraction->minCoeff(), 0);
       }
       area += e.size[0] * e.size[1];

@@ -30,8 +30,8 @@ Eigen::VectorXd affine_at_the_pole() {
 }
 
 TEST(PoleTransform, HasThePublishedEntries) {
-  // (P-A.1), rows T111 and T300; (P-A.2) of the first quadrilateral, its corner at the barycentre and its inner points. Source: the paper's
-  // appendix, after Hu, Comput. Aided Geom. Des. 18 (2001) and 13 (1996).
+  // Equation A.1 of Maestre et al. 2017, rows T111 and T300; equation A.2 of the first quadrilateral, its corner at the barycentre and its inner
+  // points. Source: the appendix of that paper, after Hu, Comput. Aided Geom. Des. 18 (2001) and 13 (1996).
   const Eigen::MatrixXd triangle = triangle_of_degenerate();
   EXPECT_NEAR(triangle(5, 1), -0.25, 1e-15);
   EXPECT_NEAR(triangle(5, 5), 0.75, 1e-15);

@@ -38,7 +38,8 @@ TEST(AmbientFlow, HasTheVelocitiesOfItsDefinition) {
   EXPECT_LT((AmbientFlow(flow("simple shear")).velocity(x) - 1.5 * Vec3(x[2], 0, 0)).norm(), 1e-15);
   EXPECT_LT((AmbientFlow(flow("planar hyperbolic")).velocity(x) - 1.5 * Vec3(x[0], 0, -x[2])).norm(), 1e-15);
   EXPECT_LT((AmbientFlow(flow("uniaxial extension")).velocity(x) - 1.5 * Vec3(-x[0] / 2, -x[1] / 2, x[2])).norm(), 1e-15);
-  EXPECT_LT((AmbientFlow(roll).velocity(x) - 0.75 * Vec3(1.6 * x[0] + 0.4 * x[2], 0, -0.4 * x[0] - 1.6 * x[2])).norm(), 1e-15);  // (P-48)
+  // four-roll flow: equation 48 of Maestre et al. 2017
+  EXPECT_LT((AmbientFlow(roll).velocity(x) - 0.75 * Vec3(1.6 * x[0] + 0.4 * x[2], 0, -0.4 * x[0] - 1.6 * x[2])).norm(), 1e-15);
 }
 
 TEST(AmbientFlow, TakesTheRateOfALinearFlowFromItsGradient) {
