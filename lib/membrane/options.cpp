@@ -104,10 +104,9 @@ void Options::declare(deck::Section& section) {
               "(is too stiff) if the area is resisted at all 16 points of an element");
   section.key(
       "global area dilatation", global_area_dilatation, deck::not_negative(), "1",
-      "dimensionless modulus K that keeps the total area A of a membrane, for example of a vesicle (a drop with bending): the energy "
-      "K G (A - A0)^2/(2 A0) is added to the law (3.26). G: surface shear modulus, for a drop the surface tension. A0: area of the "
-      "unstressed surface, for a drop of its resting shape. The relative area change decreases like 1/K; above about 1e4 many steps are "
-      "needed. 0: no such energy");
+      "dimensionless modulus K that keeps the total area A, as of a vesicle (a drop with bending): the energy K G (A - A0)^2/(2 A0) is added "
+      "to the law (3.26). G: surface shear modulus, for a drop the surface tension. A0: area of the unstressed surface, for a drop of its "
+      "resting shape. The relative area change decreases like 1/K; above about 1e4 many steps are needed. 0: no such energy");
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
               "fraction m of the neo-Hookean term in the energy of Membrane/law `Mooney-Rivlin` (required for this law); the smaller it is, "
               "the stiffer the membrane at large stretch");

@@ -174,8 +174,7 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
                        "; if Flow/held is `pressure drop`"});
   if (to.when(scene.tube.channel.has_value())) {
     to.add(channel_pressure_drop,
-           {"channel_pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel, in the flow at this time (2.30)",
-            {}, channel});
+           {"channel_pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel, at this time (2.30)", {}, channel});
     to.add(channel_extra_pressure_drop, {"channel_extra_pressure_drop",
                                          "force/length^2",
                                          "pressure drop of the empty channel minus the pressure drop of a straight tube of the same length "

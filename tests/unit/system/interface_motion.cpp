@@ -146,7 +146,7 @@ TEST(InterfaceMotion, AFlowThatTurnsASphereDoesNotTurnItsMesh) {
     point *= radius / point.norm();
   }
   ASSERT_GT(crowded.colwise().mean()[0], 0.15);
-  EXPECT_LT(drop.velocity("normal", crowded).norm(), 0.1 * (crowded * turns.transpose()).norm());  // this surface is a sphere but for a few hundredths
+  EXPECT_LT(drop.velocity("normal", crowded).norm(), 0.1 * (crowded * turns.transpose()).norm());  // the surface is a sphere but for a few hundredths
 }
 
 // A purely tangential velocity belongs to a steady shape.
