@@ -25,9 +25,7 @@ quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  // The clusters of the double layer get half the tolerance. The measured error of the double layer is then a quarter of the full tolerance.
-  const double of_tree = single() ? options.tolerance : options.tolerance / 2;
-  if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
+  if (sums_by_tree(space, options)) tree_.emplace(tree_tolerance(), precision());
   fundamental_sites_ = indices(sites.size());
 }
 

@@ -211,6 +211,9 @@ class Layer {
   bool on_reference(int e) const {
     return measure_ == Measure::reference || (measure_ == Measure::by_element && !reference_.present[static_cast<std::size_t>(e)]);
   }
+  /// Returns the tolerance of the sum by clusters: for the single layer that of the deck, for the double layer half of it, with which the measured
+  /// error of the double layer is a quarter of the deck's tolerance. In a double layer, `surface_.options` holds an eighth of the deck's tolerance.
+  double tree_tolerance() const { return (single() ? 1 : 4) * surface_.options.tolerance; }
   Precision precision() const { return surface_.options.far_in_single() ? Precision::single : Precision::full; }
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
   void set_density(const Net& f);

@@ -19,9 +19,7 @@ void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
   constexpr int least_images = 27;
   if (lattice_.cell && *lattice_.cell == cell) return;
   if (!lattice_.cell) surface_.repeat();
-  // The clusters of the double layer get half the deck's tolerance, as without a lattice. `surface_.options` holds an eighth of it.
-  const double of_tree = (single() ? 1 : 4) * surface_.options.tolerance;
-  if (!tree_ && sums_by_tree(least_images * n_nodes(), surface_.options)) tree_.emplace(of_tree, precision());
+  if (!tree_ && sums_by_tree(least_images * n_nodes(), surface_.options)) tree_.emplace(tree_tolerance(), precision());
   lattice_.cell = cell, lattice_.how = how;
   lattice_.near = cell.around({2, 2, 2});
   measure_.reset();
