@@ -17,18 +17,23 @@ std::string Approach::text() const {
 
 Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
                          const coupling::SolverOptions& solvers, Net& x) {
-  // least_step: smallest step of the amplitude of the flow. coarse: tolerance of a search at an amplitude below 1, unless Steady/tolerance is larger.
-  // far: largest change of shape in one step, divided by the particle radius.
-  constexpr double least_step = 1. / 512, coarse = 1e-4, far = 0.5;
-  constexpr int few = 25, most_searches = 60;
+  // least_step: smallest step of the amplitude of the flow. coarse: tolerance of a search at any amplitude, unless Steady/tolerance is larger. far:
+  // largest change of shape in one step, divided by the particle radius. most_polishes: largest number of searches with Steady/tolerance, each of
+  // which starts at the best shape of the previous one with a new Jacobian.
+  constexpr double least_step = 1. / 512, coarse = 1e-6, far = 0.5;
+  constexpr int few = 25, most_searches = 60, most_polishes = 3;
   Approach way;
   const auto found_at = [&](double amplitude, Net& y) {
     SteadyOptions here = options;
-    if (amplitude < 1) here.tolerance = std::max(options.tolerance, coarse);
+    here.tolerance = std::max(options.tolerance, coarse);
     const Net from = y;
     const std::shared_ptr<SteadyEquations> equations = family(amplitude);
     way.last = find_steady(*equations, here, solvers, y);
-    return way.last.converged && equations->dynamics().norm(y - from) < far;
+    if (!way.last.converged || !(equations->dynamics().norm(y - from) < far)) return false;
+    if (amplitude < 1) return true;
+    for (int k = 0; k < most_polishes && !(way.last.converged && way.last.rest <= options.tolerance); ++k)
+      way.last = find_steady(*equations, options, solvers, y);
+    return way.last.converged;
   };
   double amplitude = 0, step = 0.5;
   Net before;  // shape at the previous amplitude

@@ -21,8 +21,9 @@ struct Approach {
 
 /// Finds a steady shape by natural continuation in the amplitude a of the flow, from a first a <= 1/2 at which the search from x succeeds, to a = 1.
 /// Each search starts at the linear extrapolation of the two latest shapes. The step of a is increased after a search with few iterations, and halved
-/// after a failed search. The continuation ends if the step falls to 1/512. At amplitudes below 1, the tolerance of a search is at least 1e-4. Sets x
-/// to the shape at the last amplitude for which a search succeeded. `family`: the equations at an amplitude. Collective.
+/// after a failed search. The continuation ends if the step falls to 1/512. The tolerance of these searches is at least 1e-6; at the full flow, up to
+/// three more searches reach Steady/tolerance. Sets x to the shape at the last amplitude for which a search succeeded. `family`: the equations at an
+/// amplitude. Collective.
 Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
                          const coupling::SolverOptions& solvers, Net& x);
 
