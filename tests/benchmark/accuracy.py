@@ -14,7 +14,7 @@ are printed as multiples of those that the first deck takes.
 
 import itertools
 
-from package import SHEAR, SIDE, answer, command_line, expect, numpy, scenes_of, studies, table, tanktread
+from package import SHEAR, SIDE, answer, choice_of, command_line, expect, numpy, scenes_of, studies, table, tanktread
 from tanktread.interpolation import difference
 
 DEMANDS = [1e-2, 1e-3, 1e-4]
@@ -25,8 +25,7 @@ SCENES = scenes_of(__file__)
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("--scene", nargs="+", default=list(SCENES), choices=SCENES, metavar="NAME",
-                        help=f"of {', '.join(SCENES)} (default: all)")
+    choice_of(parser, SCENES)
     parser.add_argument("--deck", help="a deck of yours instead of the scenes")
     parser.add_argument("--series", default="taylor_inertia", help="series of that deck (default: %(default)s)")
     parser.add_argument("--mesh", nargs="+", default=[SIDE, "3", "4", "6", "8"], metavar="WORD",

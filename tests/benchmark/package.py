@@ -28,6 +28,12 @@ def scenes_of(script):
     return tanktread.files.parsed(SCENES / f"{pathlib.Path(script).stem}.yaml", kind=dict)
 
 
+def choice_of(parser, scenes):
+    """Adds the option --scene to a parser: which of the `scenes` are measured."""
+    parser.add_argument("--scene", nargs="+", default=list(scenes), choices=scenes, metavar="NAME",
+                        help=f"of {', '.join(scenes)} (default: all)")
+
+
 def table(head, rows):
     """Prints a Markdown table; each row, a list of texts and numbers, as soon as it is there."""
     print("| " + " | ".join(head) + " |\n" + "|---" * len(head) + "|", flush=True)

@@ -18,7 +18,7 @@ import shutil
 
 from accuracy import DEMANDS as REQUESTS
 from accuracy import TOLERANCES
-from package import SIDE, answer, command_line, numpy, scenes_of, studies, table, tanktread, yaml
+from package import SIDE, answer, choice_of, command_line, numpy, scenes_of, studies, table, tanktread, yaml
 from tanktread.figures.accuracy import largest, values
 
 SIDES = [3, 4, 5, 6, 8, 10, 12]
@@ -29,8 +29,7 @@ COLUMNS = ["scene", "request", "level", "allowed", "true error", "estimate", "es
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("--scene", nargs="+", default=list(SCENES), choices=SCENES, metavar="NAME",
-                        help=f"of {', '.join(SCENES)} (default: all)")
+    choice_of(parser, SCENES)
     parser.add_argument("--search", action="store_true", help="also search the cheapest single run")
     studies.arguments(parser, "results/requests", limit=60)
     parsed = parser.parse_args()
