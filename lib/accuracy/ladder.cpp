@@ -133,8 +133,9 @@ class Ladder {
   }
 
   /// Measures which shares of the error are due to time integration and to quadrature, and stores them in shares_. For this, runs level 2 again with
-  /// a looser time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all requests that are not met and whose
-  /// series do not vanish (Answer::vanishes). Returns `stopped` if a run was interrupted and can be resumed, otherwise 0.
+  /// a looser time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all series for which the user requests
+  /// an accuracy that is not met yet, without series that are zero up to their error (Answer::vanishes). Returns `stopped` if a run was interrupted
+  /// and can be resumed, otherwise 0.
   int balance() {
     balanced_ = true;
     std::optional<Outcome> quadrature;

@@ -81,8 +81,8 @@ struct Layers {
     overlay(*merged, over);
   }
 
-  /// Returns whether the expectation has a time `at` that is not later than Time/final time. Such an expectation is not affected by a change of the
-  /// final time.
+  /// Returns whether the expected value (section Expect of the deck) has a time `at` that is not later than Time/final time. A change of the final
+  /// time does not affect such a value.
   bool before_end(const Teuchos::ParameterList& expectation, const std::optional<Units>& units) const {
     const Teuchos::ParameterList* time = sublist(merged.get(), "Time");
     const auto *at = expectation.getEntryPtr("at"), *end = time ? time->getEntryPtr("final time") : nullptr;

@@ -15,9 +15,10 @@ void Expectation::declare(Section& section) {
       if (!section.given(key)) throw UserError(section.path(key) + " is missing; an expectation needs `value` and `tolerance`.");
   section.key("series", series, Choice{},
               "name of the output series that is compared with the expected value; by default the name of the expectation");
-  section.key("value", value, any(), "of the series", "expected value of the output series (required)");
+  section.key("value", value, any(), "of the series", "expected value of the output series (required; the default is not used)");
   section.key("tolerance", tolerance, positive(), "of the series, or 1",
-              "largest allowed difference between computed and expected value, absolute or relative according to `kind` (required)");
+              "largest allowed difference between computed and expected value; `kind` tells whether it is absolute or relative (required; the "
+              "default is not used)");
   section.key("kind", kind, Choice{"absolute", "relative"},
               "kind of the tolerance of the expected value. `absolute`: limit of the difference. `relative`: limit of the difference "
               "divided by the expected value");
@@ -26,8 +27,9 @@ void Expectation::declare(Section& section) {
   section.key("source", source, Choice{}, "source of the expected value, for example a publication");
   section.key("not binding", not_binding, Choice{},
               "reason why a missed expected value does not fail the run. If the text is empty (the default), a missed value fails the "
-              "run; otherwise it is only reported, with this text. If the deck does not give this key, the program sets the text when a "
-              "later deck or --set changes a key that results depend on but does not give the expected value again");
+              "run; otherwise it is only reported, with this text. The program sets the text itself if the deck "
+              "does not, and --set or a further deck on the command line changes a key that results depend on without stating the expected "
+              "value again");
   if (kind == "relative" && value == 0.0)
     throw UserError(section.path("kind") +
                     " `relative` and the value 0 contradict each other: an error cannot be divided by 0. Give `absolute`.");

@@ -27,7 +27,8 @@ class AreaConstraint {
   /// Returns true if there are no area conditions, because no material of the membrane has an area elasticity with a separate quadrature (3.13).
   bool empty() const { return points_.empty(); }
 
-  /// Evaluates, at the shape x, the area condition t of every Gauss point and the scaled gradient D of these conditions, for the operator P (4.25).
+  /// Evaluates at the shape x, for the operator P (4.25): the value t of the area condition at every Gauss point and the scaled gradient D of t,
+  /// which are stored in `now_`. The matrix of factor() is then out of date.
   void place(const Net& x) { now_ = rows(x), time_ = 0; }
 
   /// Factors the matrix 1 + time D m D' of the operator P (4.25). D: gradient of the area conditions at the shape set by place(). m: mobility.

@@ -30,7 +30,8 @@ struct Constants {
     section.each("value of a named constant in Membrane/energy", [this](const std::string& name, deck::Section& inner) {
       if (!inner.documenting() && !inner.given("value"))
         throw UserError(inner.path("value") + " is missing: it is the number that `" + name + "` stands for.");
-      inner.key("value", all[name], deck::any(), "1", "value of the named constant in Membrane/energy (required)");
+      inner.key("value", all[name], deck::any(), "1",
+                "value of the constant with the name of this section, in Membrane/energy (required; the default is not used)");
     });
     if (section.documenting()) all.clear();
   }
@@ -112,7 +113,7 @@ void Options::declare(deck::Section& section) {
               "the stiffer the membrane at large stretch");
   section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
               "shape in which the membrane has no stress. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, axis "
-              "and center of the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in `stress-free "
+              "and centre of the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in `stress-free "
               "file`. If it is not `resting`, the resting shape is not in equilibrium; a run without flow finds the equilibrium shape");
   section.key("stress-free reduced volume", reduced_volume, deck::between(0.05, 1), "1",
               "reduced volume 6 sqrt(pi) V/A^1.5 (V: volume, A: area) of the stress-free `spheroid`: 1 for a sphere, 0.646 for a red cell");

@@ -41,7 +41,7 @@ void AdaptationOptions::declare(deck::Section& section) {
               "threshold V_ref for Adaptation/indicator `variation`: where the velocity changes along an element by more than V_ref per "
               "length, elements are made shorter (see Adaptation/order). If not given, the velocity causes no refinement");
   section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1",
-              "ratio of length to width of an element above which it is halved along its length, for Adaptation/indicator `variation`; "
+              "ratio of length to width of an element above which its length is halved, for Adaptation/indicator `variation`; "
               "2.5 if not given");
   section.key("order", order, deck::positive(), "1",
               "exponent kappa for Adaptation/indicator `variation`: where curvature, traction or velocity varies r > 1 times as much as its "

@@ -33,7 +33,8 @@ void PeriodicOptions::declare(deck::Section& section) {
   section.key("tolerance", tolerance, deck::between(1e-10, 1e-2), "1",
               "largest allowed difference between the shape and its return after a period: root mean square displacement of the control "
               "points divided by R_C, the radius of the sphere with the particle's volume; about ten times Time/tolerance is suitable. If "
-              "disturbances decay within a period, the error of the shape is less than a hundredth of the tolerance");
+              "disturbances die out almost completely within a period, the error of the shape is much smaller, less than a hundredth of this "
+              "value; if they decay slowly, it can be larger");
   section.key("iterations", iterations, deck::between(1, 1000), "1",
               "largest number of iterations of NOX (a package of Trilinos) in the search for the periodic motion, each of which integrates "
               "over one period");

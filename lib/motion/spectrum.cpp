@@ -22,9 +22,9 @@ void SpectrumOptions::declare(deck::Section& section) {
               "fastest growing ones");
   section.key("method", method, deck::Choice{"dense", "krylov"},
               "method for the eigenvalues of the Jacobian J of the velocity with respect to the shape. `dense`: all eigenvalues of the "
-              "whole matrix, which needs two velocity evaluations per column. `krylov`, for large meshes: the leading eigenvalues by block "
-              "Krylov-Schur with (I - J/shift)^-1; every product is a linear solve by Solvers/spectrum, preconditioned by an approximate "
-              "Jacobian");
+              "whole matrix, which needs two velocity evaluations per column. `krylov`, for large meshes: the eigenvalues with the growth rates "
+              "closest to Spectrum/shift, by block Krylov-Schur with (I - J/shift)^-1; every product is a linear solve by Solvers/spectrum, "
+              "preconditioned by an approximate Jacobian");
   section.key("shift", shift, deck::positive(), "1/time",
               "shift of the shift-and-invert method Spectrum/method `krylov`, which finds the modes with the growth rates closest to this "
               "value first. If not given, the rate of the flow; without flow, the relaxation rate of the membrane, modulus / (viscosity x "

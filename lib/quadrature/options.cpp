@@ -27,7 +27,7 @@ void Options::declare(deck::Section& section) {
   section.key(
       "far precision", far_precision, deck::Choice{"auto", "single", "double"},
       "floating-point precision of the terms of boundary integrals over far elements. `single`: 1.5 times as fast, with errors of about "
-      "1e-7 of the sum of the magnitudes of the terms, and of about 1e-8 in the shape; results of a mirrored, reordered or shifted scene "
+      "1e-7 of the sum of the magnitudes of the terms, and of about 1e-8 in the shape; results of a mirrored, reordered or shifted deck "
       "then agree to 1e-8 instead of 1e-10. `double`: no such error. `auto`: `single` if Quadrature/tolerance is at least 1e-3 and "
       "the deck has no Spectrum");
 }

@@ -286,9 +286,9 @@ void CopiesOptions::declare(deck::Section& section) {
               "volume fraction of the copies of the particle in `box`, `ball` or the periodic cell, from which their number follows. At "
               "random positions, spheres reach a volume fraction of about 0.3 in `box` or `ball` and about 0.55 in the cell");
   section.key("box", box, deck::positive(), "length",
-              "side lengths of a box that contains all copies of the particle at random positions; its centre is the particle's centre");
+              "side lengths of a box that contains all copies of the particle at random positions; its centre is the key `center` of the particle");
   section.key("ball", ball, deck::positive(), "length",
-              "radius of a ball that contains all copies of the particle at random positions; its centre is the particle's centre");
+              "radius of a ball that contains all copies of the particle at random positions; its centre is the key `center` of the particle");
   section.key("least gap", least_gap, deck::not_negative(), "R",
               "smallest allowed gap between the circumscribed spheres of two particles when copies are placed at random, divided by the "
               "radius R of the larger of the two spheres");

@@ -55,8 +55,9 @@ void ParticleOptions::declare(deck::Section& section) {
               "Solvers/tolerance. Above 1e5 the particle hardly deforms; for a rigid particle use Particle/motion `free`");
   section.key("motion", motion, motion_words,
               "motion of the particle. `deforming`: its surface moves with the velocity of the fluid. `prescribed`: it is rigid and moves "
-              "with Particle/velocity and Particle/angular velocity; a single particle gives a steady problem. `free`: it is rigid and "
-              "moves such that Particle/force and Particle/torque, zero by default, balance the forces of the fluid");
+              "with Particle/velocity and Particle/angular velocity; for a single particle, the flow and the force are computed once, without time "
+              "steps. `free`: it is rigid and moves such that Particle/force and Particle/torque, zero by default, balance the forces of the "
+              "fluid");
   section.key("velocity", velocity, deck::any(), "length/time",
               "velocity of the centre of a rigid particle with Particle/motion `prescribed`; zero if not given");
   section.key("angular velocity", angular_velocity, deck::any(), "1/time",

@@ -55,7 +55,7 @@ class ExtendedMesh {
  private:
   struct Trace {  // extensions of one T-junction
     int missing = 0;
-    std::vector<Ray> vertices;  // vertices on the extensions, each with the direction (slot) of the extension there
+    std::vector<Ray> vertices;  // vertices on the extensions, each with the direction in which the extension leaves it
     std::vector<bool> face;     // for each entry of `vertices`: true on the face extension, false on the edge extension
     std::vector<Ray> edges;
   };

@@ -43,13 +43,13 @@ struct Piece {
 };
 
 /// Returns 3 depth + 1 pieces of face 0: `depth` rings of three pieces with sides 1/2, 1/4, ... 2^-depth, which represent the limit surface exactly,
-/// and one averaged bicubic on the square of side 2^-depth at the extraordinary point. Entries of the extraction matrices are >= 0, and their columns
-/// sum to 1.
+/// and one bicubic on the square of side 2^-depth at the extraordinary point, computed by averaged_bicubic(). Entries of the extraction matrices are
+/// >= 0, and their columns sum to 1.
 ///
 /// Masks (Catmull and Clark 1978): face point = mean of the corners; edge point = mean of the two ends and the two adjacent face points; vertex point
 /// = (Q + 2 R + (N - 3) P) / N, with P the old vertex, N its valence, Q the mean of the adjacent face points and R the mean of the midpoints of its
 /// edges. The surface is C1 at the extraordinary point, otherwise C2. The spaces of a mesh and of its refinement are nested if the squares with the
-/// averaged bicubic have the same size on both meshes. If `depth` is the same on both meshes instead, the spaces are not nested, and refinement
+/// single bicubic have the same size on both meshes. If `depth` is the same on both meshes instead, the spaces are not nested, and refinement
 /// changes the surface by an amount proportional to 0.41^depth.
 std::vector<Piece> catmull_clark_pieces(int depth);
 

@@ -42,8 +42,8 @@ class CapsuleJacobian {
   /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.
   Net left(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
   RateChange velocity_change(const Net& dx, const Net& work);  ///< returns J dx as `rate`
-  /// Returns the left-hand side B (dx - shift J dx) of an implicit step as `rate`, or dx - shift J dx if control points slide. `slip` is not
-  /// multiplied by `shift`. Applies each layer once if no control points slide.
+  /// Returns the left-hand side B (dx - shift J dx) of an implicit step as `rate`, or dx - shift J dx if control points slide. The
+  /// member `slip` of the result is not multiplied by `shift`. Applies each layer once if no control points slide.
   RateChange step_change(const Net& dx, double shift, const Net& work);
 
   void prepare_step(double shift);  ///< prepares step_preconditioner() for implicit steps with this shift gamma dt

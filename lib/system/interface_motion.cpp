@@ -176,8 +176,8 @@ void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
 }
 
 /// Returns the control values of the mesh velocity (4.6), W + n n.(v - W) + (1 - n n).w, at the shape x. Here b = dV/dx, W is the rigid motion
-/// (4.14), and w is the relaxation velocity computed from the density f; if f is empty, w = 0. Sets `rest` to v - W - w at the sites where u is
-/// evaluated.
+/// (4.14), and w is the relaxation velocity, computed from the density f of the elastic force on the mesh; if f is empty, w = 0. Sets `rest` to
+/// v - W - w at the collocation sites.
 Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const {
   Net u = sites_ * v;
   const Net places = sites_ * x;

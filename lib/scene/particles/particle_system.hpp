@@ -59,8 +59,8 @@ class ParticleSystem {
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::Work work() const = 0;
-  virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase angle of each particle at the latest
-                                                                                        ///< row
+  virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase angle of each particle when the
+                                                                                        ///< series were last computed
   virtual stokes::Evaluations kernel_evaluations() const = 0;
   virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results: the data of the particles and of
                                                                               ///< `progress`, with the time and the work of the run

@@ -35,7 +35,7 @@ Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   return Vec3(rho.dot(nu), -h * nu[0], -h * nu[1]) / r;
 }
 
-/// Returns the integrand of own_flow(), distance times normal, per unit of the curve parameter u.
+/// Returns the integrand of own_flow() per unit of the curve parameter u: the distance from p to the curve times the normal of the curve.
 Vec3 distance_times_normal(const surface::PlaneJet& at, const Vec2& p, double) {
   const Vec2 nu = (at.x - p).norm() * weighted_normal(at);
   return {0, nu[0], nu[1]};

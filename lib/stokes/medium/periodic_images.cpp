@@ -49,8 +49,8 @@ struct Smooth {
       for (int m = 0; m < 16; ++m) {
         phi += power / (2 * m + 1);
         first += power * 2 / (2 * m + 3);
-        second -= power * 4 / (2 * m + 5);  // term 0 of the power series `first` and `second` is 0. Adds their term m + 1 divided by x^2, in which
-                                            // 1/m! replaces (m + 1)/(m + 1)!
+        second -= power * 4 / (2 * m + 5);  // `first` and `second` are derivatives of the power series phi, divided by x^2. Their constant term is
+                                            // 0, so that term m + 1 is added here; its factor (m + 1)/(m + 1)! is 1/m!
         power *= -square / (m + 1);
       }
       const double scale = 2 * xi / std::sqrt(pi);

@@ -90,8 +90,8 @@ class PeriodicKernel {
 
  private:
   std::vector<double> waves(const std::array<std::vector<double>, 3>& s) const;
-  void add_smooth_images(const Vec3& r, double* values) const;  // adds A - G of (2.25) for each near image; for the stresslet, the corresponding
-                                                                // difference of T
+  void add_smooth_images(const Vec3& r, double* values) const;  // adds for each near image the smooth part of (2.25): kernel A of the lattice sum
+                                                                // minus Stokeslet G; for the stresslet, the corresponding difference
   void add_mode_across(const Vec3& r, double* values) const;
   void add_row(const Vec3& r, double* values) const;
   void add_constant(double* values) const;

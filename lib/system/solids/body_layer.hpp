@@ -54,8 +54,8 @@ class BodyLayer {
   Ranks& ranks_;
   stokes::Layer layer_;                  // single layer at the sites of the bodies
   std::optional<stokes::Layer> beyond_;  // single layer at the points `others_`; empty if there are none
-  Net at_, flux_, outward_;  // at_: collocation sites. flux_: flux vector b of each body. outward_: vector s (R c)/(b.c) of the regularising term
-                             // (2.10), with a scale s and the collocation matrix R
+  Net at_, flux_, outward_;  // at_: collocation sites. flux_: flux vector b of each body. outward_: vector s R c/(b.c) of (2.10), which makes the
+                             // single layer of a closed surface invertible. s: scale; R: collocation matrix; c: vectors from the body's centre
   Eigen::MatrixXd matrix_;                // matrix of A at the sites of the bodies; empty if `keep_rows` is false
   stokes::Rows<double> rows_of_others_;  // rows of the single layer A at the points `others_`; empty if `keep_rows` is false
   std::optional<DenseFactors> factors_;

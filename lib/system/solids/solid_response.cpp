@@ -107,7 +107,7 @@ Vec3 SolidResponse::carried(const Solids::Flow& flow, const Net& f, const Net& v
   std::vector<double> weighted = single_.weights();
   for (std::size_t k = 0; k < weighted.size(); ++k) weighted[k] *= profile(scene_, height(single_.nodes(), k)) / scene_.solids->viscosity();
   if (f.size() > 0) sum -= f.transpose() * single_.moments(weighted);
-  if (v.size() > 0 && double_) {  // stress in (2.49): sigma_i n = x_i n + phi' (e_i (n.m) + m (e_i.n)), m the normal of the plates
+  if (v.size() > 0 && double_) {  // stress of (2.49): sigma_i n = x_i n + slope (e_i (m.n) + m (e_i.n)), m: normal of the plates
     const Net strength = contrasts_.asDiagonal() * v;
     for (int i = 0; i < 3; ++i)
       for (int c = 0; c < 3; ++c) {
