@@ -124,9 +124,9 @@ class Cubes {
   std::array<long, 3> cube(const Vec3& x) const { return {std::lround(x[0] / size_), std::lround(x[1] / size_), std::lround(x[2] / size_)}; }
 
   const StoredSurface& surface_;
-  std::vector<std::vector<std::size_t>> cells_of_;  // cells that contain a node
+  std::vector<std::vector<std::size_t>> cells_of_;  // for each node, the cells that contain it
   std::map<std::array<long, 3>, std::vector<int>> nodes_;
-  double size_ = std::numeric_limits<double>::min();  // edge length of the cubes: largest distance of a node from the first node of its cell
+  double size_ = std::numeric_limits<double>::min();  // edge length of the cubes of the search: largest distance of a node from the first of its cell
 };
 
 }  // namespace

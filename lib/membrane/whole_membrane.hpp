@@ -43,8 +43,8 @@ class WholeMembrane : public Load {
   bool stores() const override { return true; }
   double energy(const Net& x, std::span<const Net> sums) const override;
   void linearise(const Net& x, std::span<const int> elements, std::span<const Net> sums) override;
-  void add_tangent(const Net& dx, Net& change) const override;         ///< adds k (Q - Q0) (dq/dx) dx, the part of the tangent due to the change of q
-  void add_global_tangent(const Net& dx, Net& change) const override;  ///< adds k q (q.dx), the part of the tangent due to the change of Q
+  void add_tangent(const Net& dx, Net& change) const override;         ///< adds k (Q - Q0) (dq/dx) dx (symbols: see above), due to the change of q
+  void add_global_tangent(const Net& dx, Net& change) const override;  ///< adds k q (q.dx) (symbols: see above), due to the change of Q
   bool admits(const surface::Image&) const override { return true; }
   RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }
   bool depends_on_labels() const override { return false; }

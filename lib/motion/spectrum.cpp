@@ -34,10 +34,10 @@ void SpectrumOptions::declare(deck::Section& section) {
               "rates, which symmetric shapes have; otherwise some of these modes may be missed");
   section.key(
       "parity", parity, deck::Rule{"1 or -1", [](double sign) { return std::abs(sign) == 1; }}, "1",
-      "mirror symmetry of the eigenmodes that are sought: three numbers, one for each mirror plane of the steady shape, normal to x1, x2, x3. 1: "
-      "modes symmetric about the plane, -1: antisymmetric modes, which break the symmetry; all 1 if not given. Under a half turn or point "
-      "reflection, the parity of the modes is the product of the numbers of the axes that it reverses. Give 1 for an axis without a mirror "
-      "plane, unless this product is to be -1. With Symmetry/use `none`, modes of all parities are found at once");
+      "symmetry of the eigenmodes that are sought: three numbers, for the axes x1, x2, x3. 1: modes symmetric about the plane normal to the axis; "
+      "-1: antisymmetric modes, which break the symmetry; all 1 if not given. Give 1 for an axis whose plane is no mirror plane of the steady "
+      "shape. If the shape has only a half turn or a point reflection as symmetry, modes that are antisymmetric under it are found with -1 for "
+      "one of the axes that it reverses. With Symmetry/use `none`, modes of all symmetries are found at once");
   section.key("difference", difference, deck::between(1e-7, 1e-1), "R_C",
               "step of the finite differences from which the Jacobian of the velocity is computed: largest displacement of a control "
               "point in a perturbed shape, divided by R_C, the radius of the sphere with the particle's volume");

@@ -53,8 +53,8 @@ struct Account {
   output::Entries<std::string> plan;
   output::Entries<long> counts;
   std::string status = "done";  ///< status in summary.yaml: `done`, `steady`, `stopped: ...` or `failed: ...`
-  std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expectations
-  bool whole = true;            ///< true if the run reached its end; only then can a missed expectation fail the run
+  std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expected values
+  bool whole = true;            ///< true if the run reached its end; only then can a missed value of Expect fail the run
   output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run
   output::Entries<Vec3> vectors;    ///< drag and torque of a body with prescribed motion, for Summary::final_vectors
   output::Entries<std::string> modes;  ///< modes of a spectrum

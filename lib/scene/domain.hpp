@@ -55,8 +55,8 @@ struct DomainRow {
   Vec3 pressure_gradient = Vec3::Zero();
 
   /// Computes all data except `cell`, by (6.9) and (6.10), from the total volume, the total stresslet and the total force of the particles on the
-  /// fluid. `of`: periodic cell. `plane`: the axes a, c and b as rows. `gradient`: velocity gradient of the flow at this time. The
-  /// relative viscosity is NaN if the rate of strain is zero at this time.
+  /// fluid. `of`: periodic cell. `plane`: the axes a, c and b of `normal_stress_differences` as rows. `gradient`: velocity gradient of the flow at
+  /// this time. The relative viscosity is NaN if the rate of strain is zero at this time.
   void set_stress(double viscosity, const Mat3& gradient, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet,
                   const Vec3& force);
 

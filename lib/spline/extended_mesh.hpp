@@ -10,7 +10,8 @@
 
 namespace tanktread::spline {
 
-/// A T-mesh with the extensions of its T-junctions. Counts violations of the conditions for nested, linearly independent splines:
+/// A T-mesh with the extensions of its T-junctions: lines that continue the edge that ends there into the mesh (Scott et al. 2012). Counts
+/// violations of the conditions for nested, linearly independent splines:
 ///  - crossings: pairs of extensions along different axes that meet at a vertex. An extension includes its two end points. An extension that
 ///    reaches an extraordinary point also counts as a crossing. A mesh without crossings is analysis-suitable (Scott et al. 2012).
 ///  - missing: edges of the lattice that an earlier extended mesh (T-mesh plus extensions) contains and the current one does not contain. If no edge

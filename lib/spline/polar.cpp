@@ -109,8 +109,8 @@ class Shares {
   int n_points() const { return n_points_; }
   int per_pole() const { return per_pole_; }
 
-  /// Returns the anchor whose generalised Greville point is the collocation point of function k of a pole with PoleRule::c1, or -1 if the collocation
-  /// point is the pole. `ahead`: true for the pole at the end of the meridian, false for the pole at its start.
+  /// Returns where function k of a pole with PoleRule::c1 is collocated: the anchor (vertex with a control point) whose generalised Greville point is
+  /// used, or -1 for the pole itself. `ahead`: true for the pole at the end of the meridian, false for the pole at its start.
   int site(bool ahead, int k) const { return sites_[ahead][k]; }
 
  private:

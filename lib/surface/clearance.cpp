@@ -178,7 +178,7 @@ class OutlineSearch {
   const Patches& surface_;
   const Outline& outline_;
   std::vector<ElementPart> pieces_;  // a heap
-  Eigen::MatrixXd products_;   // factors products(p) for the degree p used last
+  Eigen::MatrixXd products_;   // result of products(p), factors of products of Bernstein polynomials, for the degree p used last
   Clearance best_;
 };
 

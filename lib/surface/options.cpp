@@ -314,11 +314,11 @@ void ChannelOptions::declare(deck::Section& list) {
   list.key("bend angle", bend_angle, deck::between(0.01, 180.), "degrees",
            "angle, in degrees, by which the centre line of the channel turns in its bend, from x1 towards x2");
   list.key("start", start, deck::any(), "length",
-           "arc length s of the centre line at which the computed part of the channel begins; if not given, 4 R_T before the first change of "
-           "cross-section or direction. R_T: radius of the circle with the area of the inlet");
+           "arc length s of the centre line (s = x1 up to a bend) at which the computed part of the channel begins; if not given, 4 R_T "
+           "before the first change of cross-section or direction. R_T: radius of the circle with the area of the inlet");
   list.key("end", end, deck::any(), "length",
-           "arc length s of the centre line at which the computed part of the channel ends; if not given, 4 R_T after the last change of "
-           "cross-section or direction. R_T: radius of the circle with the area of the inlet");
+           "arc length s of the centre line (s = x1 up to a bend) at which the computed part of the channel ends; if not given, 4 R_T "
+           "after the last change of cross-section or direction. R_T: radius of the circle with the area of the inlet");
   list.key("axial elements", axial_elements, deck::between(8, 1000), "1",
            "number of elements along the wall of the channel. They are shorter where the channel is narrow, bends or has an edge. If not "
            "given, chosen such that elements are about as long as wide");

@@ -19,10 +19,10 @@ void Options::declare(deck::Section& section) {
               "whether the series contain the power input by flow and forces, the dissipation in the fluids (6.12), and the residual of "
               "the power balance, which measures the error of the velocities (6.13). Each row of the series then costs an evaluation of "
               "the boundary integrals at four points per element. Available for deformable particles, also together with rigid bodies, "
-              "except for a registered flow whose gradient is not uniform, and for `parabolic` flow in a Domain without two plates");
+              "except for a flow of your own (C++) whose gradient is not uniform, and for `parabolic` flow in a Domain without two plates");
   section.key("surface text", surface_text,
-              "whether the final surface is written in Bezier-extraction format to the file `surface.iga`, which Particle/file reads if it is that "
-              "of one particle");
+              "whether the final surface is written in Bezier-extraction format to the file `surface.iga`. After a run of one particle, another "
+              "deck can read this file by Particle/file");
 }
 
 }  // namespace tanktread::output

@@ -1,5 +1,5 @@
 #pragma once
-// Fields on the surfaces of the particles of a run (surfactant, Maxwell strain, registered fields), and their contributions to rows and snapshots.
+// Fields on the surfaces of the particles of a run (surfactant, Maxwell strain, user-defined fields), and their contributions to rows and snapshots.
 
 #include <memory>
 #include <optional>

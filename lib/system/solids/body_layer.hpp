@@ -45,7 +45,7 @@ class BodyLayer {
  private:
   void make_regular(const Net& x);
 
-  std::vector<Particle> bodies_;   // the rigid bodies; their blocks are rows of nets of the rigid bodies only
+  std::vector<Particle> bodies_;   // the rigid bodies. Their blocks number the rows of nets that hold rigid bodies only
   std::vector<spline::Block> in_;  // rows of each body in nets of all particles
   spline::Space space_;            // common space of the bodies
   std::vector<int> points_, rows_, others_;  // points_: control points of the bodies; rows_: indices of their components; others_: points of `own`

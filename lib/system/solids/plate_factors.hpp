@@ -18,8 +18,8 @@ namespace tanktread::coupling {
 class PlateFactors {
  public:
   /// `rows`: rows of the operator for one collocation point per plate, three rows per plate and 3 N columns for the N points of all plates. `point`:
-  /// grid indices of these collocation points; point i n2 + j of a plate has the indices i, j. `regular`: matrix that is added to M(0), the operator
-  /// on uniform densities, so that its inverse exists.
+  /// grid indices of these collocation points; point i n2 + j of a plate has the indices i, j. `regular`: matrix that is added to M(0) of (2.50),
+  /// the operator on uniform densities, so that its inverse exists.
   PlateFactors(const Eigen::MatrixXd& rows, const std::array<int, 2>& grid, const std::array<int, 2>& point, const Eigen::MatrixXd& regular);
 
   /// Returns the part of f with wave numbers k != 0 for the velocities u. Sets row p of `uniform` to the mean velocity of plate p. From these

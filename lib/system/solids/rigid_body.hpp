@@ -102,8 +102,8 @@ class FreeBody : public LoneRigidBody {
 
   RigidModes modes_;
   Eigen::Matrix<double, 6, 6> mobility_;            ///< column k: rigid motion due to the unit force (k = 0, 1, 2) or unit torque (k = 3, 4, 5)
-  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< column k: rigid motion relative to the flow of a free body in unit flow k: unit strains, then
-                                                    ///< unit quadratic flows
+  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< column k: motion of a free body in unit flow k, relative to this flow. Flows: unit strains,
+                                                    ///< then unit quadratic flows
 };
 
 /// A free body in a tube or near a plane wall. Equation (2.40) is solved at each position. In a tube the force density f and the motion (U, Omega)

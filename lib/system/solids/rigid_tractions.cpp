@@ -227,7 +227,7 @@ double RigidTractions::lacking_pressure(const Net& x, const Net& f, const Net& v
   double work = 0;
   if (by_work) {
     left_ = flat(residual_.integrated(x, load(f), v, between, walls_));
-    work = lacks(f, -flat(f))[0];  // on free bodies, the force density that belongs to v_inf is -f
+    work = lacks(f, -flat(f))[0];  // `lacks` with -f in place of the force density due to the ambient flow v_inf, as on free bodies
   }
   return walls_.tube->lacking_pressure(residual_.points(), between, flow.amplitude(), f, work);
 }
