@@ -193,8 +193,10 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     const Curve whole = curve(finest, series.name);
     const double scale = scale_of(finest, series.name);
     Estimate estimate = estimated(norms(pairs), scale, expected_errors(levels, {series.name, Of::run, 0, false}, scale, looser));
-    for (const Answer& one_answer : answers)
-      if (one_answer.request.series == series.name && one_answer.request.of == Of::run) estimate = one_answer.estimate;
+    for (bool requested = false; const Answer& answer : answers) {
+      if (answer.request.series != series.name || answer.request.of != Of::run || (requested && !answer.estimate.trusted())) continue;
+      estimate = answer.estimate, requested = true;
+    }
     one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {
       std::vector<double> at = is_branch(finest) ? std::vector<double>() : finest.values("time");

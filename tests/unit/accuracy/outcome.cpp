@@ -1,0 +1,48 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "accuracy/outcome.hpp"
+
+namespace tanktread::accuracy {
+namespace {
+
+/// A level of a run of ten rows, in which the series `y` is cos(t) + error.
+Outcome level(int k, double error) {
+  output::RunRecord record("run.h5", "", {});
+  record.declare("time", "time", "time");
+  record.declare("y", "1", "a quantity");
+  for (int row = 0; row < 10; ++row) {
+    const double t = 0.1 * row;
+    record.append(std::vector<double>{t, std::cos(t) + error});
+  }
+  return {{k, k, k}, "no such directory", std::move(record), 0};
+}
+
+Request at_most(double error) { return {"y", Of::run, error, false}; }
+
+TEST(Errors, AreThoseOfTheLevelsWithoutARequest) {
+  std::vector<Outcome> levels;
+  for (int k = 2; k < 5; ++k) levels.push_back(level(k, expected_error({k, k, k})));
+  const std::vector<SeriesError> found = errors(levels);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].untrusted, "");
+  for (const double value : found[0].values) EXPECT_NEAR(value, expected_error({4, 4, 4}), 1e-12);
+}
+
+/// The differences between the levels do not fall, so that they give no error. They are far below one of the two requests, which is met.
+TEST(Errors, AreThoseOfATrustedRequestWhateverTheOrderOfTheRequests) {
+  const std::vector<Outcome> levels{level(2, 0), level(3, 1e-6), level(4, 2e-6)};
+  EXPECT_NE(errors(levels)[0].untrusted, "");
+  const Answer generous = answer(at_most(1e-3), levels), strict = answer(at_most(1e-9), levels);
+  ASSERT_TRUE(generous.met);
+  ASSERT_FALSE(strict.estimate.trusted());
+  for (const std::vector<Answer>& answers : {std::vector{generous, strict}, std::vector{strict, generous}}) {
+    const SeriesError found = errors(levels, {}, answers)[0];
+    EXPECT_EQ(found.untrusted, "");
+    for (const double value : found.values) EXPECT_NEAR(value, generous.estimate.error, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace tanktread::accuracy
