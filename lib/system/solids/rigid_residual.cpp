@@ -1,5 +1,6 @@
 #include "system/solids/rigid_residual.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,15 @@ std::vector<spline::Block> blocks_of_bodies(std::span<const Particle> particles)
   return blocks;
 }
 
+/// Returns the quadrature of the residual, with a quarter of the tolerance down to 1e-6. The residual is a small difference of velocities, which is
+/// integrated with the force density, so that the quadrature error of the residual is an error of forces and pressure drops. In trains of spheres at
+/// the default tolerance, a quarter reduces the error of the pressure drop 3 to 5 times.
+quadrature::Options sharper(quadrature::Options options) {
+  constexpr double share = 0.25, sharpest = 1e-6;
+  options.tolerance = std::min(options.tolerance, std::max(share * options.tolerance, sharpest));
+  return options;
+}
+
 }  // namespace
 
 RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles,
@@ -21,11 +31,11 @@ RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, 
     : viscosity_(viscosity),
       ranks_(ranks),
       between_(between_sites(space, rest, blocks_of_bodies(particles))),
-      single_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
+      single_(stokes::Layer::Kernel::single_layer, space, between_.places, sharper(quadrature)),
       measure_(coupling::measure(particles)) {
   single_.set_reference(unstressed, measured_on_present(particles));
   if (std::vector<double> contrasts = viscosity_contrasts(particles); !contrasts.empty())
-    double_.emplace(stokes::Layer::Kernel::double_layer, space, between_.places, quadrature, std::move(contrasts));
+    double_.emplace(stokes::Layer::Kernel::double_layer, space, between_.places, sharper(quadrature), std::move(contrasts));
   if (wall) single_.set_wall(*wall);
   if (wall && double_) double_->set_wall(*wall);
 }
