@@ -253,10 +253,9 @@ def main():
     cookbook = [p.removesuffix(".md") for p in manual.pages.values() if p.startswith("cookbook/") and p != "cookbook/index.md"]
     index = (ROOT / "inputs/manual/index.md").read_text()
     if cookbook:
-        intro = ROOT / "inputs/cookbook/README.md"
-        text = intro.read_text() if intro.exists() else "# Cookbook\n\nScenes with their decks, one page each.\n"
-        listed = toctree([name.removeprefix("cookbook/") for name in cookbook])
-        manual.page("inputs/cookbook/README.md", text + "\n" + listed, "cookbook/index.md")
+        text = (ROOT / "inputs/cookbook/README.md").read_text()
+        listed = toctree([name.removeprefix("cookbook/") for name in cookbook], ":hidden:\n")
+        manual.page("inputs/cookbook/README.md", text.replace("\n## ", f"\n{listed}\n## ", 1), "cookbook/index.md")
     else:
         index = index.replace("cookbook/index\n", "")
     manual.page("inputs/manual/index.md", index, "index.md")
