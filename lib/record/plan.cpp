@@ -173,7 +173,7 @@ std::string membrane_line(const Scene& scene) {
   const std::string memory =
       scene.maxwell_membrane() ? formatted(", a Maxwell element of relaxation time %g", *scene.membrane.relaxation_time) : "";
   const std::string load = scene.membrane.law + law + memory + pulled + ", load " + scene.membrane.load;
-  if (scene.load_is_strong()) return load + " at the collocation sites (P-3)";
+  if (scene.load_is_strong()) return load + " at the collocation sites, as by Maestre et al. (2017)";
   if (scene.membrane.law == "surface tension") return load + " per current area (3.6)";
   if (scene.membrane.load_measure == "reference") return load + " per unstressed area (3.7), mass matrix factored once";
   return load + " per current area (3.6), mass matrix factored every evaluation";
@@ -186,7 +186,8 @@ std::string surfactant_line(const Scene& scene) {
 
 std::string mesh_line(const Scene& scene) {
   if (!scene.adaptation.enabled) return "fixed";
-  return std::string("refined as the particle deforms") + (scene.adaptation.indicator == "error" ? ", by estimated errors (1.5)" : " (P-37)");
+  const char* where = scene.adaptation.indicator == "error" ? "by estimated errors (1.5)" : "where curvature, traction or velocity varies (1.4)";
+  return std::string("refined as the particle deforms, ") + where;
 }
 
 /// Returns the line of the plan about the time scheme and the size of the frozen operator (the single layer in the Jacobian of implicit steps).
