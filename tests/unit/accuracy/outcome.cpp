@@ -44,5 +44,23 @@ TEST(Errors, AreThoseOfATrustedRequestWhateverTheOrderOfTheRequests) {
   }
 }
 
+/// The error of the mesh is positive, that of the time integration negative. Level 3 has a much smaller time tolerance, so that the two parts of the
+/// difference between the levels 2 and 3 nearly cancel. Errors of the levels 0 and 1 only make the differences fall regularly.
+TEST(Errors, OfMeshAndTimeThatCancelInTheDifferenceAreNotTooSmall) {
+  const auto of_mesh = [](int k) { return expected_error({k, k, k}); };
+  const double of_time = -0.75 * of_mesh(2);  // on level 2
+  const auto at = [&](int mesh, int time, double error) {
+    Outcome found = level(mesh, error);
+    found.level.time = time;
+    return found;
+  };
+  const double finest = of_mesh(3) + of_time * std::pow(time_ratio, 2 - 5);
+  const std::vector<Outcome> levels{at(0, 0, 9e-2), at(1, 1, 3e-2), at(2, 2, of_mesh(2) + of_time), at(3, 5, finest)};
+  const Outcome looser = at(2, 1, of_mesh(2) + time_ratio * of_time);
+  const double error = answer(at_most(1e-3), levels, looser).estimate.error / std::abs(finest);
+  EXPECT_GT(error, 1. / 3);
+  EXPECT_LT(error, 3.);
+}
+
 }  // namespace
 }  // namespace tanktread::accuracy
