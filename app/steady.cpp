@@ -80,12 +80,12 @@ class SteadyRun {
     report_.iterations = found.iterations, report_.error = found.rest;
     write();
     if (!found.converged)
-      throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
+      throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g; another Steady/step may help",
+                                 found.iterations, found.rest));
   }
 
-  /// Finds the steady shape of the system `of` by continuation from weaker flows, after the search from `start` has failed with the report `failed`
-  /// and the best iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a prescribed history, or if the continuation does not
-  /// reach the full flow.
+  /// Finds the steady shape of the system `of` by approach_steady(), after the search from `start` has failed with the report `failed` and the best
+  /// iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a prescribed history, or if approach_steady() does not find it.
   motion::SteadyReport approach(const std::shared_ptr<System>& of, const Net& start, Net& x, const motion::SteadyReport& failed) {
     if (!(of->scene.alone().front().speed() > 0) || of->scene.flow.history) return failed;
     output::Checkpoint mesh;

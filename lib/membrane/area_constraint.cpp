@@ -21,7 +21,8 @@ AreaConstraint::AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& 
   const Materials& materials = membrane.materials();
   for (int e = 0; e < static_cast<int>(space_->elements.size()); ++e) {
     const Material& material = materials.all[materials.of_element.empty() ? 0 : static_cast<std::size_t>(materials.of_element[e])];
-    const auto parts = material.area_order > 0 ? split(material.law) : std::nullopt;
+    // The matrix of factor() has a row per Gauss point. With more than one point per element there are more rows than displacements.
+    const auto parts = material.area_order == 1 ? split(material.law) : std::nullopt;
     if (!parts || parts->area.area == 0) continue;  // Skalak's law with C = 0 has no area elasticity
     const spline::Element& element = space_->elements[e];
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(material.area_order + std::max(0, element.degree - 3));

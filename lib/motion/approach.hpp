@@ -1,5 +1,5 @@
 #pragma once
-// Steady shapes that a search from the initial shape does not find, approached through weaker flows.
+// Steady shapes that a search from the initial shape does not find: shorter steps, and weaker flows.
 
 #include <functional>
 #include <memory>
@@ -13,13 +13,15 @@ namespace tanktread::motion {
 /// Result of approach_steady: the weaker flows for which a steady shape was found on the way to the full flow.
 struct Approach {
   std::vector<double> amplitudes;  ///< flow amplitudes at which a steady shape was found, ascending; 1 is the amplitude of the scene
+  bool by_shorter_steps = false;   ///< true if the shape was found at the full flow with a tenth of Steady/step
   SteadyReport last;               ///< report of the last search, which was either at the full flow (amplitude 1) or failed
 
   bool arrived() const { return !amplitudes.empty() && amplitudes.back() == 1; }
   std::string text() const;  ///< returns a sentence that lists the amplitudes at which a steady shape was found
 };
 
-/// Finds a steady shape by natural continuation in the amplitude a of the flow, from a first a <= 1/2 at which the search from x succeeds, to a = 1.
+/// Finds a steady shape that a search from x does not find: first with a tenth of Steady/step, because long steps excite short waves on compressed
+/// membranes; then by natural continuation in the amplitude a of the flow, from a first a <= 1/2 at which the search from x succeeds, to a = 1.
 /// Each search starts at the linear extrapolation of the two latest shapes. The step of a is increased after a search with few iterations, and halved
 /// after a failed search. The continuation ends if the step falls to 1/512. The tolerance of these searches is at least 1e-6; at the full flow, up to
 /// three more searches reach Steady/tolerance. Sets x to the shape at the last amplitude for which a search succeeded. `family`: the equations at an

@@ -107,6 +107,24 @@ Tanktread:
     check(force[-1] > 0 and abs(gap[-1] - 0.3) < 3e-5 and gap.min() > 0.3 * (1 - 1e-4), gap, force)
 
 
+def drops_that_are_pressed_together_are_held_apart():
+    """Their interfaces are dented by the force, and the narrowest place moves to the rim of the dent."""
+    deck("""
+Tanktread:
+  Flow: {type: planar hyperbolic}
+  Particles:
+    defaults: {Membrane: {law: surface tension, surface tension: 5.0}, Surface: {elements per side: 4}}
+    one: {center: [0, 0, 1.3]}
+    two: {center: [0, 0, -1.3]}
+  Contact: {limit: 0.05, limiter: true}
+  Time: {final time: 1.6}
+  Output: {interval: 1.6}
+""")
+    run("deck.yaml", "--output", "drops", "--quiet")
+    gap, force = series("drops", "smallest_gap"), series("drops", "contact_force")
+    check(force[-1] > 0 and gap.min() > 0.05 * (1 - 0.02), gap, force)  # a second contact of a pair may be 1 % closer, and so may its target
+
+
 def images_are_let_go_when_the_flow_turns_back():
     """After the reversal at time 0.2 the period along x3 grows in every step, and with it the gap to the image."""
     deck("""

@@ -55,17 +55,19 @@ Limiter::Held Limiter::held(const Approach& found, double target) const {
   return {found.contact, found.gap, target, force, force, {}, {}};
 }
 
-/// Updates the gaps of known contacts in the shape x. Adds a contact at every other place where a gap is below (1 - slack/10) times the limit.
+/// Updates the gaps of known contacts in the shape x. Adds a contact at every other place where a gap is below (1 - slack/10) times the limit, also
+/// beside a known contact if the gap there is below (1 - slack) times the gap to restore, because the force dents a soft drop.
 /// Returns false if a gap is below half of the limit.
 bool Limiter::find(const Net& x) {
   for (Held& one : held_) one.gap = approach(members_, x, one.contact).gap;
   for (Approach found : approaches(members_, x, limit_, ranks_, capsule_.cell())) {
     if (!(found.gap >= limit_ / 2)) return false;
-    if (Held* const known = beside(found.contact, x)) {
-      if (known->response.size() > 0 || found.gap >= known->gap) continue;
+    Held* const known = beside(found.contact, x);
+    if (known && known->response.size() == 0) {
+      if (found.gap >= known->gap) continue;
       found.contact.force = known->contact.force;
       *known = held(found, known->target);
-    } else if (found.gap < (1 - slack / 10) * limit_) {
+    } else if (found.gap < (known ? (1 - slack) * known->target : (1 - slack / 10) * limit_)) {
       held_.push_back(held(found, target(found)));
     }
   }

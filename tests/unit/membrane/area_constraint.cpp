@@ -45,10 +45,12 @@ TEST(AreaConstraint, BringsTensionsToThoseOfAnotherShape) {
   }
 }
 
-TEST(AreaConstraint, IsNotThereWhereAreaHasNoPointsOfItsOwn) {
+TEST(AreaConstraint, IsNotThereWithoutOnePointOfItsOwnPerElement) {
   const Sphere& s = sphere(3);
   EXPECT_TRUE(AreaConstraint(Membrane(s.space, s.net, laws[0]), mobility(s.net.rows())).empty());
   EXPECT_TRUE(AreaConstraint(with_points(s, NeoHookean{}), mobility(s.net.rows())).empty());
+  const Membrane two_points(s.space, s.net, Materials{{{laws[0], {}, {}, 2}}, {}});  // more conditions than displacements
+  EXPECT_TRUE(AreaConstraint(two_points, mobility(s.net.rows())).empty());
 }
 
 }  // namespace
