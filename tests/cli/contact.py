@@ -117,8 +117,8 @@ Tanktread:
     one: {center: [0, 0, 1.3]}
     two: {center: [0, 0, -1.3]}
   Contact: {limit: 0.05, limiter: true}
-  Time: {final time: 1.6}
-  Output: {interval: 1.6}
+  Time: {final time: 2.0}
+  Output: {interval: 1.0}
 """)
     run("deck.yaml", "--output", "drops", "--quiet")
     gap, force = series("drops", "smallest_gap"), series("drops", "contact_force")
