@@ -166,8 +166,14 @@ class SeriesData(Datum):
         return interpolated(times, values, numpy.clip(wanted, times[0], times[-1]))
 
     def residuals(self, prediction, place):
+        """Returns the residuals z divided by their errors. The error d of the runs is common to all values of a curve:
+        with the errors e of the data and u = d/e, the covariance of z is 1 + u u^T; the result is (1 + u u^T)^(-1/2) z."""
         found = self.values - self.predicted(prediction, place)
-        return found if self.error is None else found / numpy.hypot(self.error, self.discretisation or 0)
+        if self.error is None:
+            return found
+        z, u = found / self.error, numpy.broadcast_to((self.discretisation or 0) / self.error, found.shape)
+        square = u @ u
+        return z - (1 - 1 / numpy.sqrt(1 + square)) * (u @ z) / max(square, numpy.finfo(float).tiny) * u
 
 
 class Experiment:
