@@ -38,6 +38,7 @@ def shapes(run, field):
     shots = evenly(run.snapshots(), FRAMES)
     if not shots:
         return None
+    expect("Normals" in shots[-1].fields, f"{shots[-1].path} is damaged: it has no normals")
     field = field or ("traction" if "traction" in shots[-1].fields else next(iter(shots[-1].fields)))
     expect(field in shots[-1].fields,
            f"the snapshots hold no field {field}; there are: {', '.join(sorted(shots[-1].fields))}")
@@ -94,12 +95,16 @@ def of_run(directory, field):
     asked = ["request", "value", "allowed", "estimated error"]
     requests = [["✓" if one["met"] else "✗", *(one[key] for key in asked), one.get("untrusted", "")]
                 for one in (summary.get("accuracy") or {"requests": []})["requests"]]
+    errors = summary.get("error") or {}
+    last = [[run.axis(name), summary["final"][name], errors.get(name, "–"), run.descriptions[name]]
+            for name in summary.get("final") or () if name in run.units and (errors or len(run.time) < 2)]
     sections = [
         ("Warnings", "list", summary.get("warnings") or []),
         ("Expectations", "table", [["", *head]] + [
             ["✓" if one.get("passed") else "✗", *(one.get(key, None if key == "name" else "–") for key in head)]
             for one in summary.get("expect") or []]),
         ("Accuracy", "table", requests and [["", *asked, "remark"], *requests]),
+        ("Last values", "table", last and [["series", "value", "estimated error", "meaning"], *last]),
         *((title, "table", [[key, value] for key, value in (summary.get(word) or {}).items()])
           for title, word in (("Errors", "estimated errors"), ("Plan", "plan"), ("Numbers of the scene", "numbers"),
                               ("Seconds by phase", "seconds"), ("Bytes of memory", "memory"), ("Counts", "counts"))),

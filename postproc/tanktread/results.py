@@ -225,7 +225,10 @@ class Run:
         """Returns the saved steps in order of time. Each is read when it is used."""
         series = self.directory / "run.hdf.series"
         files = Named(parsed(series, json.loads, dict), f"{series} holds no")["files"] if series.exists() else []
-        return [Snapshot(self.directory / entry["name"], entry["time"], self.particles) for entry in files]
+        try:
+            return [Snapshot(self.directory / one["name"], float(one["time"]), self.particles) for one in files]
+        except (TypeError, ValueError, KeyError):
+            raise Mistake(f"{series} is damaged: a snapshot has no name or time") from None
 
     def snapshot_at(self, time):
         """Returns the saved step nearest to a time (None: the last one). Raises Mistake if there is none."""

@@ -97,6 +97,15 @@ def _exists(program):
                               "it, or name one: TANKTREAD=...")
 
 
+def _files_of(value, folders):
+    """Yields the first files with the names in nested dicts and lists; of the folder of an earlier run its run.h5."""
+    for one in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from _files_of(one, folders)
+    if value and isinstance(value, (str, pathlib.Path)):
+        places = (folder / value / part for folder in folders for part in ("", "run.h5"))
+        yield from [place for place in places if os.path.isfile(place)][:1]
+
+
 def _set(settings):
     """Returns the words of the command line for settings."""
     return [word for key, value in settings.items() for word in ("--set", f"{key}={text_of(value)}")]
@@ -197,9 +206,13 @@ class Study:
 
     @staticmethod
     def name(decks, settings, ranks=1):
-        """Returns the name of a run's directory, by the content of the decks and the settings."""
+        """Returns the name of a run's directory, by the settings and the content of the decks and files they name."""
         texts = [parsed(deck_at(deck), str) for deck in decks]
-        text = json.dumps([texts, {key: text_of(value) for key, value in sorted(settings.items())}, ranks])
+        named, folders = [dict(sorted(settings.items()))], [pathlib.Path(), *(deck_at(deck).parent for deck in decks)]
+        with contextlib.suppress(Mistake):  # the program refuses a deck that is not YAML
+            named += [parsed(deck_at(deck)) for deck in decks]
+        files = [hashlib.sha1(path.read_bytes()).hexdigest() for path in _files_of(named, folders)]
+        text = json.dumps([texts, {key: text_of(value) for key, value in sorted(settings.items())}, ranks, *files])
         return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]
 
     def all(self, jobs, told=lambda outcome: None):

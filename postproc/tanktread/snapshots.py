@@ -52,9 +52,9 @@ class Snapshot:
 
     def cells_of(self, particle):
         """Returns the indices of the cells of one particle, by its name in `run.particles`."""
+        expect(particle in self.particles, f"there is no particle {particle}; there are: {', '.join(self.particles)}")
         if "particle" not in self.fields:
             return numpy.arange(len(self.cells))
-        expect(particle in self.particles, f"there is no particle {particle}; there are: {', '.join(self.particles)}")
         numbers = numpy.array([self.fields["particle"][cell[0]] for cell in self.cells])  # from 1 in the deck's order
         return numpy.flatnonzero(numbers == self.particles.index(particle) + 1)
 

@@ -13,7 +13,7 @@ from harness import PROGRAM, SOURCE, check, close, deck, main, package
 os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
-from tanktread.studies import fit_data, outline, silhouette
+from tanktread.studies import fit_data, fit_report, outline, silhouette
 
 SHEAR = """
 Tanktread:
@@ -47,6 +47,12 @@ def _found(law="the deck's law"):
 def _ellipse(a, b, n=60):
     angle = 2 * numpy.pi * numpy.arange(n) / n
     return numpy.column_stack([a * numpy.cos(angle), b * numpy.sin(angle)])
+
+
+def a_value_has_the_digits_of_its_error():
+    for given, text in (((3.298808, 0.0003), "3.29881 ± 0.00030"), ((34.6, 0.0149), "34.600 ± 0.015"), ((123456.0, 12.3), "123456 ± 12"), ((0.5, 12.0), "0.5 ± 12"),
+                        ((0.0, 0.01), "0.0 ± 0.010")):
+        check(fit_report.stated(*given) == text, fit_report.stated(*given), "instead of", text)
 
 
 def curves_give_back_two_unknowns_and_tell_the_law():

@@ -134,6 +134,27 @@ def snapshots_and_summaries_that_are_cut():
     _all_refused()
 
 
+def snapshots_that_have_no_names_or_fields_and_scenes_that_lack_what_is_drawn():
+    _run()
+    for name, text in ("a", '{"files": [{"name": 3}]}'), ("b", '{"files": 1}'), ("c", '{"files": [{"name": "x.hdf", "time": "t"}]}'):
+        shutil.copytree("one", name)
+        pathlib.Path(name, "run.hdf.series").write_text(text)
+        _refused("report", name)
+        _refused("figure", "shape", name)
+    shutil.copytree("one", "bare")
+    for path in pathlib.Path("bare").glob("**/*.hdf"):
+        with h5py.File(path, "r+") as file:
+            if "VTKHDF/PointData" in file:
+                for field in list(file["VTKHDF/PointData"]):
+                    del file["VTKHDF/PointData"][field]
+    _refused("report", "bare")
+    _refused("figure", "shape", "bare")
+    for figure in "surfactant", "tube", "duct", "tube-motion", "channel":
+        _refused("figure", figure, "one")
+        check("Errno" not in _ended("figure", figure, "one")[1], figure)
+    _all_refused()
+
+
 def tables_that_are_empty_or_no_tables():
     _run()
     _run("wall", DECK.replace("  Membrane:", "  Particle: { center: [0, 0, 1.5] }\n  Wall: { point: [0, 0, 0], normal: [0, 0, 1] }\n  Membrane:"))
@@ -216,6 +237,9 @@ def pictures_that_are_no_pictures_and_places_that_cannot_be_written():
     imsave("good.png", (x**2 + x[:, None] ** 2 < 1) * 1.0, cmap="gray")
     for name in "grey.png", "tiny.png", "cut.png", "nowhere.png", ".":
         _refused("outline", name)
+    imsave("clear.png", numpy.dstack([numpy.zeros((128, 128, 3)), x**2 + x[:, None] ** 2 < 1]))
+    check(_ended("outline", "clear.png")[0] == 0, "a shape in the opacity only")
+    _refused("outline", "good.png", "--points", "0")
     _refused("outline", "good.png", "-o", "file/points.csv")
     _refused("outline", "good.png", "--overlay", "file/points.png")
     _refused("report", "one", "-o", "file/page.html")

@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+import warnings
 from unittest import mock
 
 import h5py
@@ -120,6 +121,11 @@ def particles_have_names_and_series_whether_one_or_several():
         close(last.points[nodes, 0].mean(), two.of(name, "centroid_x1")[-1], 0.02, "middle of the nodes")
     close(last.area(), sum(two.of(name, "area")[-1] for name in two.particles), 1e-9, "area")
     check(len(one.snapshots()[0].cells_of("particle")) == len(one.snapshots()[0].cells), "cells of the one")
+    try:
+        one.snapshots()[0].cells_of("nobody")
+        check(False, "a particle that is not there")
+    except tanktread.mistakes.Mistake as mistake:
+        check("no particle nobody" in str(mistake), mistake)
 
 
 def series_go_to_pandas_and_xarray_with_units():
@@ -196,8 +202,10 @@ def _all_figures():
     t = numpy.linspace(0, 40, 801)
     turns = {name: 1 + 0.01 * numpy.sin(t) for name in ("area", "volume_error", "energy", "taylor_inertia", "inclination")} | {"phase": 180 * t}
     _made_up("turns", {"Flow": {"type": "simple shear"}}, turns | {f"length_x{k}": 2 - 0.02 * t * (k == 1) for k in (1, 2)}, t)
-    for name in "deformation", "shape", "meshes", "refinement", "rheology", "surfactant":
+    for name in "deformation", "shape", "meshes", "refinement", "rheology":
         yield name, ["one"], {}
+    _run("covered", CAPSULE.replace("law: neo-Hookean, capillary number: 0.3", "law: surface tension, capillary number: 0.3") + "  Interface: { surfactant: { elasticity number: 0.2 } }\n")
+    yield "surfactant", ["covered"], {}
     run(deck(CAPSULE, "ladder.yaml"), "--accuracy", "taylor_inertia=50%", "--set", "Accuracy/levels=3", "--output", "ladder", "--quiet")
     yield "work", "ladder", {}
     yield from (("convergence", ["one"], {"curve": "curve.csv"}), ("animation", "one", {"frame": 0}), ("encounter", ["two"], {}),
@@ -223,6 +231,16 @@ def every_figure_is_drawn_and_takes_axes():
         style.plt.close("all")
     figure, axes = style.plt.subplots(2, 1)
     check(figures.deformation("one", axes) is figure and axes[0].lines, "in given axes")
+
+
+def a_run_with_one_row_is_drawn_as_dots():
+    _run("steady", CAPSULE.replace("simple shear", "uniaxial extension").replace("number: 0.3", "number: 0.05") + "  Steady: {}\n")
+    for name in "deformation", "refinement":
+        lines = [line for axis in figures.FIGURES[name]("steady").axes for line in axis.lines if len(line.get_xdata())]
+        check(lines and all(line.get_marker() == "o" for line in lines), name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        figures.animation("steady", frame=0)
 
 
 def figures_of_experiments_are_drawn_from_their_runs():

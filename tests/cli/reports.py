@@ -8,6 +8,7 @@ import pathlib
 import re
 
 import numpy
+import yaml
 
 from harness import check, close, deck, main, package, run, shown
 
@@ -94,6 +95,20 @@ def a_run_is_one_page_with_its_shapes_and_curves():
     told = _used("results/report.html")
     check(told is None or (told["turned"] and told["played"] and told["value"]), told)
     check(told is None or {"time · shear rate", "taylor_inertia"} <= set(told["texts"]), told)
+
+
+def last_values_have_their_errors_also_where_there_is_one_row():
+    deck(DECK)
+    run("deck.yaml", "--accuracy", "taylor_inertia=50%", "--output", "asked", "--quiet", "--set", "Accuracy/levels=3", code=None)
+    text = DECK.replace("simple shear", "uniaxial extension").replace("number: 0.3", "number: 0.05")
+    run(deck(text[:text.index("  Expect")] + "  Steady: {}\n"), "--output", "steady", "--quiet")
+    for name, asked in ("asked", True), ("steady", False):
+        _script("report", name)
+        content, summary = _content(f"{name}/report.html"), yaml.safe_load(pathlib.Path(name, "summary.yaml").read_text())
+        rows = {row[0]: row for row in next(body for title, _, body in content["sections"] if title == "Last values")}
+        check(asked or content["curves"] is None, "one row")
+        check(rows["taylor_inertia"][1] == summary["final"]["taylor_inertia"] and "area, length²" in rows, rows)
+        check(rows["taylor_inertia"][2] == (summary["error"]["taylor_inertia"] if asked else "–"), rows["taylor_inertia"])
 
 
 def axes_have_the_units_of_the_deck():

@@ -17,6 +17,7 @@ from harness import PROGRAM, SOURCE, check, close, deck, main, package, run
 os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
+from tanktread.interpolation import interpolated
 
 DECK = """
 Tanktread:
@@ -199,6 +200,41 @@ def a_deck_with_keys_changed_is_run_once_and_a_surface_is_evaluated_anywhere():
     close(abs(shot.evaluate(shot.points, cells, s, t, ds=1) - slope).max(), 0, 1e-7, "a derivative")
 
 
+def a_run_is_made_again_where_a_file_that_its_deck_names_has_changed():
+    deck(DECK.replace("simple shear", "simple shear, history: { file: history.csv }"))
+    ends = []
+    for factor in 1, 2:
+        pathlib.Path("history.csv").write_text(f"0,{factor}\n1,{factor}\n")
+        ends.append(tanktread.run("deck.yaml", {"Membrane/capillary number": 0.2}).series["taylor_inertia"][-1])
+    check(ends[1] > 1.5 * ends[0], "the file is twice the flow", ends)
+    plain, earlier = {"Membrane/capillary number": 0.2}, {"Particle/initial shape/run": "earlier"}
+    name = tanktread.runs.Study.name
+    before = name(["deck.yaml"], plain), name(["deck.yaml"], earlier)
+    pathlib.Path("earlier").mkdir()
+    pathlib.Path("earlier/run.h5").write_text("another one")
+    check(name(["deck.yaml"], plain) == before[0] and name(["deck.yaml"], earlier) != before[1], "an earlier run")
+    for folder, text in ("a", "0,1\n1,1\n"), ("b", "0,1\n1,2\n"):
+        pathlib.Path(folder).mkdir()
+        pathlib.Path(folder, "deck.yaml").write_text(pathlib.Path("deck.yaml").read_text())
+        pathlib.Path(folder, "history.csv").write_text(text)
+    pathlib.Path("history.csv").unlink()
+    check(name(["a/deck.yaml"], {}) != name(["b/deck.yaml"], {}), "a file beside the deck")
+
+
+def a_column_at_a_time_is_as_exact_as_the_run_and_one_outside_it_is_said():
+    deck(DECK)
+    pathlib.Path("study.yaml").write_text("deck: deck.yaml\ngrid: {Time/final time: [0.5, 0.3]}\nrecord: {D: {series: taylor_inertia, at: 0.37},\n"
+                                          "  end: {series: taylor_inertia, at: 0.3}}\n")
+    _sweep("study.yaml", "--jobs", "1")
+    rows = _rows()
+    exact = {row["directory"]: tanktread.run(f"results/study/runs/{row['directory']}").series for row in rows}
+    run("deck.yaml", "--set", "Time/tolerance=1e-7", "--output", "fine", "--quiet")
+    fine = tanktread.run("fine").series
+    close(float(rows[0]["D"]) / interpolated(fine["time"], fine["taylor_inertia"], [0.37])[0], 1, 1e-4, "D between steps")
+    close(float(rows[1]["end"]), exact[rows[1]["directory"]]["taylor_inertia"][-1], 1e-12, "D at the end")
+    check(rows[1]["D"] == "nan" and rows[1]["status"] == "done" and "D has no value at 0.37" in rows[1]["message"] and not rows[0]["message"], rows)
+
+
 def a_column_may_be_the_series_of_a_particle_and_a_mean_is_over_time():
     deck("Tanktread: { Flow: { type: simple shear }, Time: { final time: 0.1 }, Particles: { upper: { center: [0, 0, 3] }, lower: {},\n"
          "  defaults: { Membrane: { capillary number: 0.3 }, Surface: { elements per side: 3 } } } }")
@@ -266,6 +302,7 @@ def mistakes_are_one_sentence():
     deck(DECK)
     for text, words in (("deck: nowhere.yaml\nrecord: [a]", "no deck nowhere.yaml"), ("deck: deck.yaml", "records nothing"),
                         ("deck: deck.yaml\nkeys: {}", "keys is not known"), ("deck: deck.yaml\nrecord: {D: {take: most}}", "take most"),
+                        ("deck: deck.yaml\nrecord: {D: {series: a, take: mean, at: 1}}", "take or at"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1}}", "from, to and number"), ("a: [", "not YAML"),
                         ("deck: 3", "but 3 is none"), ("deck: deck.yaml\nrecord: [a]\nset: 3", "set must be a list of keys"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: [A/b]", "grid must be a list of keys"), ("deck: deck.yaml\nrecord: D", "record must be"),

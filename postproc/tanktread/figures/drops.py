@@ -22,6 +22,7 @@ def surfactant(runs, cut, along, deformation, extremes):
     """Drops with surfactant: last section, concentration along the axis x3, and over time D and its extremes.
 
     A clean drop among the runs is drawn for comparison."""
+    expect(any("surfactant_mass" in run.series for run in runs), f"{runs[0].directory} has no surfactant")
     for run, color in style.coloured(runs):
         last = run.snapshot_at(None)
         draw_pieces(cut, section(last, last.points[:, 1].mean()) / run.radius, color, 1.4)

@@ -40,10 +40,10 @@ def figure(*size, **layout):
                 expect(not isinstance(run, Run) or len(run.series["time"]), f"{run} holds no row of series yet")
             with style.plt.rc_context(style.STYLE):
                 if not size:
-                    return function(given, axes, **options)
+                    return style.dotted(function(given, axes, **options))
                 whole, parts = style.panels(axes, *(size[0](given) if callable(size[0]) else size), **layout)
                 function(given, *parts, **options)
-                return whole
+                return style.dotted(whole)
 
         drawn.__signature__ = inspect.Signature([first, AXES, *(one for one in others if one.kind is one.KEYWORD_ONLY)])
         FIGURES[function.__name__] = drawn

@@ -67,6 +67,13 @@ def shaded(items, first=0.12, last=1.0):
     return list(zip(items, plt.get_cmap(TIME)(numpy.linspace(first, last, len(items)))))
 
 
+def dotted(figure):
+    """Returns a figure, in which lines of one point, which cannot be seen, have become dots."""
+    lone = [line for axis in figure.axes for line in axis.lines if len(line.get_xdata()) == 1]
+    plt.setp([line for line in lone if line.get_marker() == "None"], marker="o", clip_on=False)
+    return figure
+
+
 def finish(axes, **properties):
     """Sets properties of axes, such as xlabel, and draws their legend."""
     axes.set(**properties)

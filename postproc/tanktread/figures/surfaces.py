@@ -164,5 +164,5 @@ def draw_series(panels, run):
         if len(values) and values.min() >= 0:
             axis.set_ylim(0, 1.1 * max(values.max(), 1e-6))
     panels[0].tick_params(labelbottom=False)
-    panels[1].set(xlabel=run.time_label, xlim=(run.time[0], run.time[-1]))
+    panels[1].set(xlabel=run.time_label, xlim=(run.time[0], run.time[-1]) if len(run.time) > 1 else None)
     return marks

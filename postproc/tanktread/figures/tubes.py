@@ -43,6 +43,7 @@ def duct(runs, *axes):
 
 def duct_of(run):
     """Returns the arrays of duct.h5 by name, lengths over R_T, and the `radius` R_T."""
+    expect(run.value("Flow/type") == "duct", f"{run.directory} is not in a tube")
     arrays = arrays_of(run.directory / "duct.h5")
     arrays["maximum"][:2] /= arrays["radius"]
     return arrays | {name: arrays[name] / arrays["radius"] for name in ("outline", "x2", "x3")}
@@ -160,6 +161,7 @@ def channel(run, cut, extents, velocity, pressure, wall, *, shapes: int = 7, acr
 
     shapes: number of times, evenly along the particle's way
     across: the section x2 = 0 or x3 = 0 is drawn, of a bend x3 = 0"""
+    expect(run.value("Channel"), f"{run.directory} is not in a channel")
     c = arrays_of(run.directory / "channel.h5")  # centre (n, 3), s (n,), wall (4, n, 3) and others
     s, way = run.series, way_along(run, c)
     cut_open(cut, run, c, way, shapes, across - 1)

@@ -64,6 +64,13 @@ def _alone(fit, candidate):
     return one
 
 
+def stated(value, error):
+    """Returns a value and its error as text, to two digits of the error."""
+    powers = [int(f"{abs(one):.1e}".partition("e")[2]) for one in (value or error, error)]
+    texts = f"{value:#.{numpy.clip(powers[0] - powers[1] + 2, 1, 12)}g}", f"{error:#.2g}"
+    return " ± ".join(text.rstrip(".") for text in texts)
+
+
 def told(fits, rows):
     """Returns the report as text."""
     lines = []
@@ -82,10 +89,10 @@ def told(fits, rows):
                          "mesh, a free scale or another law first")
         for unknown, (name, (value, error)) in zip(fit.unknowns, fit.values.items()):
             unit = fit.runs.unit(unknown.key).replace(",", "", 1)
-            if numpy.isfinite(error):  # the value has one digit more than its error determines
-                digits = int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10)) if value else 6
+            if numpy.isfinite(error):
                 also = f"; by the residuals ± {fit.scatter * error:.2g}" if fit.missed else ""
-                lines.append(f"  {name} = {value:.{digits}g} ± {error:.2g}{unit} ({error / abs(value):.2%}{also})")
+                share = 100 * error / abs(value or numpy.nan)
+                lines.append(f"  {name} = {stated(value, error)}{unit} ({share:.2g}%{also})")
             else:
                 lines.append(f"  {name}: not determined by these data (they are as well met by values far from "
                              f"{value:.3g}{unit})")

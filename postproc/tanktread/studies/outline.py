@@ -23,12 +23,13 @@ FINE = 0.25  # pixels between samples of a ray
 
 
 def grey(path):
-    """Returns the picture's brightness (rows, columns), rows from above."""
+    """Returns the picture's brightness on white (rows, columns), rows from above."""
     try:
-        picture = imread(path).astype(float)
+        picture = imread(path)
+        picture = numpy.atleast_3d(picture.astype(float) / (255 if picture.dtype.kind == "u" else 1))
     except Exception as error:  # the reader has many kinds
         raise Mistake(f"{path} is no picture that can be read: {error}") from None
-    return picture if picture.ndim == 2 else picture[..., :3].mean(2)
+    return (1 + (picture[..., :3] - 1) * picture[..., 3:].prod(2, keepdims=True)).mean(2)
 
 
 def frame(picture):
@@ -120,7 +121,7 @@ def main():
     mask = body(picture, arguments.picture)
     # each point takes three rays, about two pixels apart, because their scatter gives the standard error
     most = int(numpy.sqrt(mask.sum() * numpy.pi) / 2)
-    number = arguments.points or min(60, most)
+    number = min(60, most) if arguments.points is None else arguments.points
     expect(8 <= number <= most, f"{arguments.picture}: --points must be from 8 to {most}, half the rays of its outline")
     points, error = edge(picture, mask, number)
     expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")

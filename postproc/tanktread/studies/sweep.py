@@ -8,8 +8,8 @@ A study is a small YAML file: `deck` (one, or several that overlay each other), 
 that vary: `grid` (every combination), `together` (lists side by side), `random` (number, seed, keys). If several of
 these are given, their combinations are run. The values of a key are a list, or {from, to, number, spacing: linear |
 logarithmic}; those of a random key {from, to, spacing}, or a list to draw from. `record` names the columns: the name of
-a series for its last value, or {series, take: last | smallest | largest | mean | all, at: time}; a mean is over time.
-inputs/studies/study.yaml is an example.
+a series for its last value, {series, take: last | smallest | largest | mean | all}, or {series, at: time}; a mean is
+over time. inputs/studies/study.yaml is an example.
 
 A run that was made is not made again, even if the study has changed. One that was interrupted is resumed. One that
 fails has a row with its message.
@@ -28,7 +28,7 @@ import h5py
 import numpy
 
 from ..files import Named, opened
-from ..interpolation import mean
+from ..interpolation import interpolated, mean
 from ..mistakes import command_line, expect, log, progress
 from ..runs import Study, text_of
 from .common import keys_of, number, optional, spaced, study_of, values_of, whole
@@ -78,14 +78,15 @@ def columns_of(text, path):
         given = {"series": given} if isinstance(given, str) else keys_of(given, f"{path}: {name}")
         take = str(given.get("take", "last"))
         expect(take in TAKES, f"{path}: take {take} of {name} is not one of {', '.join(TAKES)}")
-        expect(not set(given) - {"series", "take", "at"}, f"{path}: {name} has series, take and at")
+        expect(not set(given) - {"series", "take", "at"} and not {"take", "at"} <= set(given),
+               f"{path}: {name} has series, and take or at")
         found[name] = given.get("series", name), take, optional(number, given, "at", f"{path}: {name}")
     return found
 
 
 def recorded(outcome, columns):
     """Returns the columns of a run, and `time` of whole series; none of a run that did not come to its end. A run with
-    requested accuracy has a column `<column> error` in addition to each column of one value."""
+    requested accuracy has `<column> error` beside each column of one value, and one that lacks a time a `message`."""
     if not outcome.done:
         return {}
     row, time = {}, outcome.series["time"]
@@ -98,7 +99,11 @@ def recorded(outcome, columns):
         take_error = TAKES["last" if take == "last" else "largest"]
         for column, found, one in (name, values, TAKES[take]), (f"{name} error", errors, take_error):
             if found is not None and at is not None and len(found):
-                row[column] = float(numpy.interp(at, time, found))
+                known, place, order = ~numpy.isnan(found), numpy.clip(at, time[0], time[-1]), 6 if column == name else 2
+                there = abs(place - at) <= 1e-9 * abs(at) and not numpy.isnan(numpy.interp(place, time, found))
+                row[column] = interpolated(time[known], found[known], [place], order)[0] if there else numpy.nan
+                if not there and column == name:
+                    row["message"] = f"{name} has no value at {at:g}; the run is from {time[0]:g} to {time[-1]:g}"
             elif found is not None:
                 row[column] = float(one(time[kept], found[kept])) if kept.any() else numpy.nan
     return row
@@ -144,9 +149,10 @@ class Sweep:
         with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
             out.writerow([*self.keys, *single, "status", "processor_seconds", "directory", "message"])
-            for row, one, *values in zip(self.rows, self.outcomes, *columns.values()):
+            for row, one, own, *values in zip(self.rows, self.outcomes, found, *columns.values()):
                 out.writerow([*(row.get(key, "") for key in self.keys), *values, one.status,
-                              f"{one.processor_seconds:.3g}", one.directory.name, "" if one.done else one.message])
+                              f"{one.processor_seconds:.3g}", one.directory.name,
+                              own.get("message", "") if one.done else one.message])
         for name in [*whole, "time"] if whole else []:
             padded = itertools.zip_longest(*(values.get(name, []) for values in found), fillvalue=numpy.nan)
             columns[name] = numpy.reshape(list(padded), (-1, len(found))).T
