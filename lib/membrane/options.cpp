@@ -121,9 +121,8 @@ void Options::declare(deck::Section& section) {
               "path of a file with the stress-free surface of the membrane in Bezier-extraction format (.iga), on the same mesh as the "
               "particle. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("pre-inflation", pre_inflation, deck::between(0.0, 1.0), "1",
-              "relative inflation alpha of a capsule: the resting shape, which section Particle describes, is the unstressed shape enlarged by "
-              "the factor 1 + alpha about its centre, so that the membrane is under tension. A `stress-free shape` other than `resting` is "
-              "shrunk by this factor");
+              "relative inflation alpha of a capsule: the shape of section Particle is the unstressed shape enlarged by 1 + alpha about its "
+              "centre, so that the membrane is under tension. A `stress-free shape` other than `resting` is shrunk by this factor");
   section.key("load", load, deck::Choice{"weak", "strong"},
               "method of computing the load (force per area) of the membrane on the fluid. `weak`: by virtual work (3.5). `strong`: by the "
               "surface divergence of the tensions, which fails as Maestre et al. (2017) show");

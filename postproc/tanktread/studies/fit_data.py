@@ -166,8 +166,8 @@ class SeriesData(Datum):
         return interpolated(times, values, numpy.clip(wanted, times[0], times[-1]))
 
     def residuals(self, prediction, place):
-        """Returns residuals of unit variance. The error d of the runs is common to all values of a curve: with the errors
-        e of the data and u = d/e, residuals z divided by e have the covariance 1 + u u^T; returns (1 + u u^T)^(-1/2) z."""
+        """Returns residuals of unit variance. The error d of the runs is common to all values of a curve: residuals z,
+        divided by the errors e of the data, have the covariance 1 + u u^T with u = d/e; returns (1 + u u^T)^(-1/2) z."""
         found = self.values - self.predicted(prediction, place)
         if self.error is None:
             return found
