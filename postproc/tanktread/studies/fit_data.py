@@ -167,7 +167,7 @@ class SeriesData(Datum):
 
     def residuals(self, prediction, place):
         """Returns residuals of unit variance. The error d of the runs is common to all values of a curve: residuals z,
-        divided by the errors e of the data, have the covariance 1 + u u^T with u = d/e; returns (1 + u u^T)^(-1/2) z."""
+        divided by the errors e of the data, have the covariance 1 + u u^T with u = d/e; gives (1 + u u^T)^(-1/2) z."""
         found = self.values - self.predicted(prediction, place)
         if self.error is None:
             return found
