@@ -321,7 +321,7 @@ class Run {
     const double gap = row_.value("smallest_gap"), least = scene_.contact.end() * scene_.least_radius();
     if (gap >= least) return;
     fail(touching(scene_, static_cast<int>(row_.value("first_of_gap")), static_cast<int>(row_.value("second_of_gap"))) +
-         formatted(": the gap is %.4g, less than %g R_C = %.4g (Contact/limit),", gap, scene_.contact.end(), least));
+         formatted(": the gap is %.4g, less than %.4g; Contact/limit is %g R_C,", gap, least, scene_.contact.limit));
   }
 
   /// Returns the reason to end the run after a finished step, or an empty text if it continues. Throws RunFailure if particles touch each other or a

@@ -159,22 +159,18 @@ std::string obstacle(const std::vector<Outcome>& levels) {
 
 namespace {
 
-/// Returns the estimated error of the finest level. `sizes`: differences between the levels. `scale`: see estimated(). If errors of the mesh and of
-/// the time integration have opposite signs, they cancel in the differences, and (9.1) is too small. This is certain if the known change of the time
-/// part from one level to the next is much larger than the difference between these levels. The change of the mesh part is then the sum of the two.
-Estimate estimate(const Request& request, const std::vector<Outcome>& levels, const std::vector<double>& sizes, double scale,
-                  const std::optional<Outcome>& looser) {
+/// Returns the error of the finest level if errors of the mesh and of the time integration cancel in the difference from the level before, otherwise
+/// 0. (9.1) is then too small. The two certainly cancel if the known change of the time part from one level to the next is much larger than the
+/// difference `last` between these levels. The change of the mesh part is then the sum of the two.
+double cancelled(const Request& request, const std::vector<Outcome>& levels, double last, const std::optional<Outcome>& looser) {
   constexpr double much = 2;
-  Estimate found = estimated(sizes, scale, expected_errors(levels, request, scale, looser));
-  if (!looser || levels.size() < 4) return found;
+  if (!looser || levels.size() < 4) return 0;
   const Level &fine = levels.back().level, &coarse = levels[levels.size() - 2].level;
   const double of_level_2 = part_error(request, levels[2], *looser, time_ratio);
   const auto of_time = [&](const Level& level) { return of_level_2 * std::pow(time_ratio, 2 - level.time); };
   const double change = of_time(coarse) - of_time(fine);
-  if (!(change > much * sizes.back())) return found;
-  const double of_mesh = (sizes.back() + change) * expected_error(fine) / (expected_error(coarse) - expected_error(fine));
-  found.error = std::max(found.error, of_mesh + of_time(fine));
-  return found;
+  if (!(change > much * last)) return 0;
+  return (last + change) * expected_error(fine) / (expected_error(coarse) - expected_error(fine)) + of_time(fine);
 }
 
 }  // namespace
@@ -188,12 +184,13 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
   found.allowed = request.relative ? std::max(request.value * magnitude(whole), round_off * scale) : request.value;
   const std::vector<Curve> all = differences(request.series, request.of, levels);
   const std::vector<double> sizes = norms(all);
-  found.estimate = estimate(request, levels, sizes, scale, looser);
+  found.estimate = estimated(sizes, scale, expected_errors(levels, request, scale, looser));
   const bool tiny = sizes.size() > 1 && sizes.back() <= found.allowed / 10 && sizes[sizes.size() - 2] <= found.allowed / 10;
   if (tiny && !found.estimate.trusted()) {
     const double before = sizes[sizes.size() - 2];
     found.estimate = {std::max(sizes.back(), found.estimate.ratio > most_ratio ? before / most_ratio : before), found.estimate.ratio, ""};
   }
+  if (!sizes.empty()) found.estimate.error = std::max(found.estimate.error, cancelled(request, levels, sizes.back(), looser));
   if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
   const std::vector<double> noise = norms(differences(request.series, Of::run, levels));
   found.vanishes = request.relative && !tiny && noise.size() > 1 && std::min(noise.back(), noise[noise.size() - 2]) > magnitude(whole) / 2 &&
@@ -214,7 +211,10 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     const std::vector<Curve> pairs = differences(series.name, Of::run, levels);
     const Curve whole = curve(finest, series.name);
     const double scale = scale_of(finest, series.name);
-    Estimate whole_run = estimate({series.name, Of::run, 0, false}, levels, norms(pairs), scale, looser);
+    const Request of_run{series.name, Of::run, 0, false};
+    const std::vector<double> sizes = norms(pairs);
+    Estimate whole_run = estimated(sizes, scale, expected_errors(levels, of_run, scale, looser));
+    if (!sizes.empty()) whole_run.error = std::max(whole_run.error, cancelled(of_run, levels, sizes.back(), looser));
     for (bool requested = false; const Answer& answer : answers) {
       if (answer.request.series != series.name || answer.request.of != Of::run || (requested && !answer.estimate.trusted())) continue;
       whole_run = answer.estimate, requested = true;

@@ -22,9 +22,9 @@ void SurfactantOptions::declare(deck::Section& section) {
   section.key("diffusivity", diffusivity, deck::not_negative(), "length^2/time",
               "surface diffusivity D_s of the surfactant; 0 (no diffusion) if neither `diffusivity` nor `Peclet number` is given");
   section.key("Peclet number", peclet_number, deck::positive(), "1",
-              "surface Peclet number rate x R_C^2/D_s, which sets the surface diffusivity D_s of the surfactant instead of "
-              "`diffusivity`: the larger, the less diffusion. rate: Flow/shear rate, or the largest singular value of Flow/gradient. "
-              "R_C: radius of the sphere with the drop's volume");
+              "surface Peclet number G R_C^2/D_s, which sets the surface diffusivity D_s of the surfactant instead of `diffusivity`: the "
+              "larger, the less diffusion. G: Flow/shear rate, or the largest singular value of Flow/gradient. R_C: radius of the sphere "
+              "with the drop's volume");
 }
 
 void SurfactantOptions::check() const {

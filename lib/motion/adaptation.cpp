@@ -20,9 +20,9 @@ void AdaptationOptions::declare(deck::Section& section) {
   for (double* length : {&surface_tolerance, &minimum_length, &coarsening_tolerance}) *length *= radius;
   if (indicator == "variation") reference_length = 0.35 * radius, limit_aspect_ratio = 2.5, order = 1;
   section.key("surface tolerance", surface_tolerance, deck::positive(), "length",
-              "largest allowed error, estimated on each element, of the position of the surface, for Adaptation/indicator `error`; default "
-              "4e-4 R_C, where R_C is the radius of the sphere with the particle's volume. Divided by R_C, it is also the tolerance of the "
-              "relative error of the surfactant concentration and of the error of a viscoelastic membrane's strain");
+              "largest allowed error, estimated on each element, of the position of the surface, for Adaptation/indicator `error`; if not "
+              "given, 4e-4 R_C (4e-4 for radius 1), where R_C is the radius of the sphere with the particle's volume. Divided by R_C, it is "
+              "also the tolerance of the relative error of the surfactant concentration and of the error of a viscoelastic membrane's strain");
   section.key("load tolerance", load_tolerance, deck::positive(), "force/length^2",
               "largest allowed error, estimated on each element, of the membrane load per current area, for Adaptation/indicator `error`; "
               "if not given, load errors cause no refinement");
@@ -52,8 +52,8 @@ void AdaptationOptions::declare(deck::Section& section) {
       "divided by sqrt(film width x R_C), where R_C is the radius of the sphere with the particle's volume; 0.7 if not given, 0.5 for "
       "rigid bodies in the section Particles. Adaptation/levels limits this refinement, Adaptation/minimum length does not");
   section.key("minimum length", minimum_length, deck::positive(), "length",
-              "element length L_min below which elements are not refined; default 0.035 R_C, where R_C is the radius of the sphere with "
-              "the particle's volume");
+              "element length L_min below which elements are not refined; if not given, 0.035 R_C (0.035 for radius 1), where R_C is "
+              "the radius of the sphere with the particle's volume");
   section.key("interval", interval, deck::at_least(1), "steps",
               "number of accepted time steps between two checks of the mesh for refinement");
   section.key("levels", levels, deck::between(0, 8), "1",

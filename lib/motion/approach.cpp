@@ -9,7 +9,7 @@ namespace tanktread::motion {
 
 std::string Approach::text() const {
   if (by_shorter_steps) return "nothing was found from the initial shape with Steady/step, but with a tenth of it";
-  if (amplitudes.empty()) return "nothing was found from the initial shape, nor in weaker flows";
+  if (amplitudes.empty()) return "nothing was found from the initial shape, nor with shorter steps, nor in weaker flows";
   std::string all;
   for (const double amplitude : amplitudes) all += (all.empty() ? "" : ", ") + formatted("%.4g", amplitude);
   return "nothing was found from the initial shape; steady shapes of the flow times " + all +
@@ -20,20 +20,22 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
                          const coupling::SolverOptions& solvers, Net& x) {
   // least_step: smallest step of the amplitude of the flow. coarse: tolerance of a search at any amplitude, unless Steady/tolerance is larger. far:
   // largest change of shape in one step, divided by the particle radius. most_polishes: largest number of searches with Steady/tolerance, each of
-  // which starts at the best shape of the previous one with a new Jacobian. most_short_searches: the same with shorter steps.
-  constexpr double least_step = 1. / 512, coarse = 1e-6, far = 0.5;
+  // which starts at the best shape of the previous one with a new Jacobian. most_short_searches: the same with shorter steps. most_motion: largest
+  // displacement of a steady shape by its velocity in Steady/step, divided by the particle radius; crumpled surfaces move faster.
+  constexpr double least_step = 1. / 512, coarse = 1e-6, far = 0.5, most_motion = 0.1;
   constexpr int few = 25, most_searches = 60, most_polishes = 3, most_short_searches = 2;
   Approach way;
   if (const std::shared_ptr<SteadyEquations> full = family(1)) {
     SteadyEquations shorter = full->with_step(0.1 * full->step());
     Net y = x;
     for (int k = 0; k < most_short_searches && !way.last.converged; ++k) way.last = find_steady(shorter, options, solvers, y);
-    if (way.last.converged) {
+    if (way.last.converged && full->dynamics().norm(full->residual(y)) < most_motion) {
       x = std::move(y);
       way.amplitudes = {1}, way.by_shorter_steps = true;
       return way;
     }
   }
+  bool exhausted = false;  // true if the full flow was solved to the coarse tolerance but not to Steady/tolerance
   const auto found_at = [&](double amplitude, Net& y) {
     SteadyOptions here = options;
     here.tolerance = std::max(options.tolerance, coarse);
@@ -44,11 +46,12 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
     if (amplitude < 1) return true;
     for (int k = 0; k < most_polishes && !(way.last.converged && way.last.rest <= options.tolerance); ++k)
       way.last = find_steady(*equations, options, solvers, y);
-    return way.last.converged;
+    exhausted = !way.last.converged;
+    return !exhausted;
   };
   double amplitude = 0, step = 0.5;
   Net before;  // shape at the previous amplitude
-  for (int k = 0; k < most_searches && amplitude < 1 && step > least_step; ++k) {
+  for (int k = 0; k < most_searches && amplitude < 1 && step > least_step && !exhausted; ++k) {
     const double next = std::min(1., amplitude + step);
     Net y = x;
     if (way.amplitudes.size() > 1) {

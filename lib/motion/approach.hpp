@@ -10,7 +10,7 @@
 
 namespace tanktread::motion {
 
-/// Result of approach_steady: the weaker flows for which a steady shape was found on the way to the full flow.
+/// Result of approach_steady: whether shorter steps led to the steady shape, or for which weaker flows one was found on the way to the full flow.
 struct Approach {
   std::vector<double> amplitudes;  ///< flow amplitudes at which a steady shape was found, ascending; 1 is the amplitude of the scene
   bool by_shorter_steps = false;   ///< true if the shape was found at the full flow with a tenth of Steady/step

@@ -28,7 +28,7 @@ void WallOptions::declare(deck::Section& section) {
               "given, the wall moves with the flow of Flow/type. Flow/history changes it in time");
   section.key("second velocity", second_velocity, deck::any(), "length/time",
               "velocity of the second wall, which Wall/distance adds: three numbers, tangential to the wall. If not given, the wall moves "
-              "with the flow of Flow/type. Flow/history changes it in time");
+              "with the flow of Flow/type. Flow/history changes both as it changes the flow");
   section.key("elements per period", elements_per_period, deck::between(4, 200), "1",
               "number of elements of each plane wall along the longer of its two periods; along the shorter period, elements have about the "
               "same length. If not given: the smallest number for which elements are no longer than a twelfth of Wall/distance (with a single "

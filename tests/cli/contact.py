@@ -122,7 +122,7 @@ Tanktread:
 """)
     run("deck.yaml", "--output", "drops", "--quiet")
     gap, force = series("drops", "smallest_gap"), series("drops", "contact_force")
-    check(force[-1] > 0 and gap.min() > 0.05 * (1 - 0.02), gap, force)  # a second contact of a pair may be 1 % closer, and so may its target
+    check(force[-1] > 0 and gap.min() > 0.05 * (1 - 0.02), gap, force)  # of a second contact and of its target: 1 % each
 
 
 def images_are_let_go_when_the_flow_turns_back():

@@ -45,4 +45,20 @@ Tanktread:
     check("but none of the full flow" in beyond.stdout and "was not found" in beyond.stderr, beyond.stdout, beyond.stderr)
 
 
+def a_compressed_membrane_is_found_by_shorter_steps():
+    """A capsule without bending stiffness fills two thirds of a tube."""
+    text = """
+Tanktread:
+  Flow: {type: duct}
+  Tube: {radius: 1.5, azimuthal elements: 12, axial elements: 11}
+  Membrane: {law: Skalak, capillary number: 0.1}
+  Surface: {elements per side: 4}
+"""
+    found = run(deck(text + "  Steady: {}\n"), "--output", "steps").stdout
+    check("with a tenth of it" in found, found)
+    run(deck(text + "  Time: {final time: 20, steady tolerance: 1.0e-5}\n"), "--output", "in_time", "--quiet")
+    pairs = [(series(name, "length_x1")[-1], series(name, "velocity_x1")[-1]) for name in ("steps", "in_time")]
+    check(all(abs(a / b - 1) < 1e-4 for a, b in zip(*pairs)), pairs)  # ten times the steady tolerance
+
+
 main()

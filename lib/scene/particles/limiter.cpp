@@ -56,7 +56,7 @@ Limiter::Held Limiter::held(const Approach& found, double target) const {
 }
 
 /// Updates the gaps of known contacts in the shape x. Adds a contact at every other place where a gap is below (1 - slack/10) times the limit, also
-/// beside a known contact if the gap there is below (1 - slack) times the gap to restore, because the force dents a soft drop.
+/// beside a known contact if the gap there is smaller and below (1 - slack) times the gap to restore, because the force dents a soft drop.
 /// Returns false if a gap is below half of the limit.
 bool Limiter::find(const Net& x) {
   for (Held& one : held_) one.gap = approach(members_, x, one.contact).gap;
@@ -67,22 +67,24 @@ bool Limiter::find(const Net& x) {
       if (found.gap >= known->gap) continue;
       found.contact.force = known->contact.force;
       *known = held(found, known->target);
-    } else if (found.gap < (known ? (1 - slack) * known->target : (1 - slack / 10) * limit_)) {
+    } else if (found.gap < (known ? std::min(known->gap - slack / 10 * limit_, (1 - slack) * known->target) : (1 - slack / 10) * limit_)) {
       held_.push_back(held(found, target(found)));
     }
   }
   return true;
 }
 
-/// Returns the known contact that is between the same two particles and nearer to `contact` than half an element size; null if there is none.
+/// Returns the known contact of smallest gap that is between the same two particles and nearer to `contact` than half an element size; null if there
+/// is none.
 Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   const Body& body = *members_[contact.particle[0]].body;
   const double element = body.radius * std::sqrt(4 * std::numbers::pi / static_cast<double>(body.space.elements.size()));
   const Vec3 here = place(members_, x, contact);
-  const auto found = std::ranges::find_if(held_, [&](const Held& one) {
-    return of_same_pair(one.contact, contact) && (place(members_, x, one.contact) - here).norm() < element / 2;
-  });
-  return found == held_.end() ? nullptr : &*found;
+  Held* found = nullptr;
+  for (Held& one : held_)
+    if (of_same_pair(one.contact, contact) && (place(members_, x, one.contact) - here).norm() < element / 2 && (!found || one.gap < found->gap))
+      found = &one;
+  return found;
 }
 
 /// Returns the gap that a contact must restore. This is the smallest allowed gap `limit_`, unless the pair already has another contact and the gap is
