@@ -20,20 +20,18 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
                          const coupling::SolverOptions& solvers, Net& x) {
   // least_step: smallest step of the amplitude of the flow. coarse: tolerance of a search at any amplitude, unless Steady/tolerance is larger. far:
   // largest change of shape in one step, divided by the particle radius. most_polishes: largest number of searches with Steady/tolerance, each of
-  // which starts at the best shape of the previous one with a new Jacobian. most_short_searches: the same with shorter steps. most_motion: largest
-  // displacement of a steady shape by its velocity in Steady/step, divided by the particle radius; crumpled surfaces move faster.
-  constexpr double least_step = 1. / 512, coarse = 1e-6, far = 0.5, most_motion = 0.1;
+  // which starts at the best shape of the previous one with a new Jacobian. most_short_searches: the same with shorter steps.
+  constexpr double least_step = 1. / 512, coarse = 1e-6, far = 0.5;
   constexpr int few = 25, most_searches = 60, most_polishes = 3, most_short_searches = 2;
   Approach way;
-  if (const std::shared_ptr<SteadyEquations> full = family(1)) {
-    SteadyEquations shorter = full->with_step(0.1 * full->step());
-    Net y = x;
-    for (int k = 0; k < most_short_searches && !way.last.converged; ++k) way.last = find_steady(shorter, options, solvers, y);
-    if (way.last.converged && full->dynamics().norm(full->residual(y)) < most_motion) {
-      x = std::move(y);
-      way.amplitudes = {1}, way.by_shorter_steps = true;
-      return way;
-    }
+  const std::shared_ptr<SteadyEquations> full = family(1);
+  SteadyEquations shorter = full->with_step(0.1 * full->step());
+  Net found = x;
+  for (int k = 0; k < most_short_searches && !way.last.converged; ++k) way.last = find_steady(shorter, options, solvers, found);
+  if (way.last.converged && full->dynamics().norm(full->residual(found)) < largest_motion) {
+    x = std::move(found);
+    way.amplitudes = {1}, way.by_shorter_steps = true;
+    return way;
   }
   bool exhausted = false;  // true if the full flow was solved to the coarse tolerance but not to Steady/tolerance
   const auto found_at = [&](double amplitude, Net& y) {

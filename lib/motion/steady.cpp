@@ -100,10 +100,6 @@ bool approach(SteadyEquations& equations, Net& x) {
   return true;
 }
 
-/// If (velocity times step)/R_C is at least this value, it is a lower bound of the error estimate of the shape. Otherwise the estimate depends only
-/// on the correction. On a crumpled surface the Jacobian is so large that corrections are small although velocities are not.
-constexpr double largest_motion = 0.1;
-
 }  // namespace
 
 SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x) {

@@ -27,6 +27,10 @@ struct SteadyOptions {
   void declare(deck::Section& section);
 };
 
+/// If (velocity times step)/R_C is at least this value, it is a lower bound of the error estimate of the shape. Otherwise the estimate depends only
+/// on the correction. On a crumpled surface the Jacobian is so large that corrections are small although velocities are not.
+constexpr double largest_motion = 0.1;
+
 /// Result of a search for a steady shape.
 struct SteadyReport {
   int iterations = 0;
