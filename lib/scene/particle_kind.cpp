@@ -126,6 +126,7 @@ struct InterfaceList {
 
 void ParticleKind::declare_lists(deck::Section& section) {
   surface.of_cylinder = particle.shape.shape == "cylinder";
+  surface.fits_tightly = particle.rigid() && particle.shape.sized() && particle.shape.equivalent_radius() > 0.75 * duct_half_width;
   const bool deforms = !particle.rigid() && !surface.of_cylinder;
   if (!deforms) section.leave_out("Membrane");  // removes the keys of Membrane that come from sections shared by several particles, because a
                                                 // particle without a membrane ignores them

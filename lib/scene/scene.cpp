@@ -53,7 +53,7 @@ struct ChannelList {
 /// Section Particles.
 struct Kinds {
   std::vector<ParticleKind>& all;
-  const Registry* registry;
+  const ParticleKind& scene;  // values before any key is read
 
   void declare(deck::Section& section) {
     section.each(
@@ -61,8 +61,7 @@ struct Kinds {
         "particle. Keys that are not set are taken from the particle that its key `like` names, or otherwise from Particles/defaults",
         [this](const std::string& name, deck::Section& inner) {
           if (name.find_first_of("/=") != name.npos) throw UserError(inner.path() + ": the name of a particle must not contain `/` or `=`.");
-          all.emplace_back().name = name;
-          all.back().registry = registry;
+          all.emplace_back(scene).name = name;
           all.back().declare(inner);
         },
         true);
@@ -225,6 +224,13 @@ void Scene::declare(deck::Section& root) {
     root.take(units = std::make_shared<const deck::Units>(given));
   flow.registered = &registry->flows;
   root.section("Flow", flow, "the ambient flow and the outer fluid");
+  tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
+  surface::TubeOptions documented;
+  ChannelList channel{root.given("Channel") ? tube : documented};
+  refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one duct; give one of them");
+  if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
+    tube.present = true;
+  if (tube.present) duct_half_width = tube.half_width();
   const bool several = root.given("Particles");
   if (several) {
     for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
@@ -234,19 +240,13 @@ void Scene::declare(deck::Section& root) {
     root.section("Particle", particle, "resting shape, initial shape and motion of the particle");
     declare_lists(root);
   }
-  if (Kinds kinds{particles, registry}; several || root.documenting())
+  if (Kinds kinds{particles, *this}; several || root.documenting())
     root.section("Particles", kinds, "several particles, instead of the sections Particle, Membrane, Surface, Interface and Adaptation");
   else
     root.mention("Particles");
   if (several || root.given("Domain") || root.documenting())
     root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
   volume_given = root.given("Volume");
-  tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
-  surface::TubeOptions documented;
-  ChannelList channel{root.given("Channel") ? tube : documented};
-  refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one duct; give one of them");
-  if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
-    tube.present = true;
   domain.present = root.optional_section(
       "Domain", domain, "periodic cell of fluid and particles, whose lattice the flow convects; nothing is periodic without this section");
   if (tube.present && !tube.channel && tube.periodic_length) {

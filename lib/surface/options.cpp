@@ -26,12 +26,13 @@ void MeshOptions::declare(deck::Section& section) {
   if (polar()) {
     azimuthal_elements = 32, meridional_elements = 16, pole_axis = "x3", poles = "bezier transform";
   } else {
-    elements_per_side = 6, extraordinary_points = "g1";
+    elements_per_side = fits_tightly ? 8 : 6, extraordinary_points = "g1";
   }
   if (of_cylinder) azimuthal_elements = 24;
   section.key("elements per side", elements_per_side, deck::between(3, 200), "1",
               "number n of elements along each edge of the cube from which the surface mesh is made, which has 6n^2 elements. With 6, "
-              "deformations of a rounded particle have errors of about 0.1 %; elements half as long have about a sixteenth of the error");
+              "deformations of a rounded particle have errors of about 0.1 %; elements half as long have about a sixteenth of the error. If not "
+              "given: 6, or 8 for a rigid particle in a tube or channel if R_C is more than three quarters of the distance from the axis to the wall");
   section.key(
       "extraordinary points", extraordinary_points, deck::Choice{"g1", "catmull-clark"},
       "treatment of the extraordinary points, the eight corners of the cube mesh where three elements meet instead of four. `g1`: "
@@ -337,6 +338,12 @@ void ChannelOptions::check() const {
   const std::string between = profile == "expansion" ? "between 0 and 20" : profile == "step" ? "between -20 and 1, and not 0" : "between 0 and 1";
   if (depth && !((profile == "expansion" ? *depth < 20 : *depth < 1) && (profile == "step" ? *depth > -20 && *depth != 0 : *depth > 0)))
     throw UserError("Channel/depth must be " + between + " for Channel/profile `" + profile + "`, but is " + deck::number_text(*depth) + ".");
+}
+
+double TubeOptions::half_width() const {
+  if (radius) return *radius;
+  if (semi_axes) return semi_axes->minCoeff();
+  return sides ? sides->minCoeff() / 2 : std::numeric_limits<double>::infinity();
 }
 
 void TubeOptions::check() const {

@@ -22,6 +22,7 @@ struct MeshOptions {
   std::optional<int> azimuthal_elements, meridional_elements;  ///< numbers of elements of the polar mesh: m around the axis, r from pole to pole
   std::optional<std::string> pole_axis;                        ///< body-fixed axis of the particle on which the poles lie
   std::optional<std::string> poles;                            ///< rule at the poles: bezier transform, plain, c1
+  bool fits_tightly = false;  ///< true if the surface is that of a rigid particle that fills more than three quarters of a duct's width
   bool of_cylinder = false;  ///< true if the surface is a cylinder (Particle/shape `cylinder`); it then has `azimuthal_elements` and `axial_elements`
   std::optional<int> axial_elements;                           ///< number of elements along the period of a cylinder
   /// number of bisections in azimuth of the elements at the poles, before they are transformed to non-degenerate pieces
@@ -170,6 +171,9 @@ struct TubeOptions {
 
   /// Throws UserError if keys contradict each other or are missing.
   void check() const;
+
+  /// Returns the smallest distance of the axis from the wall at the inlet; infinity if it is not known before files are read.
+  double half_width() const;
 
   /// Returns whether the duct flow is computed in closed form or by a series; otherwise it is computed by boundary elements.
   bool exact_flow() const { return section != "file" && flow == "exact"; }
