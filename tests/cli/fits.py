@@ -55,6 +55,17 @@ def a_value_has_the_digits_of_its_error():
         check(fit_report.stated(*given) == text, fit_report.stated(*given), "instead of", text)
 
 
+def an_error_of_the_runs_is_smooth_along_a_curve_and_does_not_average_out():
+    """2000 points, whose noise is a fifth of the error of the runs: each point still has unit variance."""
+    times, noise = numpy.linspace(0.0, 3.0, 2000), numpy.random.default_rng(1).normal(size=2000)
+    numpy.savetxt("curve.csv", numpy.column_stack([times, 1e-3 * noise]), delimiter=",")
+    datum = fit_data.SeriesData({"series": "y", "curve": "curve.csv", "error": 1e-3}, "data", pathlib.Path())
+    datum.discretisation = 5e-3
+    for wave in 0.0, 1.0, 2.0, 3.0:  # up to one and a half periods
+        square = (datum.residuals((times, 5e-3 * numpy.cos(wave * times)), [])**2).sum()
+        check(abs(square - 2000) < 5 * numpy.sqrt(2 * 2000), f"wave number {wave}: chi square {square}")
+
+
 def curves_give_back_two_unknowns_and_tell_the_law():
     deck(SHEAR)
     truth = tanktread.run(pathlib.Path("deck.yaml").resolve(), {"Membrane/capillary number": 0.2, "Particle/viscosity ratio": 2.0})

@@ -166,14 +166,19 @@ class SeriesData(Datum):
         return interpolated(times, values, numpy.clip(wanted, times[0], times[-1]))
 
     def residuals(self, prediction, place):
-        """Returns residuals of unit variance. The error d of the runs is common to all values of a curve: residuals z,
-        divided by the errors e of the data, have the covariance 1 + u u^T with u = d/e; gives (1 + u u^T)^(-1/2) z."""
+        """Returns residuals of unit variance. The error of the runs, of size d, is taken as a sum of up to six cosines
+        along the curve with random factors. Residuals z, divided by the errors e of the data, then have the covariance
+        1 + U U^T with rows U of about the length d/e; gives (1 + U U^T)^(-1/2) z."""
         found = self.values - self.predicted(prediction, place)
         if self.error is None:
             return found
-        z, u = found / self.error, numpy.broadcast_to((self.discretisation or 0) / self.error, found.shape)
-        square = u @ u
-        return z - (1 - 1 / numpy.sqrt(1 + square)) * (u @ z) / max(square, numpy.finfo(float).tiny) * u
+        times = numpy.zeros(1) if self.times is None else numpy.atleast_1d(self.times)
+        waves = numpy.arange(min(self.count, 6))
+        u = numpy.cos(numpy.pi * numpy.outer((times - times[0]) / (numpy.ptp(times) or 1), waves))
+        u *= numpy.where(waves > 0, numpy.sqrt(2), 1) / numpy.sqrt(len(waves)) * (self.discretisation or 0)
+        q, size, _ = numpy.linalg.svd(u / numpy.reshape(self.error, (-1, 1)), full_matrices=False)
+        z = found / self.error
+        return z - q @ ((1 - 1 / numpy.hypot(1, size)) * (q.T @ z))
 
 
 class Experiment:
