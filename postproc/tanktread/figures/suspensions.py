@@ -50,6 +50,10 @@ def encounter(runs, path, gap, deformation, *, pair: tuple[str, str] | None = No
     deformation.set(xlabel="dx / R$_C$", ylabel="D")
     if deformation.lines:
         deformation.legend()
+    else:  # both particles are rigid
+        deformation.remove()
+        gap.set(xlabel="dx / R$_C$")
+        gap.tick_params(labelbottom=True)
 
 
 @figure()
