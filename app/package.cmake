@@ -15,10 +15,10 @@ install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:t
 install(FILES ${made}/tanktread.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 
 # Exports the modules as tanktread::<module> with their dependencies. The types of Eigen depend on the processor for which the program is built.
-get_property(rooms GLOBAL PROPERTY rooms)
-foreach(room ${rooms})
-  set_target_properties(tanktread_${room} PROPERTIES EXPORT_NAME ${room})
-  list(APPEND exported tanktread_${room})
+get_property(modules GLOBAL PROPERTY modules)
+foreach(module ${modules})
+  set_target_properties(tanktread_${module} PROPERTIES EXPORT_NAME ${module})
+  list(APPEND exported tanktread_${module})
 endforeach()
 set_target_properties(tanktread_app PROPERTIES EXPORT_NAME app)
 list(APPEND exported tanktread_app)

@@ -60,7 +60,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   const stokes::Evaluations kernel = ranks.of_all(tractions.kernel_evaluations());
   Columns row;
   ProgressRow now{.wall_seconds = seconds};
-  now.work.solver_iterations = solution.iterations;
+  now.counts.solver_iterations = solution.iterations;
   now.add_columns(scene, row);
   PrescribedRow{solution, surface::measures(body.space, body.rest), body.space.n_points, static_cast<double>(kernel.total())}
       .add_columns(scene, row);

@@ -162,7 +162,6 @@ class Run {
     const bool lands = scene_.lands_on_snapshots();
     motion::State before = state_;
     pictured_.reset();
-    if (scene_.tube.images) warn({"images", "Tube/images has no effect, because a periodic tube has all its images: remove the key."});
     integrate(lands ? snapshot : scene_.time.final_time, before);
     judge();
     ++totals_.step;
@@ -225,7 +224,7 @@ class Run {
 
   /// Collects the totals of the run after a finished step, for a checkpoint: counts of operations, phase angle, contacts and warnings.
   void settle() {
-    totals_.work = particle_->work();
+    totals_.counts = particle_->counts();
     totals_.phase_angle = particle_->phase_angle();
     totals_.contacts = particle_->contacts();
     totals_.kernel = earlier_kernel_ + ranks_.of_all(particle_->kernel_evaluations());

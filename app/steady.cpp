@@ -166,14 +166,14 @@ class SteadyRun {
       stop_where_told();
       use(system_at({point->parameter, point->second}));
       state_.x = point->x, state_.time = k, totals_.step = k;
-      report_.iterations = point->iterations, report_.error = point->rest;
-      found_.point = *point;
+      report_.iterations = point->iterations, report_.error = point->rest, found_.point = *point;
       write();
       earlier_coarsenings_ = totals_.coarsenings;
       if (ranks_.rank() == 0 && !request_.quiet)
         std::printf("  %-11d %s%s\n", k, at({point->parameter, point->second}).c_str(), point->fold ? ", a fold" : "");
       if (const std::string remark = scene_.continuation.remark(*point); !remark.empty()) results_.warn(remark);
     }
+    if (branch.cut_short()) results_.warn("Continuation/points ended the branch before its parameter reached Continuation/to: set more points");
   }
 
   /// Returns the parameters as text.
@@ -219,7 +219,7 @@ class SteadyRun {
 
   /// Adds the operation counts of a system to the totals, before the system is deleted.
   void count_out(const System& system) {
-    work_ = work_ + system.particle->work(), kernel_ = kernel_ + system.particle->kernel_evaluations();
+    counts_ = counts_ + system.particle->counts(), kernel_ = kernel_ + system.particle->kernel_evaluations();
   }
 
   void drop_oldest() {
@@ -272,7 +272,7 @@ class SteadyRun {
       if (!options.shift) options.shift = system_->scene.rate();
       found_.modes = motion::spectrum(*system->motion, shapes, state_.x, kept, options, scene_.solvers.of(scene_.solvers.spectrum));
     }
-    if (system != system_) work_ = work_ + system->particle->work(), kernel_ = kernel_ + system->particle->kernel_evaluations();
+    if (system != system_) counts_ = counts_ + system->particle->counts(), kernel_ = kernel_ + system->particle->kernel_evaluations();
     system_->motion->velocity(state_.x);
   }
 
@@ -304,9 +304,9 @@ class SteadyRun {
   }
 
   void count() {
-    totals_.work = work_, totals_.kernel = kernel_;
+    totals_.counts = counts_, totals_.kernel = kernel_;
     const auto add = [&](const ParticleSystem& one) {
-      totals_.work = totals_.work + one.work(), totals_.kernel = totals_.kernel + one.kernel_evaluations();
+      totals_.counts = totals_.counts + one.counts(), totals_.kernel = totals_.kernel + one.kernel_evaluations();
     };
     if (systems_.empty()) add(*system_->particle);
     for (const auto& [parameters, system] : systems_) add(*system->particle);
@@ -318,7 +318,7 @@ class SteadyRun {
     const auto clock = phases_.time("diagnostics");
     count();
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    Columns row = system_->particle->row(state_, {.step = report_, .wall_seconds = seconds, .evaluations = totals_.work.evaluations});
+    Columns row = system_->particle->row(state_, {.step = report_, .wall_seconds = seconds, .evaluations = totals_.counts.evaluations});
     found_.add_columns(scene_, row);
     row.check();
     results_.record(row);
@@ -383,7 +383,7 @@ class SteadyRun {
   motion::StepReport report_;
   RunTotals totals_;
   int earlier_coarsenings_ = 0;  // coarsenings up to the last recorded point of a branch
-  coupling::Work work_;         // operation counts of systems that were deleted
+  coupling::OperationCounts counts_;         // operation counts of systems that were deleted
   stokes::Evaluations kernel_;  // kernel evaluations of systems that were deleted
   std::optional<motion::ReturnMap> returns_;
   SteadyRow found_;

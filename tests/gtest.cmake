@@ -1,4 +1,4 @@
-# The headers of GoogleTest and of the rooms, compiled once for all programs, and once with scene/body.hpp.
+# The headers of GoogleTest and of the modules, compiled once for all programs, and once with scene/body.hpp.
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp CONTENT "")
 find_package(Eigen3 REQUIRED NO_MODULE)
 get_property(common_headers GLOBAL PROPERTY common_headers)
@@ -10,17 +10,17 @@ foreach(name test_headers app_test_headers)
 endforeach()
 target_precompile_headers(app_test_headers PRIVATE ${PROJECT_SOURCE_DIR}/lib/scene/body.hpp)
 
-# gtest_program(NAME KIND kind SOURCES … ROOMS … [MPI [SERIAL suite…]]): one GoogleTest program, one ctest entry a TEST, with the label `kind`.
+# gtest_program(NAME KIND kind SOURCES … MODULES … [MPI [SERIAL suite…]]): one GoogleTest program, one ctest entry a TEST, with the label `kind`.
 # Suites whose names end in Long carry the label `long`. MPI: main() initialises MPI, and the whole program runs once more on two ranks,
 # but for the suites named after SERIAL (with and without parameters): their code knows of no ranks, or is run on several ranks by tests in tests/cli.
 function(gtest_program name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "MPI" "KIND" "SOURCES;ROOMS;SERIAL")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "MPI" "KIND" "SOURCES;MODULES;SERIAL")
   add_executable(${name} ${arg_SOURCES})
-  foreach(room ${arg_ROOMS})
-    get_property(externals GLOBAL PROPERTY externals_of_${room})
-    target_link_libraries(${name} PRIVATE tanktread_${room} ${externals})
+  foreach(module ${arg_MODULES})
+    get_property(externals GLOBAL PROPERTY externals_of_${module})
+    target_link_libraries(${name} PRIVATE tanktread_${module} ${externals})
   endforeach()
-  if(arg_ROOMS MATCHES "scene|record$|app")
+  if(arg_MODULES MATCHES "scene|record$|app")
     target_precompile_headers(${name} REUSE_FROM app_test_headers)
   else()
     target_precompile_headers(${name} REUSE_FROM test_headers)

@@ -113,7 +113,7 @@ class Surfactant : public Field {
   Eigen::SparseMatrix<double> frozen_mass_, frozen_stiffness_;
   // factors of M + shift D_s K, with the mass matrix M and the stiffness matrix K of the frozen shape and the diffusivity D_s
   mutable std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;
-  mutable double factored_shift_ = 0;
+  mutable double factored_spread_ = 0;
 };
 
 }  // namespace tanktread::membrane

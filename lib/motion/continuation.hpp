@@ -85,6 +85,9 @@ class Branch {
   /// fold at each value of the second parameter. Returns nothing at the end of the branch. Throws RunFailure if the point is not found. Collective.
   std::optional<BranchPoint> next();
 
+  /// Returns whether the largest number of points ended the branch before it reached its end.
+  bool cut_short() const { return !ended_ && count_ >= options_.points; }
+
  private:
   struct Place {
     Net x;

@@ -27,8 +27,8 @@ void Options::declare(deck::Section& section) {
   section.key(
       "far precision", far_precision, deck::Choice{"auto", "single", "double"},
       "floating-point precision of the terms of boundary integrals over far elements. `single`: 1.5 times as fast, with errors of about "
-      "1e-7 of the sum of the magnitudes of the terms, and of about 1e-8 in the shape; results of a mirrored, reordered or shifted deck "
-      "then agree to 1e-8 instead of 1e-10. `double`: no such error. `auto`: `single` if Quadrature/tolerance is at least 1e-3 and "
+      "1e-7 of the sum of the magnitudes of the terms, and of about 1e-8 in the shape; results of a mirrored, reordered or shifted deck in "
+      "unbounded fluid then agree to 1e-8 instead of 1e-10. `double`: no such error. `auto`: `single` if Quadrature/tolerance is at least 1e-3 and "
       "the deck has no Spectrum");
 }
 
@@ -38,9 +38,9 @@ void Options::choose_smooth_sums() {
 }
 
 Options Options::for_matrix() const {
-  Options sharper = *this;
-  sharper.tolerance = std::max(1e-12, std::min(1e-7, tolerance / 10));
-  return sharper;
+  Options options = *this;
+  options.tolerance = std::max(1e-12, std::min(1e-7, tolerance / 10));
+  return options;
 }
 
 void Options::check() const {

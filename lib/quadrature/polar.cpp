@@ -52,9 +52,9 @@ double rho_along_ray(const Vec3& a, const Vec3& b) {
 struct FarSide {
   double h, tau_a, tau_b, mu_a, range;
 
-  FarSide(Shear shear, const Vec2& a, const Vec2& b) {
+  FarSide(MetricBin bin, const Vec2& a, const Vec2& b) {
     Eigen::Matrix2d metric;
-    metric << 1, shear.ratio() * std::cos(shear.angle()), 0, shear.ratio() * std::sin(shear.angle());
+    metric << 1, bin.ratio() * std::cos(bin.angle()), 0, bin.ratio() * std::sin(bin.angle());
     const Vec2 ma = metric * a, mb = metric * b, side = (mb - ma).normalized();
     tau_a = ma.dot(side), tau_b = mb.dot(side), h = cross(ma, side);
     mu_a = std::asinh(tau_a / h), range = std::asinh(tau_b / h) - mu_a;
@@ -75,11 +75,11 @@ struct FarSide {
 
 }  // namespace
 
-double Shear::ratio() const { return std::exp2(0.5 * doublings); }
+double MetricBin::ratio() const { return std::exp2(0.5 * doublings); }
 
-double Shear::angle() const { return steps * step; }
+double MetricBin::angle() const { return steps * step; }
 
-Shear shear(double g_ss, double g_st, double g_tt) {
+MetricBin metric_bin(double g_ss, double g_st, double g_tt) {
   static const auto borders = [] {
     std::array<double, 10> cosine;
     for (int k = 0; k < 10; ++k) cosine[k] = std::cos((k + 1.5) * step);
@@ -92,20 +92,20 @@ Shear shear(double g_ss, double g_st, double g_tt) {
   return {std::clamp(std::ilogb(square * std::numbers::sqrt2), -24, 24), steps};
 }
 
-PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance) {
+PolarOrders polar_orders(double s, double t, MetricBin bin, int radial, double tolerance) {
   PolarOrders orders{radial, {}};
   each_triangle(s, t, [&](int k, const Vec2& a, const Vec2& b) {
-    const FarSide side(shear, a, b);
+    const FarSide side(bin, a, b);
     orders.angular[k] = side.order(tolerance, ellipse(0, std::numbers::pi / side.range));
   });
   return orders;
 }
 
-PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance, const std::array<Vec3, 4>& corner,
+PolarOrders polar_orders(double s, double t, MetricBin bin, int radial, double tolerance, const std::array<Vec3, 4>& corner,
                          const std::array<Vec3, 4>& affine) {
-  PolarOrders orders = polar_orders(s, t, shear, radial, tolerance);
+  PolarOrders orders = polar_orders(s, t, bin, radial, tolerance);
   each_triangle(s, t, [&](int k, const Vec2& a, const Vec2& b) {
-    const FarSide side(shear, a, b);
+    const FarSide side(bin, a, b);
     orders.angular[k] = std::max(orders.angular[k], std::min(max_order, side.order(tolerance, side.rho(corner[k], corner[(k + 1) % 4]))));
   });
   // Along the ray to a corner, 0 <= r <= 1, the position relative to the target is approximated by x(r) = r affine + r^2 (corner - affine). The
@@ -117,11 +117,11 @@ PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tol
   return orders;
 }
 
-Rule polar(double s, double t, Shear shear, const PolarOrders& orders) {
+Rule polar(double s, double t, MetricBin bin, const PolarOrders& orders) {
   const GaussRule& along = gauss(orders.radial);
   Rule rule;
   each_triangle(s, t, [&](int k, const Vec2& a, const Vec2& b) {
-    const FarSide side(shear, a, b);
+    const FarSide side(bin, a, b);
     const GaussRule& around = gauss(orders.angular[k]);
     for (int j = 0; j < around.size(); ++j) {
       const double mu = side.mu_a + side.range * around.nodes[j], length = side.tau_b - side.tau_a;

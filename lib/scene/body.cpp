@@ -136,10 +136,10 @@ Body body(const Scene& scene, const Member* alike) {
   } else if (scene.surface.polar()) {
     const spline::PolarMesh mesh = scene.surface.polar_mesh();
     lay_out(scene, spline::polar(mesh.azimuthal, mesh.meridional, levels), b);
-    b.rest = surface::initial_shape(b.space, mesh, scene.surface.axis(), scene.particle.shape);
+    b.rest = surface::resting_shape(b.space, mesh, scene.surface.axis(), scene.particle.shape);
   } else {
     lay_out(scene, spline::cube(scene.surface.elements_per_side.value(), levels), b);
-    b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
+    b.rest = surface::resting_shape(b.space, b.mesh, scene.particle.shape);
   }
   const auto before = run_before(scene);
   std::optional<Body> first;  // body on the mesh of the deck; set if the particle starts from an earlier run that may have adapted the mesh

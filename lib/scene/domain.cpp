@@ -107,18 +107,20 @@ void DomainOptions::reject(const Scene& scene, Rejections& to) const {
           "the flow must be the same in every cell, except for a uniform gradient");
   if (scene.tube.present) return;
   const bool told = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
+  const bool pushed = !scene.particle.rigid() && !scene.membrane.forces.total().isZero(0);
   to.pair(!to.every() && !scene.runs_in_time() && deforms(scene.flow), scene.sought(), scene.flow_choice(),
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
   to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`",
           "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
   to.pair(scene.flow.history && scene.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
           "nothing moves, so that one steady problem is solved");
-  to.pair(directions() < 3 && !scene.wall.solid && (told || weight || scene.particle.force),
+  to.pair(directions() < 3 && !scene.wall.solid && (told || weight || pushed || scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
           {told     ? scene.particle.choice()
            : weight ? "Particle/density difference"
+           : pushed ? "Membrane/forces"
                     : "Particle/force",
-           "Particle/motion `prescribed`, Particle/density difference or Particle/force"},
+           "Particle/motion `prescribed`, Particle/density difference, Particle/force, or Membrane/forces with a net force"},
           "a net force in every cell needs a lattice that is periodic in three directions, or walls");
 }
 

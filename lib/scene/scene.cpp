@@ -287,10 +287,10 @@ std::vector<Scene> Scene::alone() const {
   return scenes;
 }
 
-/// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for several bodies of up
-/// to 1500 control points, all with adaptive meshes, or for the only particle in a duct, of up to 2000. To resolve a film of a tenth of the radius,
-/// `first kind` needs a third of the control points of `second kind`. Factoring its matrix is then faster than iterating. With 1538 points, both kinds
-/// take the same time for a sphere of 0.8 tube radii, and its pressure drop has errors of 2e-8 and 1e-5.
+/// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for several bodies of
+/// up to 1500 control points, all with adaptive meshes, or for the only particle in a duct, of up to 2000. For a film of a tenth of the radius,
+/// `first kind` needs a third of the points of `second kind`. With 1538 points both take the same time for a sphere of 0.8 tube radii, and the
+/// pressure drop has errors of 2e-8 and 1e-5.
 bool Scene::by_tractions() const {
   if (solvers.rigid_bodies != "auto" || !runs_in_time()) return solvers.rigid_bodies == "first kind";
   const ParticleKind* first = particles.empty() ? this : particles.data();
@@ -336,8 +336,7 @@ void Scene::check() const {
   check_adaptation(*this);
   check_size(*this);
   check_vectors(*this, "Solvers", solvers.belos);
-  for (const coupling::IterativeOptions* system : {&solvers.velocity, &solvers.traction, &solvers.implicit_step, &solvers.spectrum})
-    check_vectors(*this, system->path, system->belos);
+  for (const coupling::IterativeOptions* system : solvers.systems()) check_vectors(*this, system->path, system->belos);
 }
 
 std::string Scene::interface_motion() const {
@@ -354,7 +353,8 @@ double Scene::least_radius() const {
 double Scene::speed() const { return flow.speed(radius()); }
 
 double Scene::rate() const {
-  if (!particles.empty()) return alone().front().rate();
+  const auto is_rigid = [](const Scene& one) { return one.particle.rigid(); };
+  if (!particles.empty()) return std::ranges::min(alone(), {}, is_rigid).rate();  // the first particle that deforms, if one does
   if (speed() > 0) return speed() / radius();
   return particle.rigid() ? 1 : modulus() / (flow.viscosity * radius());
 }

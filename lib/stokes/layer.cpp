@@ -15,7 +15,7 @@ namespace {
 /// Returns the options, with an eighth of the tolerance for the double layer. Quadrature rules are chosen for the kernel of the single layer. The
 /// kernel of the double layer is singular by one order more, so that its error with the same rule is up to five times as large
 /// (tests/verify/layers.cpp). The precision of the far sum is chosen from the unchanged tolerance of the deck.
-quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
+quadrature::Options for_kernel(quadrature::Options options, Layer::Kernel kernel) {
   options.far_precision = options.far_in_single() ? "single" : "double";
   if (kernel == Layer::Kernel::double_layer) options.tolerance /= 8;
   return options;
@@ -24,7 +24,7 @@ quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
 }  // namespace
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
-    : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
+    : kernel_(kernel), surface_(space, sites, for_kernel(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
   if (sums_by_tree(space, options)) tree_.emplace(tree_tolerance(), precision());
   fundamental_sites_ = indices(sites.size());
 }

@@ -24,15 +24,15 @@ struct Room {
 
 }  // namespace
 
-std::vector<Block> blocks_by_degree(const spline::Space& space) {
+std::vector<DegreeGroup> groups_by_degree(const spline::Space& space) {
   std::map<int, std::vector<int>> of_degree;
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) of_degree[space.elements[e].degree].push_back(e);
-  std::vector<Block> blocks;
-  for (auto& [degree, elements] : of_degree) blocks.push_back({degree, std::move(elements)});
-  return blocks;
+  std::vector<DegreeGroup> groups;
+  for (auto& [degree, elements] : of_degree) groups.push_back({degree, std::move(elements)});
+  return groups;
 }
 
-BezierMap::BezierMap(const spline::Space& space) : n_points_(space.n_points), blocks_(blocks_by_degree(space)) {
+BezierMap::BezierMap(const spline::Space& space) : n_points_(space.n_points), groups_(groups_by_degree(space)) {
   Tables tables;
   for (const spline::Element& element : space.elements) {
     const Eigen::MatrixXd& c = *element.extraction;

@@ -32,13 +32,13 @@ inline std::vector<double> block_sums(std::span<const double> of_elements) {
 }
 
 /// Indices of all elements of one degree, ascending.
-struct Block {
+struct DegreeGroup {
   int degree = 3;
   std::vector<int> elements;
 };
 
 /// Returns the elements grouped by degree, degrees ascending.
-std::vector<Block> blocks_by_degree(const spline::Space& space);
+std::vector<DegreeGroup> groups_by_degree(const spline::Space& space);
 
 /// The extraction of a space as a map between control nets and Bezier points. It is computed once per mesh and can be applied to any number of nets.
 /// Equal extraction matrices are stored only once, so that they stay in the cache. Most elements of a uniform mesh, and the elements of equal
@@ -51,7 +51,7 @@ class BezierMap {
   int n_elements() const { return static_cast<int>(elements_.size()); }
   int degree(int element) const { return elements_[element].degree; }
   int n_bezier(int element) const { return (degree(element) + 1) * (degree(element) + 1); }
-  const std::vector<Block>& blocks() const { return blocks_; }
+  const std::vector<DegreeGroup>& groups() const { return groups_; }
 
   /// Computes the Bezier points of one element; `out` has shape (3, n_b): all of x1, then x2, then x3.
   void points(int element, const Net& net, double* out) const;
@@ -66,7 +66,7 @@ class BezierMap {
     std::size_t operation;         ///< index in `by_bezier_` and `by_function_` at which the element's extraction matrix begins
   };
   int n_points_;
-  std::vector<Block> blocks_;
+  std::vector<DegreeGroup> groups_;
   std::vector<Element> elements_;
   std::vector<int> points_;
   // by_bezier_: extraction matrices, entry [Bezier point][function]. by_function_: the same matrices transposed, entry [function][Bezier point].

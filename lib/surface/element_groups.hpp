@@ -16,11 +16,11 @@ template <class Use>
 void each_group(const BezierMap& map, std::span<const int> elements, Use use) {
   const std::size_t lanes = pack_lanes();
   std::vector<int> alike;
-  for (const Block& block : map.blocks()) {
+  for (const DegreeGroup& group : map.groups()) {
     alike.clear();
-    std::ranges::copy_if(elements, std::back_inserter(alike), [&](int e) { return map.degree(e) == block.degree; });
+    std::ranges::copy_if(elements, std::back_inserter(alike), [&](int e) { return map.degree(e) == group.degree; });
     for (std::size_t first = 0; first < alike.size(); first += lanes)
-      use(block.degree, std::span<const int>(alike).subspan(first, std::min(lanes, alike.size() - first)));
+      use(group.degree, std::span<const int>(alike).subspan(first, std::min(lanes, alike.size() - first)));
   }
 }
 

@@ -9,10 +9,10 @@
 namespace tanktread::surface {
 
 LeastSquaresFit::LeastSquaresFit(const spline::Space& space) : map_(space) {
-  for (const Block& block : map_.blocks()) {
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(block.degree + 2);
-    const Eigen::MatrixXd value = spline::tensor_bernstein(block.degree, rule.s, rule.t).value;
-    tables_[block.degree] = {value, value.transpose() * rule.weights.asDiagonal()};
+  for (const DegreeGroup& group : map_.groups()) {
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(group.degree + 2);
+    const Eigen::MatrixXd value = spline::tensor_bernstein(group.degree, rule.s, rule.t).value;
+    tables_[group.degree] = {value, value.transpose() * rule.weights.asDiagonal()};
   }
   std::deque<Eigen::MatrixXd> values;  // consecutive elements with equal extraction share one matrix
   std::vector<spline::LocalMatrix> local;

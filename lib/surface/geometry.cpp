@@ -173,8 +173,8 @@ Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v) {
   Vec3 mean, first = Vec3::Zero(), carried = Vec3::Zero();
   const Net here = about_mean(x, mean);
   double volume = 0, flux = 0;
-  for (const Block& block : map.blocks())
-    each_group(map, block.elements, [&](int degree, std::span<const int> group) {
+  for (const DegreeGroup& of_degree : map.groups())
+    each_group(map, of_degree.elements, [&](int degree, std::span<const int> group) {
       kernel::Transport part;
       kernel::transport(degree, points_of(map, here, group), points_of(map, v, group), part);
       for (std::size_t l = 0; l < group.size(); ++l) {

@@ -56,11 +56,11 @@ Quality quality(const BezierMap& map, const Net& net, std::span<const int> eleme
   double bezier[3 * most];
   Tangents a1, a2;
   const quadrature::TensorRule& rule = quadrature::tensor_gauss(4);
-  for (const Block& block : map.blocks()) {
-    const int n_b = (block.degree + 1) * (block.degree + 1);
-    const spline::TensorBernstein polynomials = spline::tensor_bernstein(block.degree, rule.s, rule.t);
+  for (const DegreeGroup& group : map.groups()) {
+    const int n_b = (group.degree + 1) * (group.degree + 1);
+    const spline::TensorBernstein polynomials = spline::tensor_bernstein(group.degree, rule.s, rule.t);
     for (const int e : elements) {
-      if (map.degree(e) != block.degree) continue;
+      if (map.degree(e) != group.degree) continue;
       map.points(e, net, bezier);
       three_sums(points, n_b, polynomials.s.data(), bezier, a1.data());
       three_sums(points, n_b, polynomials.t.data(), bezier, a2.data());
@@ -68,7 +68,7 @@ Quality quality(const BezierMap& map, const Net& net, std::span<const int> eleme
       if (here.jacobian_ratio < result.jacobian_ratio) {
         result.jacobian_ratio = here.jacobian_ratio;
         result.folded_element = e;
-        result.folded_place = place({block.degree, bezier}, rule.s[here.point], rule.t[here.point]);
+        result.folded_place = place({group.degree, bezier}, rule.s[here.point], rule.t[here.point]);
       }
       if (here.aspect_ratio > result.aspect_ratio) {
         result.aspect_ratio = here.aspect_ratio;

@@ -130,12 +130,12 @@ Net placed_again(const Net& net, const ParticleShape& from, const ParticleShape&
   return ((net.rowwise() - from.center.transpose()) * map.transpose()).rowwise() + to.center.transpose();
 }
 
-Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape) {
+Net resting_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape) {
   const LeastSquaresFit fit(space);
   return resting_shape(fit, unit_sphere(mesh, fit), shape);
 }
 
-Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape) {
+Net resting_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape) {
   return resting_shape(LeastSquaresFit(space), unit_sphere(mesh, space, axis), shape);
 }
 

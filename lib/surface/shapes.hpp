@@ -50,8 +50,8 @@ Vec3 red_cell(const Vec3& on_unit_sphere);
 Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape);
 
 /// Returns the resting shape on the cube mesh, or on the structured mesh with its poles on the body-fixed axis x_{axis+1} of the particle.
-Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
-Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape);
+Net resting_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
+Net resting_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape);
 
 /// If the shape is a sphere or ellipsoid, fits its resting shape `net` again by least squares on `space`. Returns any other shape unchanged.
 Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape);

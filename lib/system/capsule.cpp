@@ -92,7 +92,7 @@ std::vector<Net> Capsule::relabellings(const Net& x) {
 std::shared_ptr<Evaluation> Capsule::evaluate(const Net& x, const Net& guess, double error) {
   const std::shared_ptr<Evaluation> before = latest_ && same(x, latest_->x()) ? latest_ : nullptr;
   if (before && before->error_ <= error) return before;
-  ++work_.evaluations;
+  ++counts_.evaluations;
   latest_.reset();
   const auto e = std::make_shared<Evaluation>(*this, x);
   e->error_ = error;
@@ -112,10 +112,9 @@ std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocit
 /// Computes (4.2) step by step: the load (membrane_load and rigid bodies), the velocity that this load causes plus the ambient velocity
 /// (explicit_velocity), the projection onto constant volumes (constrain), and the solution of the linear system for the velocity (solve_velocity), if
 /// one is needed (has_velocity_system).
-Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
+Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
   bodies_.rigid.place(x);
-  if (!x.allFinite() || (duct_.tube && !enter_tube(x)) || !in_front_of_wall(x))
-    return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  if (!enters(x)) return not_a_number(x);
   push_bodies(x);
   const bool deforms = !bodies_.tractions || !bodies_.tractions->alone(), constrained = deforms && parameters_.constrained();
   const Net b = constrained ? volumes_.gradient(x) : Net();
@@ -170,7 +169,7 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std
 
 /// Sets the tube to the shape x. Returns whether all collocation sites of the shape are inside the tube.
 bool Capsule::enter_tube(const Net& x) {
-  place(x);
+  place_tube(x);
   const Net at_sites = targets_.at_sites() * x;
   if (duct_.tube->fixed()) return !layout_.any(!duct_.tube->inside(at_sites, layout_.points()));
   const surface::Outline& outline = duct_.tube->wall().outline;
@@ -187,12 +186,15 @@ bool Capsule::in_front_of_wall(const Net& x) {
   return !parameters_.wall || stokes::in_front({&*parameters_.wall, 1}, targets_.at_sites() * x);
 }
 
+/// Moves the tube to the particles. Returns whether the shape is finite, inside the tube and in front of the walls.
+bool Capsule::enters(const Net& x) { return x.allFinite() && (!duct_.tube || enter_tube(x)) && in_front_of_wall(x); }
+
 /// Returns whether defect() uses (3.14), which does not require a solve for the velocity.
 bool Capsule::defect_spares_system() const { return jacobian_.flows_by_system() && schur(); }
 
 Net Capsule::defect(const Net& x, const Net& u) {
   if (!defect_spares_system()) return velocity(x) - u;
-  ++work_.evaluations;
+  ++counts_.evaluations;
   if (!around_.cell || !x.allFinite()) return defect_here(x, u);
   Net in_cell = x, slower = u;
   const std::vector<Vec3> shifts = put_into_cell(in_cell);
@@ -204,8 +206,7 @@ Net Capsule::defect(const Net& x, const Net& u) {
 /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14). P is the volume projection (2.8). B v = w is the linear system for the
 /// velocity v at x (see solve_velocity). Adds the viscous load due to u to the elastic load, so that one evaluation of the single layer is enough.
 Net Capsule::defect_here(const Net& x, const Net& u) {
-  if (!x.allFinite() || (duct_.tube && !enter_tube(x)) || !in_front_of_wall(x))
-    return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
+  if (!enters(x)) return not_a_number(x);
   const bool constrained = parameters_.constrained();
   const Net b = constrained ? volumes_.gradient(x) : Net();
   Net c = b, inside = u;
@@ -228,16 +229,16 @@ void Capsule::freeze(const Net& at) {
   Net x = at;
   if (around_.cell) put_into_cell(x);
   const auto clock = phases_.time("assembly");
-  ++work_.assemblies;
+  ++counts_.assemblies;
   frozen_.assemble(at, x);
   if (!duct_.tube) return;
-  place(x);
+  place_tube(x);
   duct_.tube->freeze();
 }
 
 void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
-  ++work_.tangents;
+  ++counts_.tangents;
   jacobian_.linearise(x, evaluation(x, {}, 0)->load_sums());
 }
 

@@ -57,7 +57,7 @@ class RigidTractions;
 ///
 /// Tube: the velocity caused by the wall and by the pressure drop (2.5)-(2.7) is added. This velocity is linear in the load and, for lambda != 1,
 /// in v. The part due to known loads is added to the right-hand side, and the part due to v to B. Alternatively v, the wall traction and the
-/// pressure drop are solved for in one linear system (BlockSystem).
+/// pressure drop are solved for in one linear system (TubeSystem).
 ///
 /// Plates and posts: the velocity (2.47) that they cause is added to the right-hand side and to B in the same way.
 class Capsule : public Dynamics {
@@ -155,8 +155,8 @@ class Capsule : public Dynamics {
   const Phases& layer_phases() const { return layers_.single_layer().phases(); }  ///< run time of the parts of the single layer
   stokes::Measure measure() const { return membranes_.measure(); }  ///< area (unstressed or current) to which the loads refer
   void forget_recycled() const;  ///< discards the data of earlier solves that the preconditioner `recycled` keeps
-  const Work& work() const { return work_; }
-  Work& work() { return work_; }
+  const OperationCounts& counts() const { return counts_; }
+  OperationCounts& counts() { return counts_; }
 
  private:
   friend class Evaluation;
@@ -189,15 +189,16 @@ class Capsule : public Dynamics {
   bool pressed() const { return forces_[0].size() > 0 || forces_[1].size() > 0; }
   bool deform_cell(double time);
   Vec3 cell_origin(const Net& x) const;
-  void place(const Net& x);
+  void place_tube(const Net& x);
   void place_among_solids(const Net& x);
-  void put_among_solids();
+  void make_solid_response();
   bool enter_tube(const Net& x);
   bool in_front_of_wall(const Net& x);
+  bool enters(const Net& x);
   Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
   void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
   Net in_cell(Evaluation& e, const Net& guess);
-  Net solve(Evaluation& e, Net x, const Net& guess);
+  Net solve_in_cell(Evaluation& e, Net x, const Net& guess);
   Net work_of_loads(const Net& x, std::vector<Net>& sums);
   Net membrane_load(Evaluation& e, const Net& x, Net* other);
   void push_bodies(const Net& x);
@@ -215,7 +216,7 @@ class Capsule : public Dynamics {
   Surroundings around_;
   CapsuleParameters parameters_;
   Phases& phases_;
-  Work work_;
+  OperationCounts counts_;
   Layout layout_;
   Targets targets_;
   Membranes membranes_;

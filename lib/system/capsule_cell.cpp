@@ -35,7 +35,7 @@ std::vector<Vec3> Capsule::put_into_cell(Net& x) {
   return shifts;
 }
 
-void Capsule::place(const Net& x) {
+void Capsule::place_tube(const Net& x) {
   if (duct_.net.rows() == x.rows() && duct_.net == x && duct_.origin == duct_.origin_of_net) return;
   duct_.tube->place(x, duct_.origin);
   duct_.net = x, duct_.origin_of_net = duct_.origin;
@@ -72,11 +72,11 @@ Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
 }
 
 /// Creates the object that computes the flow caused by plates and posts, if there are any.
-void Capsule::put_among_solids() {
+void Capsule::make_solid_response() {
   if (!parameters_.solids) return;
   around_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, around_.flow);
   around_.solids->set_reference(membranes_.unstressed(), measure(), measured_on_present(particles()));
-  if (bodies_.tractions) bodies_.tractions->put_among(*around_.solids);
+  if (bodies_.tractions) bodies_.tractions->set_solids(*around_.solids);
   around_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
 }
 
@@ -87,14 +87,14 @@ void Capsule::place_among_solids(const Net& x) {
 /// Evaluates the shape with each particle moved by a lattice vector so that its mean is in the cell. Converts the velocities to those at the original
 /// positions.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
-  if (!around_.cell || !e.x().allFinite()) return solve(e, e.x(), guess);
+  if (!around_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), guess);
   Net x = e.x();
   const std::vector<Vec3> shifts = put_into_cell(x);
   bodies_.rigid.enter(shifts, duct_.tube ? Mat3::Zero() : around_.flow.cell_gradient());
   Net slower = guess;
   const auto faster_by = [&](std::size_t p) { return faster_beyond(shifts[p]); };
   for (std::size_t p = 0; p < shifts.size() && guess.size() > 0; ++p) particles()[p].block.rows(slower).rowwise() -= faster_by(p).transpose();
-  Net v = solve(e, std::move(x), slower);
+  Net v = solve_in_cell(e, std::move(x), slower);
   for (std::size_t p = 0; p < shifts.size(); ++p) {
     const Vec3 faster = faster_by(p);
     for (Net* net : {&v, &e.fluid_})

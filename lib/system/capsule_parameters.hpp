@@ -16,7 +16,7 @@
 namespace tanktread::coupling {
 
 /// Counts of operations, as a measure of cost that does not depend on the machine.
-struct Work {
+struct OperationCounts {
   long evaluations = 0;        ///< velocity evaluations (4.2)
   long assemblies = 0;         ///< assemblies of the frozen layer operators (4.3)
   long tangents = 0;           ///< evaluations of the membrane tangent
@@ -27,9 +27,10 @@ struct Work {
   long most_velocity_iterations = 0;  ///< largest number of iterations of one velocity or traction solve
 };
 
-inline Work operator+(Work a, const Work& b) {
-  for (long Work::*count : {&Work::evaluations, &Work::assemblies, &Work::tangents, &Work::solves, &Work::solver_iterations,
-                            &Work::velocity_iterations, &Work::velocity_solves})
+inline OperationCounts operator+(OperationCounts a, const OperationCounts& b) {
+  using Of = OperationCounts;
+  for (long Of::*count : {&Of::evaluations, &Of::assemblies, &Of::tangents, &Of::solves, &Of::solver_iterations, &Of::velocity_iterations,
+                          &Of::velocity_solves})
     a.*count += b.*count;
   a.most_velocity_iterations = std::max(a.most_velocity_iterations, b.most_velocity_iterations);
   return a;

@@ -42,13 +42,13 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       bodies_{RigidParticles(particles(), initial, parameters.viscosity, parameters.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
-      jacobian_(parameters_, around_.flow, by_sites(), targets_, membranes_, volumes_, frozen_, duct_.tube.get(), interface_.get(), work_) {
+      jacobian_(parameters_, around_.flow, by_sites(), targets_, membranes_, volumes_, frozen_, duct_.tube.get(), interface_.get(), counts_) {
   if (parameters.solvers.rigid_bodies == "first kind" && !bodies_.rigid.empty())
     bodies_.tractions =
         std::make_unique<RigidTractions>(space, membranes_.unstressed(), initial, particles(), parameters.viscosity, parameters.quadrature,
                                          parameters.solvers, parameters.wall, duct_.tube.get(), layout_.points(), ranks);
   if (parameters_.cell) deform_cell(0);
-  put_among_solids();
+  make_solid_response();
   if (!duct_.tube) return;
   if (!duct_.tube->fixed()) duct_.inner_radius = duct_.tube->wall().outline.distance(duct_.tube->wall().outline.centroid());
   duct_.tube->set_reference(unstressed, measure(), measured_on_present(particles()));

@@ -13,9 +13,9 @@
 namespace tanktread::coupling {
 
 void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v, double tolerance) {
-  ++work_.velocity_solves;
-  work_.velocity_iterations += report.iterations;
-  work_.most_velocity_iterations = std::max<long>(work_.most_velocity_iterations, report.iterations);
+  ++counts_.velocity_solves;
+  counts_.velocity_iterations += report.iterations;
+  counts_.most_velocity_iterations = std::max<long>(counts_.most_velocity_iterations, report.iterations);
   const auto contrast = [](const Particle& particle) { return std::abs(std::log(particle.viscosity_ratio)); };
   const double ratio = std::ranges::max_element(particles(), {}, contrast)->viscosity_ratio;
   const std::string system =
@@ -80,14 +80,14 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
 }
 
 /// Solves for the velocity v, the wall traction f^D, the pressure drop dp (2.5)-(2.7) and the volume multipliers (2.8) in one system. The right-hand
-/// side rhs = v_inf - (1/mu) R^-1 A f is also the initial guess of v. `load` and `unbounded`: see BlockSystem.
+/// side rhs = v_inf - (1/mu) R^-1 A f is also the initial guess of v. `load` and `unbounded`: see TubeSystem.
 Net Capsule::solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded,
                           const Net& f, const Net& b, const Net& c, const Net& rhs) {
   const auto control_values = [&](const Net& at_sites) { return targets_.collocation().solve(at_sites); };
   std::vector<spline::Block> constrained;
   for (const Particle& one : particles())
     if (b.size() > 0 && !one.rigid) constrained.push_back(one.block);
-  const BlockSystem system{*duct_.tube, load, unbounded, control_values, b, c, constrained, duct_.tube->wall().radius() / parameters_.viscosity};
+  const TubeSystem system{*duct_.tube, load, unbounded, control_values, b, c, constrained, duct_.tube->wall().radius() / parameters_.viscosity};
   const Eigen::VectorXd right = system.right_hand_side(rhs, f);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size());
   x.head(rhs.size()) = right.head(rhs.size());

@@ -72,7 +72,7 @@ const Tube::Response& Evaluation::response() {
   if (!response_) find_unknowns();
   Net inside = x_;
   if (system_->cell()) system_->put_into_cell(inside);
-  system_->place(inside);
+  system_->place_tube(inside);
   if (!response_) response_ = system_->duct_.tube->respond(load_, unknowns_);
   return *response_;
 }

@@ -32,23 +32,16 @@ Net Targets::serial_control_values(const Net& at_targets) const {
 ParticleLayers::ParticleLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout,
                                const Targets& targets, Phases& phases)
     : parameters_(parameters), layout_(layout), targets_(targets), phases_(phases),
-      single_(stokes::Layer::Kernel::single_layer, space, targets.sites(), parameters.quadrature) {
-  single_.set_reference(unstressed, measured_on_present(parameters.particles));
-  single_.set_symmetry(parameters.symmetry);
-  if (const std::vector<double> contrasts = viscosity_contrasts(parameters.particles); !contrasts.empty())
-    double_.emplace(stokes::Layer::Kernel::double_layer, space, targets.sites(), parameters.quadrature, contrasts);
+      pair_(space, targets.sites(), unstressed, parameters.particles, parameters.quadrature, parameters.wall) {
+  pair_.single_layer.set_symmetry(parameters.symmetry);
   const std::vector<int> everybody = targets.projection() ? indices(targets.sites().size()) : parameters.symmetry.fundamental();
-  for (stokes::Layer* const layer : {&single_, double_layer()}) {
-    if (!layer) continue;
-    if (parameters.wall) layer->set_wall(*parameters.wall);
-    layer->share(layout.ranks().rank(), layout.ranks().size(), everybody);
-  }
+  for (stokes::Layer* const layer : {&pair_.single_layer, double_layer()})
+    if (layer) layer->share(layout.ranks().rank(), layout.ranks().size(), everybody);
 }
 
 void ParticleLayers::repeat(const stokes::PeriodicCell& cell) {
   repeats_ = true;
-  single_.repeat(cell);
-  if (double_) double_->repeat(cell);
+  pair_.repeat(cell);
 }
 
 Net ParticleLayers::apply_single(const Net& x, const Net& f) {
@@ -56,21 +49,21 @@ Net ParticleLayers::apply_single(const Net& x, const Net& f) {
   if (f.isZero(0)) return u;
   {
     const auto clock = phases_.time("single layer");
-    single_.place(x, measure(parameters_.particles));
-    single_.apply(f, targets_.own(), u);
+    pair_.single_layer.place(x, pair_.measure);
+    pair_.single_layer.apply(f, targets_.own(), u);
   }
-  targets_.gather(single_.shared(), u);
+  targets_.gather(pair_.single_layer.shared(), u);
   return u;
 }
 
 void ParticleLayers::place_double(const Net& x) {
-  if (double_) double_->place(x);
+  if (pair_.double_layer) pair_.double_layer->place(x);
 }
 
 Net ParticleLayers::apply_double(const Net& v) {
   Net u = targets_.zero();
-  double_->apply(v, targets_.own(), u);
-  targets_.gather(double_->shared(), u);
+  pair_.double_layer->apply(v, targets_.own(), u);
+  targets_.gather(pair_.double_layer->shared(), u);
   return u;
 }
 
@@ -83,8 +76,8 @@ void ParticleLayers::assemble(const Net& x, bool single) {
   };
   // With rigid bodies, the solver may take many iterations, because films between them are thin. Assembling the matrix (72 n^2 bytes) is then faster.
   const bool many_iterations = parameters_.any_rigid() && 72 * n * n < most_bytes;
-  if (double_) double_->place(x), assemble(*double_, double_->by_clusters() && !many_iterations, double_rows_);
-  if (single) single_.place(x, measure(parameters_.particles)), assemble(single_, single_.by_clusters(), single_rows_);
+  if (auto& layer = pair_.double_layer) layer->place(x), assemble(*layer, layer->by_clusters() && !many_iterations, double_rows_);
+  if (single) pair_.single_layer.place(x, pair_.measure), assemble(pair_.single_layer, pair_.single_layer.by_clusters(), single_rows_);
 }
 
 /// Returns the product of the assembled rows of all ranks with a field.
@@ -97,7 +90,7 @@ Net ParticleLayers::product(const stokes::Rows<double>& rows, const Net& field) 
 }
 
 Net ParticleLayers::apply(const Net& x, const Net& v, const Net& f) {
-  Net u = !double_ ? targets_.zero() : double_rows_.cols() > 0 ? product(double_rows_, v) : apply_double(v);
+  Net u = !pair_.double_layer ? targets_.zero() : double_rows_.cols() > 0 ? product(double_rows_, v) : apply_double(v);
   if (f.size() > 0) u -= (single_rows_.cols() > 0 ? product(single_rows_, f) : apply_single(x, f)) / parameters_.viscosity;
   return u;
 }
@@ -108,7 +101,7 @@ stokes::Rows<double> ParticleLayers::double_rows(std::span<const int> sites) {
   std::vector<int> own;
   std::ranges::copy_if(sites, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(points, i); });
   stokes::Rows<double> made;
-  if (!assembled) double_->assemble(own, made);
+  if (!assembled) pair_.double_layer->assemble(own, made);
   stokes::Rows<double> rows = stokes::Rows<double>::Zero(3 * static_cast<Eigen::Index>(sites.size()), 3 * targets_.values().cols());
   Eigen::Index next = 0;
   for (std::size_t k = 0; k < sites.size(); ++k) {
@@ -119,12 +112,6 @@ stokes::Rows<double> ParticleLayers::double_rows(std::span<const int> sites) {
   }
   layout_.add({rows.data(), static_cast<std::size_t>(rows.size())});
   return rows;
-}
-
-stokes::Evaluations ParticleLayers::evaluations() const {
-  stokes::Evaluations sum = single_.evaluations();
-  if (double_) sum += double_->evaluations();
-  return sum;
 }
 
 }  // namespace tanktread::coupling

@@ -8,8 +8,8 @@
 
 #include <Eigen/SparseCore>
 
-#include "stokes/layer.hpp"
 #include "system/capsule_parameters.hpp"
+#include "system/layer_pair.hpp"
 #include "system/layout.hpp"
 #include "system/velocity_projection.hpp"
 
@@ -63,10 +63,10 @@ class ParticleLayers {
   void repeat(const stokes::PeriodicCell& cell);  ///< sets the cell whose periodic images the layers include
   bool repeats() const { return repeats_; }
 
-  stokes::Layer& single_layer() { return single_; }
-  stokes::Layer* double_layer() { return double_ ? &*double_ : nullptr; }  ///< double layer; null if all its factors vanish
-  const stokes::Layer& single_layer() const { return single_; }
-  bool has_double() const { return double_.has_value(); }
+  stokes::Layer& single_layer() { return pair_.single_layer; }
+  stokes::Layer* double_layer() { return pair_.double_layer ? &*pair_.double_layer : nullptr; }  ///< double layer; null if all its factors vanish
+  const stokes::Layer& single_layer() const { return pair_.single_layer; }
+  bool has_double() const { return pair_.double_layer.has_value(); }
 
   /// Returns A f on the surface x. Skips the sum if f is zero.
   Net apply_single(const Net& x, const Net& f);
@@ -83,7 +83,7 @@ class ParticleLayers {
   /// Returns the rows of D at these collocation sites on every rank, for the surface that assemble() set. The owner of a site computes its rows.
   stokes::Rows<double> double_rows(std::span<const int> sites);
 
-  stokes::Evaluations evaluations() const;  ///< kernel evaluations of this rank
+  stokes::Evaluations evaluations() const { return pair_.evaluations(); }  ///< kernel evaluations of this rank
 
  private:
   Net product(const stokes::Rows<double>& rows, const Net& field) const;
@@ -93,8 +93,7 @@ class ParticleLayers {
   const Targets& targets_;
   Phases& phases_;
   bool repeats_ = false;
-  stokes::Layer single_;
-  std::optional<stokes::Layer> double_;             // not set if all factors vanish
+  LayerPair pair_;
   stokes::Rows<double> single_rows_, double_rows_;  // rank-owned rows of the layers; empty if they are not assembled
 };
 

@@ -47,14 +47,7 @@ void Powers::add_columns(Columns& to) const {
 PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,
                            const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks)
     : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), places_(places(space)), values_(value_matrix(space, places_)),
-      mass_(space), single_(stokes::Layer::Kernel::single_layer, space, places_, quadrature) {
-  single_.set_reference(unstressed, measured_on_present(capsule.particles()));
-  if (const std::vector<double> contrasts = viscosity_contrasts(capsule.particles()); !contrasts.empty())
-    double_.emplace(stokes::Layer::Kernel::double_layer, space, places_, quadrature, contrasts);
-  if (!wall) return;
-  single_.set_wall(*wall);
-  if (double_) double_->set_wall(*wall);
-}
+      mass_(space), layers_(space, places_, unstressed, capsule.particles(), quadrature, wall) {}
 
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const std::shared_ptr<Evaluation> e = capsule_.evaluation(x, slope, 0);
@@ -149,10 +142,7 @@ Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
   Net x = e.x();
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (const auto& cell = capsule_.cell()) {
-    if (!capsule_.tube()) {
-      single_.repeat(*cell);
-      if (double_) double_->repeat(*cell);
-    }
+    if (!capsule_.tube()) layers_.repeat(*cell);
     const std::vector<Vec3> shifts = capsule_.put_into_cell(x);
     for (std::size_t p = 0; p < shifts.size(); ++p) {
       const Particle& particle = capsule_.particles()[p];
@@ -163,13 +153,10 @@ Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
   }
   const Solids::Flow by_solids = capsule_.solids() ? e.solid_flow().flow : Solids::Flow();
   const Net at = values_ * x;
-  single_.place(x, capsule_.measure());
-  if (double_) double_->place(x);
+  layers_.place(x);
   return values_ * v - flow.velocities(at) - ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
     Net part = u;
-    single_.apply(load, own, u);
-    u /= -viscosity_;
-    if (double_) double_->apply(density, own, part), u += part;
+    layers_.apply(load, density, viscosity_, own, u);
     if (SolidResponse* solids = capsule_.solids()) solids->velocity_at(at, own, by_solids, part), u(own, Eigen::all) += part(own, Eigen::all);
     if (Tube* tube = capsule_.tube()) tube->velocity_at(at, e.response(), own, part), u(own, Eigen::all) += part(own, Eigen::all);
   });

@@ -9,8 +9,8 @@
 #include "base/types.hpp"
 #include "membrane/mass.hpp"
 #include "quadrature/options.hpp"
-#include "stokes/layer.hpp"
 #include "system/capsule.hpp"
+#include "system/layer_pair.hpp"
 #include "system/ranks.hpp"
 
 namespace tanktread::coupling {
@@ -56,8 +56,7 @@ class PowerBalance {
   stokes::Sites places_;
   Eigen::SparseMatrix<double> values_;  // N_A at `places_`
   membrane::MassMatrix mass_;
-  stokes::Layer single_;
-  std::optional<stokes::Layer> double_;
+  LayerPair layers_;
 };
 
 }  // namespace tanktread::coupling

@@ -48,7 +48,7 @@ struct Capsule {
       benchmark::DoNotOptimize(capsule.velocity(shapes[k % 2]));
       best = std::min(best, now() - start);
     }
-    iterations = capsule.work().most_velocity_iterations;
+    iterations = capsule.counts().most_velocity_iterations;
     return best;
   }
 };

@@ -246,6 +246,13 @@ Tanktread:
         close(series("steady", name)[-1], series("other", name)[-1], 1e-5, name)
 
 
+def a_plate_that_alone_moves_makes_a_flow():
+    moves = CAPSULE.replace(", pressure gradient: [-1.0, 0.3, 0.0]", "").replace("shear modulus: 5.0", "capillary number: 0.2")
+    for given in ("second velocity: [1.0, 0.5, 0.0]", "velocity: [1.0, 0.5, 0.0]"):
+        alone = moves.replace("velocity: [0.2, 0.0, 0.0], second velocity: [1.0, 0.5, 0.0]", given)
+        check(_first("alone", alone, names=["normal_velocity"])[0] > 0, given)
+
+
 def what_no_deck_may_ask_for():
     refused(["Wall/distance", "Domain"], deck(SPHERE.replace("  Domain: {periodic: x1 x2, side lengths: [16.0, 16.0, 1.0]}\n", "")))
     refused(["Wall and Domain", "normal"], deck(SPHERE.replace("x1 x2", "x1 x3").replace("16.0, 1.0]", "16.0, 16.0]")))

@@ -99,6 +99,20 @@ def the_order_is_of_no_consequence():
         check(off <= 1e-10, name, "is off by", off)
 
 
+def rows_of_a_body_that_comes_first_are_of_the_shape_of_the_row():
+    """With a coarse tolerance, within which shapes of the iteration lie."""
+    body = "    ball: {center: [0.0, 0.3, 1.9], radius: 0.6, motion: free}\n"
+    capsule = "    capsule: {viscosity ratio: 2.0, Membrane: {law: neo-Hookean, capillary number: 0.3}}\n"
+    head = "Tanktread:\n  Flow: {type: simple shear}\n  Time: {tolerance: 1.0e-2, final time: 0.2}\n  Particles:\n    defaults: {Surface: {elements per side: 3}}\n"
+    run(deck(head + body + capsule, "one.yaml"), "--output", "first", "--quiet")
+    run(deck(head + capsule + body, "other.yaml"), "--output", "last", "--quiet")
+    check(series("first", "ball/quaternion_0")[0] == 1, series("first", "ball/quaternion_0")[0])
+    a, b = _all("first"), _all("last")
+    for name in a:
+        if not name.startswith(("first", "second")):
+            check(difference(a[name], b[name], name) <= 1e-10, name)
+
+
 def membranes_of_others_do_not_concern_a_rigid_body():
     plain = """
 Tanktread:

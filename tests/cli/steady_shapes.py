@@ -80,6 +80,11 @@ def a_branch_goes_round_its_fold_where_a_mode_begins_to_grow():
     check(abs(rate[at]) < 1e-3, rate[at])  # whatever the mesh, which follows the mode
 
 
+def a_branch_of_too_few_points_says_so():
+    said = run(deck(DECK), deck(BRANCH, "branch.yaml"), "--set", "Continuation/points=2", "--output", "short", "--quiet", "--no-expect").stderr
+    check("Continuation/points ended the branch before" in said, said)
+
+
 def a_branch_that_turns_back_ends_where_it_began():
     """With the unstable shape, at the very value of the parameter."""
     deck(LONG, "long.yaml")

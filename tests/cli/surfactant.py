@@ -33,6 +33,17 @@ def two_processes_do_what_one_does_and_the_mass_is_kept():
     _close("on_1", "on_2", 1e-10)
 
 
+def implicit_steps_do_not_depend_on_the_unit_of_time():
+    """The flow twice as fast, in half of the time: powers of two, so that only constants with a unit could make a difference."""
+    implicit = DECK.replace("scheme: bs3", "scheme: tr-bdf2").replace("Flow: {type: simple shear}", "Flow: {type: simple shear, shear rate: 1.0}")
+    run(deck(implicit), "--output", "slow", "--quiet")
+    run("deck.yaml", *[word for setting in ("Flow/shear rate=2", "Interface/surfactant/diffusivity=0.1", "Time/fixed step=0.02", "Time/final time=0.4",
+                                            "Output/interval=0.2") for word in ("--set", setting)], "--output", "fast", "--quiet")
+    for name in ("taylor_inertia", "largest_concentration", "smallest_concentration"):
+        off = numpy.max(abs(series("slow", name) - series("fast", name)))
+        check(off < 1e-12, name, "differs by", off)
+
+
 def a_run_goes_on_as_if_it_had_not_stopped():
     run(deck(DECK), "--output", "whole", "--quiet")
     run(deck(DECK), "--set", "Time/final time=0.4", "--output", "parts", "--quiet")

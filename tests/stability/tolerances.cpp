@@ -20,7 +20,7 @@ Outcome outcome(std::vector<std::string> settings, double end) {
   settings.push_back("Surface/elements per side=3");
   Evolution run(settings);
   run.to(end);
-  return {run.deformation().taylor_inertia, std::abs(run.volume_error()), run.capsule->work().evaluations};
+  return {run.deformation().taylor_inertia, std::abs(run.volume_error()), run.capsule->counts().evaluations};
 }
 
 Outcome stiff(const std::string& scheme, const std::string& tolerance, const std::string& constraint = "flux") {

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The direction of dependencies: every #include in lib/ is one that the room's line in lib/CMakeLists.txt allows. Kernels are in
+"""The direction of dependencies: every #include in lib/ is one that the module's line in lib/CMakeLists.txt allows. Kernels are in
 the namespace of their set of instructions.
 
 Usage: layers.py <source directory>
@@ -20,60 +20,60 @@ OWNERS = {
 }
 # A library that brings another with it.
 BRINGS = {"TRILINOS": {"TRILINOS", "TEUCHOS", "MPI"}, "HDF5": {"HDF5", "MPI"}}
-# Trilinos in one file only: everything else of the room computes without it.
+# Trilinos in one file only: everything else of the module computes without it.
 ONLY_IN = {("membrane", "TRILINOS"): "direct_solver.cpp"}
 
 
 def allowed(source):
-    """room -> (rooms, libraries) that it may use."""
-    rooms = {}
+    """module -> (modules, libraries) that it may use."""
+    modules = {}
     for line in (source / "lib/CMakeLists.txt").read_text().splitlines():
-        match = re.fullmatch(r"room\(([\w/]+)(?: +USES +([a-z/ ]+?))?(?: +EXTERNAL +([A-Z0-9 ]+?))? *\)", line.strip())
+        match = re.fullmatch(r"module\(([\w/]+)(?: +USES +([a-z/ ]+?))?(?: +EXTERNAL +([A-Z0-9 ]+?))? *\)", line.strip())
         if match:
             name, uses, external = match.groups()
             libraries = set((external or "").split())
             for library in set(libraries):
                 libraries |= BRINGS.get(library, set())
-            rooms[name] = ({name, *(uses or "").split()}, libraries)
-        elif line.startswith("room("):
+            modules[name] = ({name, *(uses or "").split()}, libraries)
+        elif line.startswith("module("):
             sys.exit(f"lib/CMakeLists.txt: not understood: {line}")
-    return rooms
+    return modules
 
 
-def order_errors(rooms):
-    """A room uses only rooms that stand above it; fluid and membrane never meet."""
-    names = list(rooms)
+def order_errors(modules):
+    """A module uses only modules that stand above it; fluid and membrane never meet."""
+    names = list(modules)
     for position, name in enumerate(names):
-        for used in rooms[name][0] - {name}:
+        for used in modules[name][0] - {name}:
             if used not in names[:position]:
                 yield f"lib/CMakeLists.txt: {name} uses {used}, which does not stand above it"
     for name, other in (("stokes", "membrane"), ("membrane", "stokes")):
-        if other in rooms[name][0]:
+        if other in modules[name][0]:
             yield f"lib/CMakeLists.txt: {name} may not see {other}"
 
 
-def room_of(name, rooms):
-    """The room of a file below lib/: the innermost of its folders that has a line."""
-    return next((folder.as_posix() for folder in pathlib.PurePath(name).parents if folder.as_posix() in rooms), None)
+def module_of(name, modules):
+    """The module of a file below lib/: the innermost of its folders that has a line."""
+    return next((folder.as_posix() for folder in pathlib.PurePath(name).parents if folder.as_posix() in modules), None)
 
 
-def include_errors(source, rooms):
+def include_errors(source, modules):
     for path in sorted((source / "lib").rglob("*.[ch]pp")):
-        room = room_of(path.relative_to(source / "lib"), rooms)
-        if room is None:
-            yield f"{path}: lib/CMakeLists.txt has no line for this room"
+        module = module_of(path.relative_to(source / "lib"), modules)
+        if module is None:
+            yield f"{path}: lib/CMakeLists.txt has no line for this module"
             continue
-        uses, libraries = rooms[room]
+        uses, libraries = modules[module]
         for header in re.findall(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', path.read_text(), re.MULTILINE):
             foreign = header.split("/")[0] in ("Eigen", "unsupported", "sys", "boost", "yaml-cpp")
-            if "/" in header and not foreign and room_of(header, rooms) not in uses:
-                yield f"{path}: {room} may not include {header}"
+            if "/" in header and not foreign and module_of(header, modules) not in uses:
+                yield f"{path}: {module} may not include {header}"
             owners = {owner for owner, pattern in OWNERS.items() if re.fullmatch(pattern, header)}
             if owners and not owners & libraries:
-                yield f"{path}: {room} may not include {header}, of {'/'.join(sorted(owners))}"
+                yield f"{path}: {module} may not include {header}, of {'/'.join(sorted(owners))}"
             for owner in owners:
-                if path.name != ONLY_IN.get((room, owner), path.name):
-                    yield f"{path}: in {room} only {ONLY_IN[room, owner]} may include {header}"
+                if path.name != ONLY_IN.get((module, owner), path.name):
+                    yield f"{path}: in {module} only {ONLY_IN[module, owner]} may include {header}"
 
 
 def kernel_errors(source):
@@ -85,8 +85,8 @@ def kernel_errors(source):
 
 def main():
     source = pathlib.Path(sys.argv[1])
-    rooms = allowed(source)
-    errors = [*order_errors(rooms), *include_errors(source, rooms), *kernel_errors(source)]
+    modules = allowed(source)
+    errors = [*order_errors(modules), *include_errors(source, modules), *kernel_errors(source)]
     print("\n".join(errors))
     sys.exit(bool(errors))
 

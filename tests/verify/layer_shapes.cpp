@@ -34,7 +34,7 @@ struct Particle {
   Particle(int n, const surface::ParticleShape& shape) {
     const spline::TMesh mesh = spline::cube(n);
     space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-    x = surface::initial_shape(space, mesh, shape);
+    x = surface::resting_shape(space, mesh, shape);
     f = Net(x.rows(), 3);
     for (Eigen::Index i = 0; i < f.rows(); ++i) f.row(i) = density(x.row(i).transpose() - shape.center).transpose();
     all.resize(static_cast<std::size_t>(space.n_points));

@@ -147,7 +147,7 @@ TEST(Layers, KeepTheRequestedToleranceAtPoles) {
     const spline::Space space = spline::space(mesh);
     surface::ParticleShape unit;
     unit.radius = 1;
-    const Scene scene(space, surface::initial_shape(space, mesh, 2, unit));
+    const Scene scene(space, surface::resting_shape(space, mesh, 2, unit));
     const char* const name = poles == spline::PoleRule::plain ? "plain poles"
                              : poles == spline::PoleRule::c1  ? "C1 poles"
                                                               : "transformed poles";

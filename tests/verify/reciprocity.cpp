@@ -25,7 +25,7 @@ struct Body {
   explicit Body(int n, const Vec3& centre, double bend) {
     const spline::TMesh mesh = spline::cube(n);
     space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-    x = surface::initial_shape(space, mesh, {});
+    x = surface::resting_shape(space, mesh, {});
     density = Net(x.rows(), 3);
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
       const Vec3 p = x.row(i).transpose();

@@ -32,7 +32,7 @@ inline Sphere sphere(double a, const Vec3& centre, int n) {
   Sphere s{spline::space(mesh, spline::ExtraordinaryRule::g1), {}, a, centre};
   surface::ParticleShape shape;
   shape.radius = a, shape.center = centre;
-  s.net = surface::initial_shape(s.space, mesh, shape);
+  s.net = surface::resting_shape(s.space, mesh, shape);
   return s;
 }
 
@@ -43,7 +43,7 @@ inline Sphere polar_sphere(double a, const Vec3& centre, int m, int r) {
   Sphere s{spline::space(mesh), {}, a, centre};
   surface::ParticleShape shape;
   shape.radius = a, shape.center = centre;
-  s.net = surface::initial_shape(s.space, mesh, 0, shape);
+  s.net = surface::resting_shape(s.space, mesh, 0, shape);
   return s;
 }
 

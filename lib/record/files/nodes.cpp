@@ -126,7 +126,7 @@ std::vector<Vec3> cell_normals(const surface::Patch& patch, std::span<const surf
 }  // namespace
 
 Nodes::Nodes(surface::BezierMap map, LagrangeMesh mesh) : map_(std::move(map)), mesh_(std::move(mesh)) {
-  for (const surface::Block& block : map_.blocks()) tables_[block.degree] = jet_table(block.degree);
+  for (const surface::DegreeGroup& group : map_.groups()) tables_[group.degree] = jet_table(group.degree);
 }
 
 /// Computes the jets (position and derivatives) at the nodes of the element's cell. Returns the element's Bezier points.

@@ -63,7 +63,7 @@ class Deforming : public ParticleSystem {
     if (another_mesh || another_symmetry) settle(x);
     require(resumed.state.x.rows() == start().rows());
     motion::refreeze(dynamics(), resumed.state, resumed.state.time);
-    capsule_->work() = resumed.totals.work;
+    capsule_->counts() = resumed.totals.counts;
     for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle[p];
     hold_by(resumed.totals.contacts);
     return another_mesh;
@@ -150,7 +150,7 @@ class Deforming : public ParticleSystem {
   }
 
   std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
-  coupling::Work work() const override { return capsule_->work(); }
+  coupling::OperationCounts counts() const override { return capsule_->counts(); }
 
   std::vector<PhaseAngle> phase_angle() const override {
     std::vector<PhaseAngle> all;
@@ -164,10 +164,12 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    // solves again if the velocity is inaccurate, because tractions on the wall of a tube or on solids are computed from it
-    if ((body().wall || solids_) && state.slope_error > accuracy()) here->solve(0.1 * accuracy());
+    // Solves again if the velocity is inaccurate and tractions on walls follow from it, or if the load of deformable particles beside bodies does
+    const auto n_rigid = std::ranges::count_if(members_, [](const Member& member) { return member.scene.particle.rigid(); });
+    const bool mixed = n_rigid > 0 && n_rigid < std::ssize(members_);
+    if (mixed || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
     const Net v = here->fluid_velocity();
-    progress.time = state.time, progress.work = capsule_->work();
+    progress.time = state.time, progress.counts = capsule_->counts();
     std::vector<Columns> columns(members_.size());
     std::vector<std::unique_ptr<ParticleRow>> rows;
     for (std::size_t p = 0; p < members_.size(); ++p) rows.push_back(particle_row(p, *here, state, whole_state.x, columns[p]));
@@ -311,7 +313,7 @@ class Deforming : public ParticleSystem {
     const Member& member = members_[p];
     const coupling::RigidParticles& rigid = here.rigid();
     RigidRow now = tanktread::rigid_row(member.scene, *member.body, capsule_->flow(), geometry(member), member.own(here.x()),
-                                        rigid.motion(p), Eigen::Quaterniond(rigid.turn(p)), here.stresslet(p), ranks_);
+                                        rigid.motion(p), Eigen::Quaterniond(capsule_->rigid_at(here.x()).turn(p)), here.stresslet(p), ranks_);
     now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
     return now;
   }
@@ -364,9 +366,9 @@ class Deforming : public ParticleSystem {
   /// Rebuilds the coupled system for the current meshes of the members, in the shape x. Counts of work are kept.
   void settle(const Net& x) {
     if (!all_) members_.front().body->symmetry = symmetry(members_.front().scene, body(), x);
-    if (capsule_) work_ = capsule_->work(), kernel_evaluations_ = kernel_evaluations();
+    if (capsule_) counts_ = capsule_->counts(), kernel_evaluations_ = kernel_evaluations();
     set_up();
-    capsule_->work() = work_;
+    capsule_->counts() = counts_;
     for (Member& member : members_) follow(member);
   }
 
@@ -380,7 +382,7 @@ class Deforming : public ParticleSystem {
   std::unique_ptr<SurfaceFields> fields_;
   motion::State pictured_;  // state of the latest snapshot; the function that computes the snapshot's fields refers to it
   std::optional<coupling::PowerBalance> power_;  // constructed at the first use
-  coupling::Work work_;                     // work (solves, iterations) of the systems on earlier meshes
+  coupling::OperationCounts counts_;                     // work (solves, iterations) of the systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // number of kernel evaluations on earlier meshes
   std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // particles whose mesh the latest step changed, and their previous bodies
   std::optional<coupling::RigidParticles> placed_;  // positions of rigid particles, stored before their meshes change

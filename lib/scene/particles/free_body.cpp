@@ -24,8 +24,8 @@ class Free : public ParticleSystem {
   Net start() const override { return coupling::placed(free_->centre()); }
   /// Restores the counts of work of the run. Subtracts the work of the repeated set-up, because the counts already include the first set-up.
   bool resume(Resumed& resumed) override {
-    const coupling::Work again = work();
-    before_ = resumed.totals.work;
+    const coupling::OperationCounts again = counts();
+    before_ = resumed.totals.counts;
     before_.assemblies -= again.assemblies;
     before_.solves -= again.solves;
     before_.solver_iterations -= again.solver_iterations;
@@ -44,13 +44,13 @@ class Free : public ParticleSystem {
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
   stokes::Evaluations kernel_evaluations() const override { return tractions_.kernel_evaluations(); }
 
-  coupling::Work work() const override {
-    coupling::Work work = before_;
-    work.evaluations += free_->evaluations();
-    work.assemblies += 1;
-    work.solves += tube_ || scene_.wall.present ? free_->evaluations() : body_.flow.affine() ? 11 : 29;
-    work.solver_iterations += free_->solver_iterations();
-    return work;
+  coupling::OperationCounts counts() const override {
+    coupling::OperationCounts sum = before_;
+    sum.evaluations += free_->evaluations();
+    sum.assemblies += 1;
+    sum.solves += tube_ || scene_.wall.present ? free_->evaluations() : body_.flow.affine() ? 11 : 29;
+    sum.solver_iterations += free_->solver_iterations();
+    return sum;
   }
 
   std::vector<PhaseAngle> phase_angle() const override { return {phase_angle_}; }
@@ -68,7 +68,7 @@ class Free : public ParticleSystem {
     if (const auto walls = scene_.wall.planes(); !walls.empty()) wall_row(walls, body_, free_->surface(state.x)).add_columns(scene_, row);
     turn_to(state.x, progress.step.step, now);
     now.add_columns(scene_, row);
-    progress.time = state.time, progress.work = work();
+    progress.time = state.time, progress.counts = counts();
     progress.add_columns(scene_, row);
     finish(row);
     return row;
@@ -123,7 +123,7 @@ class Free : public ParticleSystem {
   coupling::RigidTractions tractions_;
   std::unique_ptr<coupling::LoneRigidBody> free_;
   PhaseAngle phase_angle_;
-  coupling::Work before_;  // work of earlier parts of a resumed run
+  coupling::OperationCounts before_;  // work of earlier parts of a resumed run
 };
 
 }  // namespace

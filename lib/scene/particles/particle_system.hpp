@@ -58,7 +58,7 @@ class ParticleSystem {
                                                                     ///< body()
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
-  virtual coupling::Work work() const = 0;
+  virtual coupling::OperationCounts counts() const = 0;
   virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase angle of each particle when the
                                                                                         ///< series were last computed
   virtual stokes::Evaluations kernel_evaluations() const = 0;

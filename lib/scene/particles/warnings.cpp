@@ -73,6 +73,8 @@ std::vector<Warning> first_warnings(const Scene& scene) {
   };
   if (std::ranges::any_of(scene.alone(), forgets))
     found.push_back({"fields", "surfactant and other surface fields start as in a new run: Particle/initial shape/run gives the shape only"});
+  if (scene.tube.images)
+    found.push_back({"images", "Tube/images has no effect, because a periodic tube has all its images: remove the key."});
   const double interval = scene.snapshot_interval(), step = scene.time.fixed_step.value_or(0);
   if (scene.runs_in_time() && scene.output.interval && !scene.lands_on_snapshots() && step > interval * (1 + 1e-9))
     found.push_back(

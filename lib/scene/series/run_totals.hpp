@@ -27,7 +27,7 @@ struct PhaseAngle {
 struct RunTotals {
   int step = 0;  ///< number of steps so far; `run.h5` has step + 1 rows, including the initial state
   double wall_seconds = 0;
-  coupling::Work work;
+  coupling::OperationCounts counts;
   int refinements = 0, coarsenings = 0;
   stokes::Evaluations kernel;       ///< kernel evaluations of all ranks
   Warnings::Memory warnings;
@@ -44,20 +44,20 @@ void each_count(Some& totals, const Act& act) {
   act("steps", moving, "number of accepted time steps", totals.step);
   act("refinements", moving, "number of mesh changes that refined elements", totals.refinements);
   act("coarsenings", moving, "number of mesh changes that merged elements", totals.coarsenings);
-  act("evaluations", moving, "number of velocity evaluations (4.2)", totals.work.evaluations);
+  act("evaluations", moving, "number of velocity evaluations (4.2)", totals.counts.evaluations);
   act("assemblies", moving, "number of times that the boundary-integral operator in the Jacobian was assembled (4.3)",
-      totals.work.assemblies);
-  act("tangents", moving, "number of times that the tangent stiffness of the membrane was evaluated", totals.work.tangents);
+      totals.counts.assemblies);
+  act("tangents", moving, "number of times that the tangent stiffness of the membrane was evaluated", totals.counts.tangents);
   act("linear_solves", moving, "number of linear systems solved in implicit time steps; for a free body, linear systems for its motion",
-      totals.work.solves);
+      totals.counts.solves);
   act("solver_iterations", all,
       "number of iterations of the linear solver in `linear_solves`; for a prescribed body, in the solutions for its traction and the "
       "tractions of unit motions",
-      totals.work.solver_iterations);
-  act("velocity_iterations", moving, "number of iterations of the linear solver for velocities", totals.work.velocity_iterations);
-  act("velocity_solves", moving, "number of linear systems solved for velocities", totals.work.velocity_solves);
+      totals.counts.solver_iterations);
+  act("velocity_iterations", moving, "number of iterations of the linear solver for velocities", totals.counts.velocity_iterations);
+  act("velocity_solves", moving, "number of linear systems solved for velocities", totals.counts.velocity_solves);
   act("most_velocity_iterations", moving, "largest number of iterations of one linear solve for a velocity",
-      totals.work.most_velocity_iterations);
+      totals.counts.most_velocity_iterations);
   act("kernel_evaluations_far", all, "number of evaluations of the Stokes kernels (2.1) on all ranks by far-field quadrature",
       totals.kernel.far);
   act("kernel_evaluations_near", all, "number of evaluations of the Stokes kernels on all ranks by near-singular quadrature",

@@ -71,7 +71,7 @@ void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
   to.add(time, {"time", "time", "simulated time; along a branch of steady shapes the number of the point, from 0; 0 for any other steady problem"});
   to.add(wall_seconds, {"wall_seconds", "s", "wall-clock time since the start of the run, including the earlier parts of a resumed run"});
   if (scene.in_system() || prescribed || scene.tube.present || scene.wall.present)
-    to.add(static_cast<double>(work.solver_iterations),
+    to.add(static_cast<double>(counts.solver_iterations),
            {"solver_iterations", "1",
             "number of iterations of the linear solver, for implicit steps or for tractions, since the start of the run"});
   if (prescribed) return;
@@ -81,14 +81,14 @@ void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
                       "points divided by R_C, the radius of the sphere with the particle's volume"});
   to.add(step.rejected, {"rejected_steps", "1", "number of attempts at this time step that were rejected because their error was too "
                                                 "large or an iteration failed"});
-  to.add(static_cast<double>(evaluations.value_or(work.evaluations)),
+  to.add(static_cast<double>(evaluations.value_or(counts.evaluations)),
          {"evaluations", "1", "number of evaluations of the velocity of all control points, since the start of the run"});
   if (!scene.in_system()) return;
   to.add(step.iterations, {"iterations", "1", "number of nonlinear iterations (quasi-Newton or fixed-point) in this time step"});
   to.add(
-      static_cast<double>(work.assemblies),
+      static_cast<double>(counts.assemblies),
       {"assemblies", "1", "number of times that the boundary-integral operator in the Jacobian was assembled, since the start of the run"});
-  to.add(static_cast<double>(work.velocity_iterations),
+  to.add(static_cast<double>(counts.velocity_iterations),
          {"velocity_iterations", "1",
           "number of iterations of the linear solver for velocities (viscosity ratio other than 1) since the start of the run"});
 }

@@ -22,7 +22,7 @@ struct ProgressRow {
   std::optional<long> evaluations = {};  ///< number of velocity evaluations in a search for steady shapes, summed over all systems (one per value of
                                          ///< the continuation parameters); if not set, the number in `work` is used
   double time = 0;
-  coupling::Work work = {};
+  coupling::OperationCounts counts = {};
   void add_columns(const Scene& scene, Columns& to) const;
 };
 

@@ -120,8 +120,8 @@ void FlowOptions::check() const {
 double FlowOptions::rate_between_plates() const {
   if (!plates || !plates->distance) return 0.0;
   const double d = *plates->distance;
-  if (plates->velocity && plates->second_velocity && *plates->velocity != *plates->second_velocity)
-    return (*plates->second_velocity - *plates->velocity).norm() / d;
+  const Vec3 apart = plates->second_velocity.value_or(Vec3::Zero()) - plates->velocity.value_or(Vec3::Zero());
+  if (!apart.isZero(0)) return apart.norm() / d;
   return pressure_gradient ? pressure_gradient->norm() * d / (4 * viscosity) : 0.0;
 }
 

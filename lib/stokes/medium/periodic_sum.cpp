@@ -37,7 +37,7 @@ std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const
 
 /// Returns the tolerance, reduced for the stresslet. The stresslet is singular by one order more than the Stokeslet. On cubic, tilted and oblong
 /// cells, the error of the stresslet sum was up to three times as large as the error of the Stokeslet sum.
-double sharper(double tolerance, PeriodicKernel::Kind kind) { return kind == PeriodicKernel::Kind::stresslet ? tolerance / 5 : tolerance; }
+double tolerance_of(double tolerance, PeriodicKernel::Kind kind) { return kind == PeriodicKernel::Kind::stresslet ? tolerance / 5 : tolerance; }
 
 /// Returns the number of Chebyshev nodes on [-1, 1] for interpolation to this tolerance of a function whose nearest poles are at the imaginary
 /// numbers +-iy.
@@ -138,7 +138,7 @@ Eigen::Array4d product(const Differences& of, const double* table, int a, const 
 
 PeriodicSum::PeriodicSum(PeriodicKernel::Kind kind, const PeriodicCell& cell, double asked, const std::array<Vec3, 2>& extent)
     : kind_(kind), cell_(cell), away_(Vec3::Zero()), low_(Vec3::Constant(-0.5)), length_(Vec3::Ones()), across_(rounded(cell, extent)) {
-  const double tolerance = sharper(asked, kind);
+  const double tolerance = tolerance_of(asked, kind);
   double highest = 0;
   for (int d = cell.n(); d < 3; ++d) highest = std::max({highest, std::abs(across_[0][d]), std::abs(across_[1][d])});
   for (int d = 0; d < 3; ++d) away_ += (d < cell.n() ? 5 : 5 * highest) * cell.vectors().col(d);

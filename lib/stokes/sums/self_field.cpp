@@ -69,20 +69,20 @@ SelfField::SelfField(const spline::Space& space, const Sites& sites, const quadr
 const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier) {
   const int degree = panels[pair.panel].table->degree, n = degree + 1;
   fill(pair, degree);
-  quadrature::Shear shear;
+  quadrature::MetricBin bin;
   quadrature::PolarOrders orders;
   if (options_.rule != "fixed") {
     const double *b = pair.bernstein.data(), *points = &bezier[panels[pair.panel].first_bezier];
     const Vec3 a1 = product(b + 2 * n, b + n, n, points), a2 = product(b, b + 3 * n, n, points);
-    shear = quadrature::shear(a1.dot(a1), a1.dot(a2), a2.dot(a2));
+    bin = quadrature::metric_bin(a1.dot(a1), a1.dot(a2), a2.dot(a2));
     const double squares[2] = {a1.squaredNorm(), a2.squaredNorm()};
     if (std::min(squares[0], squares[1]) < 1e-20 * std::max(squares[0], squares[1]))
       orders.radial = 2 * radial_;  // a side is collapsed to a point, so that the area element vanishes like r and the integrand is not singular
     else
-      orders = raised_orders(pair, degree, points, shear, a1, a2);
+      orders = raised_orders(pair, degree, points, bin, a1, a2);
   }
-  if (!pair.table || shear != pair.shear || orders != pair.orders) {
-    pair.shear = shear, pair.orders = orders;
+  if (!pair.table || bin != pair.bin || orders != pair.orders) {
+    pair.bin = bin, pair.orders = orders;
     pair.weights.clear();
     pair.table = &made(pair, degree);
   }
@@ -91,7 +91,7 @@ const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const st
 
 /// Returns higher orders of the polar rule for a distorted element. Returns zeros if the corners of the element are close to the positions predicted
 /// by the tangents a1, a2 at the site.
-quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::Shear shear,
+quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::MetricBin bin,
                                                  const Vec3& a1, const Vec3& a2) const {
   const int n = degree + 1, n_b = n * n;
   const int at[4] = {0, degree, n_b - 1, n_b - n};
@@ -105,25 +105,25 @@ quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degre
     distorted |= (corner[k] - affine[k]).squaredNorm() > allowed * corner[k].squaredNorm() + rounding;
   }
   if (!distorted) return {};
-  return quadrature::polar_orders(pair.s, pair.t, shear, radial_, options_.tolerance, corner, affine);
+  return quadrature::polar_orders(pair.s, pair.t, bin, radial_, options_.tolerance, corner, affine);
 }
 
 const PointTable& SelfField::made(const SelfPair& pair, int degree) {
-  const Key key{degree, pair.s, pair.t, pair.shear, pair.orders};
+  const Key key{degree, pair.s, pair.t, pair.bin, pair.orders};
   if (const auto found = tables_.find(key); found != tables_.end()) return *found->second;
   std::size_t points = 0;
   for (const auto& [other, kept] : tables_) points += static_cast<std::size_t>(kept->points);
   if (tables_.size() > most_tables || points > most_points) forget_rules();
   auto& table = tables_[key] = std::make_unique<PointTable>();
-  const auto& [s, t, shear, orders] = std::tie(pair.s, pair.t, pair.shear, pair.orders);
+  const auto& [s, t, bin, orders] = std::tie(pair.s, pair.t, pair.bin, pair.orders);
   if (options_.rule == "fixed")
     tabulate(quadrature::lachat_watson(s, t, options_.points), degree, *table);
   else if (!orders.radial)
-    tabulate(quadrature::polar(s, t, shear, quadrature::polar_orders(s, t, shear, radial_, options_.tolerance)), degree, *table);
+    tabulate(quadrature::polar(s, t, bin, quadrature::polar_orders(s, t, bin, radial_, options_.tolerance)), degree, *table);
   else if (orders.angular == std::array<int, 4>{})
     tabulate(quadrature::Rule(quadrature::tensor_gauss(orders.radial)), degree, *table);
   else
-    tabulate(quadrature::polar(s, t, shear, orders), degree, *table);
+    tabulate(quadrature::polar(s, t, bin, orders), degree, *table);
   return *table;
 }
 

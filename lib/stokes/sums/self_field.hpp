@@ -21,7 +21,7 @@ using Sites = std::vector<std::vector<spline::Site>>;
 /// A pair of a site and one of the panels that contain the site.
 struct SelfPair {
   int panel = 0;
-  quadrature::Shear shear;         ///< metric of the panel at the site, rounded to a bin; the rule was constructed for this bin
+  quadrature::MetricBin bin;         ///< metric of the panel at the site, rounded to a bin; the rule was constructed for this bin
   quadrature::PolarOrders orders;  ///< higher orders of the rule if the panel is distorted, otherwise 0. If only the angular orders are 0, the rule
                                    ///< is a tensor Gauss rule of the radial order
   const PointTable* table = nullptr;
@@ -57,7 +57,7 @@ class SelfField {
  private:
   const PointTable& made(const SelfPair& pair, int degree);
   void forget_rules();
-  quadrature::PolarOrders raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::Shear shear, const Vec3& a1,
+  quadrature::PolarOrders raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::MetricBin bin, const Vec3& a1,
                                         const Vec3& a2) const;
 
   quadrature::Options options_;
@@ -67,7 +67,7 @@ class SelfField {
   struct Key {
     int degree;
     double s, t;
-    quadrature::Shear shear;
+    quadrature::MetricBin bin;
     quadrature::PolarOrders orders;
     auto operator<=>(const Key&) const = default;
   };

@@ -94,7 +94,7 @@ const ChannelFlow::Solved& ChannelFlow::solved() const {
   return *solved_;
 }
 
-quadrature::Options ChannelFlow::sharper() const {
+quadrature::Options ChannelFlow::quadrature_of_flow() const {
   quadrature::Options options = quadrature_;
   options.tolerance = std::max(1e-10, sharpness * quadrature_.tolerance);
   return options;
@@ -105,7 +105,7 @@ quadrature::Options ChannelFlow::sharper() const {
 Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const {
   const std::shared_ptr<Wall> wall = this->wall();
   if (!layer_) {
-    layer_ = std::make_shared<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_->space, stokes::Sites(), sharper());
+    layer_ = std::make_shared<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_->space, stokes::Sites(), quadrature_of_flow());
     if (wall->cell()) layer_->repeat(*wall->cell());
     layer_->place(surface_->net);
   }

@@ -66,7 +66,7 @@ class ChannelFlow : public stokes::DuctFlow {
   };
   const Solved& solved() const;
   Net ends(const Net& x) const;
-  quadrature::Options sharper() const;
+  quadrature::Options quadrature_of_flow() const;
   Net velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const;
   Net at(const Net& x) const;
   stokes::DuctEnd section(double s, int inward) const;

@@ -18,7 +18,7 @@ std::vector<spline::Block> blocks_of_bodies(std::span<const Particle> particles)
 /// Returns the quadrature of the residual, with a quarter of the tolerance down to 1e-6. The residual is a small difference of velocities, which is
 /// integrated with the force density, so that the quadrature error of the residual is an error of forces and pressure drops. In trains of spheres at
 /// the default tolerance, a quarter reduces the error of the pressure drop 3 to 5 times.
-quadrature::Options sharper(quadrature::Options options) {
+quadrature::Options for_residual(quadrature::Options options) {
   constexpr double share = 0.25, sharpest = 1e-6;
   options.tolerance = std::min(options.tolerance, std::max(share * options.tolerance, sharpest));
   return options;
@@ -31,32 +31,17 @@ RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, 
     : viscosity_(viscosity),
       ranks_(ranks),
       between_(between_sites(space, rest, blocks_of_bodies(particles))),
-      single_(stokes::Layer::Kernel::single_layer, space, between_.places, sharper(quadrature)),
-      measure_(coupling::measure(particles)) {
-  single_.set_reference(unstressed, measured_on_present(particles));
-  if (std::vector<double> contrasts = viscosity_contrasts(particles); !contrasts.empty())
-    double_.emplace(stokes::Layer::Kernel::double_layer, space, between_.places, sharper(quadrature), std::move(contrasts));
-  if (wall) single_.set_wall(*wall);
-  if (wall && double_) double_->set_wall(*wall);
-}
-
-void RigidResidual::repeat(const stokes::PeriodicCell& cell) {
-  single_.repeat(cell);
-  if (double_) double_->repeat(cell);
-}
+      layers_(space, between_.places, unstressed, particles, for_residual(quadrature), wall) {}
 
 Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls) {
-  single_.place(x, measure_);
-  if (double_) double_->place(x);
+  layers_.place(x);
   const Net at = between_.values * x;
   const Tube::Response response = walls.tube ? walls.tube->respond(load, v) : Tube::Response();
   const Solids::Flow by_solids = walls.solids ? walls.solids->respond(load, v) + walls.solids->empty() : Solids::Flow();
   flow += ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
-    single_.apply(load, own, u);
-    u /= -viscosity_;
+    layers_.apply(load, v, viscosity_, own, u);
     Net part(u.rows(), 3);
     const auto add = [&] { u(own, Eigen::all) += part(own, Eigen::all); };
-    if (double_) double_->apply(v, own, part), add();
     if (walls.tube) walls.tube->velocity_at(at, response, own, part), add();
     if (walls.solids) walls.solids->velocity_at(at, own, by_solids, part), add();
   });

@@ -8,9 +8,9 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
-#include "stokes/layer.hpp"
 #include "stokes/medium/plane_wall.hpp"
 #include "system/collocation.hpp"
+#include "system/layer_pair.hpp"
 #include "system/particle.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/solid_response.hpp"
@@ -33,22 +33,20 @@ class RigidResidual {
   RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles, double viscosity,
                 const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, Ranks& ranks);
 
-  void repeat(const stokes::PeriodicCell& cell);
+  void repeat(const stokes::PeriodicCell& cell) { layers_.repeat(cell); }
 
   /// Returns the weighted collocation error int N_A (v - u) dG over the bodies, with the spline functions N_A and the fluid velocity u at the Gauss
   /// points. `flow`: v_inf at the Gauss points. `load`, `v`: load and velocity of all particles, whose net is x.
   Net integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls);
 
   const BetweenSites& points() const { return between_; }
-  stokes::Evaluations evaluations() const { return double_ ? single_.evaluations() + double_->evaluations() : single_.evaluations(); }
+  stokes::Evaluations evaluations() const { return layers_.evaluations(); }
 
  private:
   double viscosity_;
   Ranks& ranks_;
-  BetweenSites between_;                 // Gauss points on the bodies
-  stokes::Layer single_;                 // single layer of all particles at the Gauss points
-  std::optional<stokes::Layer> double_;  // double layer of deformable particles; set if lambda is not 1 for at least one of them
-  stokes::Measure measure_;
+  BetweenSites between_;  // Gauss points on the bodies
+  LayerPair layers_;      // layers of all particles at the Gauss points
 };
 
 }  // namespace tanktread::coupling

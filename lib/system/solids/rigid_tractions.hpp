@@ -63,7 +63,7 @@ class RigidTractions {
   void repeat(const stokes::PeriodicCell& cell);
 
   /// Sets the solids in the lattice. `solids` must outlive this object.
-  void put_among(SolidResponse& solids) { walls_.solids = &solids; }
+  void set_solids(SolidResponse& solids) { walls_.solids = &solids; }
 
   /// Interactions of the bodies with deformable particles and with images on a lattice. Nets have one row per control point of all particles. The
   /// unknowns y are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.

@@ -11,7 +11,7 @@
 
 #include "base/errors.hpp"
 #include "system/agreement.hpp"
-#include "system/solvers/block_system.hpp"
+#include "system/solvers/thyra_blocks.hpp"
 
 namespace tanktread::coupling {
 

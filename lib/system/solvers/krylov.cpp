@@ -16,7 +16,7 @@
 #include "deck/value.hpp"
 #include "deck/words.hpp"
 #include "system/solvers/chosen_preconditioner.hpp"
-#include "system/solvers/block_system.hpp"
+#include "system/solvers/thyra_blocks.hpp"
 
 namespace tanktread::coupling {
 

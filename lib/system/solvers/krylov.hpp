@@ -41,7 +41,7 @@ struct SolveReport {
 /// Throws RunFailure with the residuals if `report` says that the solve did not reach `tolerance`. `system`: name of the system in the message.
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
-/// A Belos solver with its parameter list, called through Thyra (block_system.hpp).
+/// A Belos solver with its parameter list, called through Thyra (thyra_blocks.hpp).
 class Krylov {
  public:
   /// Returns the names of the available solvers: the names of Belos' factory.

@@ -19,7 +19,7 @@
 
 #include "base/errors.hpp"
 #include "system/solvers/chosen_preconditioner.hpp"
-#include "system/solvers/block_system.hpp"
+#include "system/solvers/thyra_blocks.hpp"
 
 namespace tanktread::coupling {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,7 +52,7 @@ struct SolverOptions {
   std::string double_layer = "auto";  ///< double layer. assembled: once per velocity evaluation. matrix-free: summed in each iteration. auto:
                                       ///< matrix-free if far sums use a treecode, unless there are rigid bodies and the matrix is small
   std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values:
-                                                  ///< preconditioner of one system for all unknowns (BlockSystem)
+                                                  ///< preconditioner of one system for all unknowns (TubeSystem)
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
                                                   ///< factors are large, see Wall)
   std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind (RigidParticles), first kind
@@ -60,6 +61,9 @@ struct SolverOptions {
   std::string frozen_operator = "nodal";          ///< frozen single layer of the Jacobian: nodal (NodalOperator) or assembled
                                                   ///< (FrozenOperator)
   membrane::DirectSolverOptions direct;
+
+  /// Returns the options of all kinds of systems.
+  std::array<const IterativeOptions*, 5> systems() const { return {&velocity, &traction, &implicit_step, &spectrum, &steady}; }
 
   /// Returns whether the double layer is assembled. `by_clusters`: true if the far-field sums are evaluated by a treecode (sums by clusters), false
   /// if directly.

@@ -133,7 +133,7 @@ void try_solvers(const SolverOptions& solvers, const std::string& nonlinear_solv
   const auto given = [](const auto& list) { return list && list->numParams() > 0; };
   const SolverOptions defaults;
   if (solvers.krylov != defaults.krylov || given(solvers.belos)) try_iterative(solvers.of({}));
-  for (const IterativeOptions* system : {&solvers.velocity, &solvers.traction, &solvers.implicit_step, &solvers.spectrum, &solvers.steady})
+  for (const IterativeOptions* system : solvers.systems())
     if (system->solver || given(system->belos) || system->preconditioner != "own") try_iterative(solvers.of(*system));
   if (solvers.direct.name != defaults.direct.name || given(solvers.direct.amesos2)) try_direct(solvers.direct);
   if (given(solvers.nox)) try_nonlinear(nonlinear_solver, *solvers.nox);

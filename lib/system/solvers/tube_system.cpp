@@ -8,14 +8,14 @@ namespace tanktread::coupling {
 namespace {
 
 /// Access to the blocks of an array of unknowns or residuals: velocity v, wall traction f^D, pressure drop dp and one volume multiplier per particle
-/// of BlockSystem::constrained.
+/// of TubeSystem::constrained.
 template <class Number>
 struct Parts {
   using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;
   Rows velocity, wall_traction;
   Number &pressure_drop, *multipliers;
 
-  Parts(const BlockSystem& system, Number* numbers)
+  Parts(const TubeSystem& system, Number* numbers)
       : Parts(numbers, system.tube.inlet_on_particle().rows(), static_cast<Eigen::Index>(system.tube.wall().sites.size())) {}
   Parts(Number* numbers, Eigen::Index particle, Eigen::Index wall)
       : velocity(numbers, particle, 3),
@@ -27,18 +27,18 @@ using In = Parts<const double>;
 using Out = Parts<double>;
 
 /// Returns b.v / (b.n) of one particle (2.8).
-double flux_of(const BlockSystem& s, const spline::Block& block, const Net& v) {
+double flux_of(const TubeSystem& s, const spline::Block& block, const Net& v) {
   const auto product = [&](const Net& field) { return dot(block.rows(s.flux), block.rows(field)); };
   return product(v) / product(s.normal);
 }
 
 /// Adds `factor` times the normal field n = M0^-1 b on one particle to v.
-void add_normal(const BlockSystem& s, const spline::Block& block, double factor, Eigen::Map<Net>& v) {
+void add_normal(const TubeSystem& s, const spline::Block& block, double factor, Eigen::Map<Net>& v) {
   v.middleRows(block.first_point, block.n_points) += factor * block.rows(s.normal);
 }
 
 /// Computes the product of the block matrix (2.5) to (2.8) with x.
-void product(const BlockSystem& s, const In& x, Out r) {
+void product(const TubeSystem& s, const In& x, Out r) {
   Tube& tube = s.tube;
   const Net v = x.velocity, traction = x.wall_traction / s.unit;
   const double drop = x.pressure_drop / s.unit;
@@ -59,7 +59,7 @@ void product(const BlockSystem& s, const In& x, Out r) {
 /// Applies the preconditioner, in which the identity replaces the operator B of (2.5). Solves for the velocity and the multipliers, then for the
 /// pressure drop, then for the wall traction. If `triangular`, the right-hand sides of the pressure drop and the traction include the contributions
 /// of the unknowns that have been computed already.
-void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
+void precondition(const TubeSystem& s, const In& r, Out x, bool triangular) {
   x.velocity = r.velocity;
   for (std::size_t k = 0; k < s.constrained.size(); ++k) {
     const spline::Block& block = s.constrained[k];
@@ -78,7 +78,7 @@ void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
 
 }  // namespace
 
-LinearSystem BlockSystem::linear_system(Blocks velocity, const std::string& preconditioner) const {
+LinearSystem TubeSystem::linear_system(Blocks velocity, const std::string& preconditioner) const {
   LinearSystem system{std::move(velocity), {}, {}};
   system.blocks.push_back({"wall traction", 3 * static_cast<int>(tube.wall().sites.size())});
   system.blocks.push_back({"pressure drop", 1});
@@ -92,7 +92,7 @@ LinearSystem BlockSystem::linear_system(Blocks velocity, const std::string& prec
   return system;
 }
 
-Eigen::VectorXd BlockSystem::right_hand_side(const Net& velocity, const Net& f) const {
+Eigen::VectorXd TubeSystem::right_hand_side(const Net& velocity, const Net& f) const {
   const std::size_t nodes = tube.wall().sites.size() + static_cast<std::size_t>(velocity.rows());
   Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * nodes + 1 + constrained.size()));
   Out rows(*this, all.data());

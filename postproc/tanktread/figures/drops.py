@@ -22,6 +22,8 @@ def surfactant(runs, cut, along, deformation, extremes):
     """Drops with surfactant: last section, concentration along the axis x3, and over time D and its extremes.
 
     A clean drop among the runs is drawn for comparison."""
+    for run in runs:
+        expect(not run.several, f"{run.directory} has several particles, and this figure is of one drop")
     expect(any("surfactant_mass" in run.series for run in runs), f"{runs[0].directory} has no surfactant")
     for run, color in style.coloured(runs):
         last = run.snapshot_at(None)

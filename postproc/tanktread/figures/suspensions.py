@@ -35,12 +35,17 @@ def encounter(runs, path, gap, deformation, *, pair: tuple[str, str] | None = No
         dx, dz = (numpy.subtract(*[run.of(name, f"centroid_x{k}") for name in names]) / run.radius for k in (1, 3))
         path.plot(dx, dz, color=color, label=run.name)
         smallest = run.series["smallest_gap"] / run.radius
+        pairs = numpy.column_stack([run.series["first_of_gap"], run.series["second_of_gap"]])
+        others = pairs != sorted(1 + run.particles.index(name) for name in names)
+        smallest[others.any(axis=1)] = numpy.nan
+        expect(not numpy.isnan(smallest).all(),
+               f"{run.directory}: the smallest gap is never that of {' and '.join(names)}: choose another --pair")
         gap.plot(dx, smallest, color=color)
         for name, line in zip(names, ("-", style.DASHES)):
             if f"{name}/taylor_inertia" in run.series:  # it is not rigid
                 label = name if run is runs[0] else None
                 deformation.plot(dx, run.of(name, "taylor_inertia"), color=color, linestyle=line, label=label)
-        least = numpy.argmin(smallest)
+        least = numpy.nanargmin(smallest)
         log.info(f"{run.name}: smallest gap {smallest[least]:.5f} R_C at dx = {dx[least]:.3f}, "
                  f"largest dz {dz.max():.5f}")
     if curve:
@@ -130,6 +135,7 @@ def stresses(run):
     """Returns [η], N1 and N2 over time (rows,), without a unit."""
     flow = run.value("Flow/type")
     expect(flow == "simple shear", f"{run.directory}: intrinsic viscosity is of simple shear, and this is {flow}")
+    expect(run.value("Flow/history") is None, f"{run.directory}: the flow changes in time; see its intrinsic_viscosity")
     volume = run.series["volume"][0] if "volume" in run.series else run.snapshots()[0].volume()
     unit = run.value("Flow/viscosity", 1) * run.rate[0] * volume
     s11, s22, s33, s13 = (run.series[f"stresslet_{k}"] / unit for k in ("11", "22", "33", "13"))

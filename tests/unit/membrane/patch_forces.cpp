@@ -18,7 +18,7 @@ struct Sphere {
   explicit Sphere(int elements_per_side)
       : mesh(spline::cube(elements_per_side)),
         space(spline::space(mesh, spline::ExtraordinaryRule::catmull_clark)),
-        net(surface::initial_shape(space, mesh, {})) {}
+        net(surface::resting_shape(space, mesh, {})) {}
 
   Net work(std::vector<PatchForce> forces) const { return PatchForces{std::move(forces)}.virtual_work(space, net); }
 };

@@ -15,7 +15,7 @@ namespace viscosity_test {
 struct Sphere {
   spline::TMesh mesh = spline::cube(6);
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::catmull_clark);
-  Net net = surface::initial_shape(space, mesh, {});
+  Net net = surface::resting_shape(space, mesh, {});
   std::vector<int> all;
 
   Sphere() {

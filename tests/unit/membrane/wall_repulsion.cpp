@@ -15,7 +15,7 @@ namespace {
 struct Sphere {
   spline::TMesh mesh = spline::cube(4);
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  Net x = surface::initial_shape(space, mesh, {});
+  Net x = surface::resting_shape(space, mesh, {});
   std::vector<int> elements = std::vector<int>(space.elements.size());
   WallRepulsion repulsion{space, x, {[](double s) { return 1.1 + 0.2 * std::sin(s + 0.3); }, 3.0, 0.1}};
 

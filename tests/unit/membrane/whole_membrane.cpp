@@ -18,7 +18,7 @@ namespace {
 struct Whole {
   spline::TMesh mesh = spline::cube(4);
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  Net unstressed = surface::initial_shape(space, mesh, {}), x = unstressed * Eigen::DiagonalMatrix<double, 3>(1.3, 0.9, 1.05), slant;
+  Net unstressed = surface::resting_shape(space, mesh, {}), x = unstressed * Eigen::DiagonalMatrix<double, 3>(1.3, 0.9, 1.05), slant;
   std::vector<int> elements = std::vector<int>(space.elements.size());
   WholeMembrane whole;
 

@@ -38,13 +38,13 @@ double area(const Rule& rule) { return std::accumulate(rule.weights.begin(), rul
 
 constexpr double places[][2] = {{0, 0}, {1, 0}, {1, 1}, {0.3, 0}, {1, 0.7}, {0.5, 0.5}, {0.02, 0.4}, {0.97, 0.99}};
 
-Rule made(double s, double t, Shear metric, double tolerance) { return polar(s, t, metric, polar_orders(s, t, metric, 4, tolerance)); }
+Rule made(double s, double t, MetricBin metric, double tolerance) { return polar(s, t, metric, polar_orders(s, t, metric, 4, tolerance)); }
 
 TEST(Polar, IntegratesTheSingularityWhereverTheTargetIs) {
   for (const auto& [s, t] : places)
     for (const double b : {1., 3., 0.2})
       for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
-        const Rule rule = made(s, t, shear(1, 0, b * b), tolerance);
+        const Rule rule = made(s, t, metric_bin(1, 0, b * b), tolerance);
         const double exact = potential(1, b, Vec3(s, b * t, 0));
         EXPECT_NEAR(integral(rule, 1, b, Vec3(s, b * t, 0)), exact, tolerance * exact) << s << ' ' << t << ' ' << b;
         EXPECT_NEAR(area(rule), 1,
@@ -60,19 +60,19 @@ TEST(Polar, TakesUpTheShearOfTheElement) {
     for (int q = 0; q < rule.size(); ++q) sum += rule.weights[q] / ((rule.s[q] - s) * u + (rule.t[q] - t) * v).norm();
     return sum;
   };
-  const double exact = value(made(s, t, shear(1, 1.2, 1.69), 1e-15));
-  const Rule with = made(s, t, shear(1, 1.2, 1.69), 1e-6), without = made(s, t, Shear{}, 1e-6);
+  const double exact = value(made(s, t, metric_bin(1, 1.2, 1.69), 1e-15));
+  const Rule with = made(s, t, metric_bin(1, 1.2, 1.69), 1e-6), without = made(s, t, MetricBin{}, 1e-6);
   EXPECT_NEAR(value(with), exact, 1e-6 * exact);
   EXPECT_GT(std::abs(value(without) - exact), 1e-6 * exact);
 }
 
-TEST(Shear, FindsTheBinOfAMetric) {
-  EXPECT_EQ(shear(1, 0, 1), (Shear{0, 6}));
-  EXPECT_EQ(shear(1, 0, 4.1), (Shear{2, 6}));
-  EXPECT_EQ(shear(4, 0, 1), (Shear{-2, 6}));
-  EXPECT_EQ(shear(1, 0.5, 1), (Shear{0, 4}));  // 60 degrees
-  EXPECT_EQ(shear(1, -0.5, 1), (Shear{0, 8}));
-  EXPECT_EQ(shear(0, 0, 1), (Shear{0, 6}));  // degenerate metric
+TEST(MetricBin, FindsTheBinOfAMetric) {
+  EXPECT_EQ(metric_bin(1, 0, 1), (MetricBin{0, 6}));
+  EXPECT_EQ(metric_bin(1, 0, 4.1), (MetricBin{2, 6}));
+  EXPECT_EQ(metric_bin(4, 0, 1), (MetricBin{-2, 6}));
+  EXPECT_EQ(metric_bin(1, 0.5, 1), (MetricBin{0, 4}));  // 60 degrees
+  EXPECT_EQ(metric_bin(1, -0.5, 1), (MetricBin{0, 8}));
+  EXPECT_EQ(metric_bin(0, 0, 1), (MetricBin{0, 6}));  // degenerate metric
 }
 
 TEST(LachatWatson, ConvergesAtACornerAndIsPoorCloseToAnEdge) {

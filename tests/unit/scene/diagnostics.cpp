@@ -71,7 +71,7 @@ double inclination(const Vec3& semi_axes, const stokes::FlowOptions& flow) {
   shape.shape = "ellipsoid";
   shape.semi_axes = semi_axes;
   const surface::Geometry geometry(space);
-  const Net x = surface::initial_shape(space, mesh, shape);
+  const Net x = surface::resting_shape(space, mesh, shape);
   return deformation(geometry, flow_plane(flow), x, geometry.measures(x), coupling::Ranks()).inclination;
 }
 
@@ -146,7 +146,7 @@ TEST(SiteAhead, IsFoundAtAPoleToo) {
     const spline::Space space = spline::space(mesh);
     surface::ParticleShape shape;
     shape.radius = 1;
-    const Net sphere = surface::initial_shape(space, mesh, 0, shape);
+    const Net sphere = surface::resting_shape(space, mesh, 0, shape);
     for (const double away : {0.0, 1e-3, 0.02, 0.1}) {
       const FlowPlane plane = plane_normal_to(Vec3(std::sin(away), 1, 0.7 * away));
       const spline::Site site = site_ahead(space, sphere, Vec3::Zero(), plane);

@@ -48,7 +48,7 @@ TEST(Drift, PuttingTheCentroidBackTakesTheSlopesAlong) {
   shape.semi_axes = Vec3(1.5, 1, 0.8);
   const surface::Geometry geometry(space);
   motion::State state;
-  state.x = surface::initial_shape(space, mesh, shape).rowwise() + Vec3(0.3, -0.2, 0.1).transpose();
+  state.x = surface::resting_shape(space, mesh, shape).rowwise() + Vec3(0.3, -0.2, 0.1).transpose();
   const Mat3 l = flow.gradient(Vec3::Zero());
   state.history = {state.x * l.transpose()};
   hold_centre(flow, geometry, Vec3::Zero(), state);
@@ -66,7 +66,7 @@ TEST(Drift, PuttingTheCentroidBackTakesEarlierPlacesAlong) {
   const Mat3 l = flow.gradient(center);
   motion::State state;
   state.time = 2;
-  state.x = surface::initial_shape(space, mesh, {}).rowwise() + center.transpose();
+  state.x = surface::resting_shape(space, mesh, {}).rowwise() + center.transpose();
   const auto at = [&](double time) { return Net(state.x * exponential(l * (time - state.time)).transpose()); };
   for (const double time : {1.9, 1.7, 1.6}) state.places.push_back({time, at(time)});
   const Net direction = state.direction = Net::Random(state.x.rows(), 3);

@@ -15,7 +15,7 @@ TEST(RunTotals, ComesBackFromACheckpoint) {
   RunTotals totals;
   totals.step = 7;
   totals.wall_seconds = 1. / 3;
-  totals.work = {1, 2, 3, 4, 5, 6, 7, 8};
+  totals.counts = {1, 2, 3, 4, 5, 6, 7, 8};
   totals.refinements = 9;
   totals.coarsenings = 10;
   totals.kernel = {1LL << 40, 12, 13};

@@ -27,7 +27,7 @@ struct Fixture {
     surface::ParticleShape shape;
     shape.shape = "ellipsoid";
     shape.semi_axes = Vec3(1, 0.8, 0.7);
-    x = surface::initial_shape(space, mesh, shape);
+    x = surface::resting_shape(space, mesh, shape);
     f = Net(x.rows(), 3);
     for (Eigen::Index i = 0; i < f.rows(); ++i) f.row(i) << 1 + x(i, 1), x(i, 0) * x(i, 2), std::sin(x(i, 2));
     at.resize(4, 3);

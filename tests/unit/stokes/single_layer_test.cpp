@@ -154,7 +154,7 @@ TEST(SingleLayer, KeepsItsToleranceAtTipsThatAreAsSharpAsTheirElements) {
   const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
   surface::ParticleShape spheroid;
   spheroid.shape = "spheroid", spheroid.semi_axes = Vec3(0.3, 0.3, 3);
-  const Net x = surface::initial_shape(space, mesh, spheroid);
+  const Net x = surface::resting_shape(space, mesh, spheroid);
   std::vector<int> all(space.n_points);
   std::iota(all.begin(), all.end(), 0);
   Net u = Net::Zero(space.n_points, 3), exact = u;

@@ -10,16 +10,16 @@ namespace {
 
 TEST(BezierPoints, BlocksHoldEveryElementOnceGroupedByDegree) {
   const CubeMesh cube(4);
-  const std::vector<Block> blocks = blocks_by_degree(cube.space);
-  ASSERT_EQ(blocks.size(), 2u);
-  EXPECT_EQ(blocks[0].degree, 3);
-  EXPECT_EQ(blocks[1].degree, 4);
-  EXPECT_EQ(blocks[1].elements.size(), 24u);  // three around each of the eight extraordinary points
+  const std::vector<DegreeGroup> groups = groups_by_degree(cube.space);
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[0].degree, 3);
+  EXPECT_EQ(groups[1].degree, 4);
+  EXPECT_EQ(groups[1].elements.size(), 24u);  // three around each of the eight extraordinary points
   std::vector<int> held(cube.space.elements.size(), 0);
-  for (const Block& block : blocks)
-    for (const int e : block.elements) {
+  for (const DegreeGroup& group : groups)
+    for (const int e : group.elements) {
       ++held[e];
-      EXPECT_EQ(block.degree, cube.space.elements[e].degree);
+      EXPECT_EQ(group.degree, cube.space.elements[e].degree);
     }
   for (const int times : held) EXPECT_EQ(times, 1);
 }

@@ -19,7 +19,7 @@ struct Shape {
   spline::TMesh mesh = spline::cube(3);
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
   BezierMap map{space};
-  Net sphere = initial_shape(space, mesh, {});
+  Net sphere = resting_shape(space, mesh, {});
 
   /// Returns an irregular ellipsoid about a centre.
   Net bumpy(std::mt19937& random, const Vec3& centre) const {

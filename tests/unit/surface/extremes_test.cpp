@@ -54,7 +54,7 @@ TEST(Extremes, OfACoarsePolarSphereAreInOrderInEveryPlane) {
   const spline::Space space = spline::space(mesh);
   ParticleShape shape;
   shape.radius = 1;
-  const Net sphere = initial_shape(space, mesh, 2, shape);
+  const Net sphere = resting_shape(space, mesh, 2, shape);
   const BezierMap map(space);
   std::vector<int> all(space.elements.size());
   std::iota(all.begin(), all.end(), 0);

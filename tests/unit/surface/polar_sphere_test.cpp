@@ -124,7 +124,7 @@ TEST(PolarShapes, StandWhereTheDeckPutsThem) {
     shape.semi_axes = Vec3(2, 1, 1);
     shape.orientation = Vec3(0, 0, 90);  // rotates the particle's x1 to x2
     shape.center = Vec3(1, 2, 3);
-    const Net net = initial_shape(space, mesh, 0, shape);
+    const Net net = resting_shape(space, mesh, 0, shape);
     const Deformation d = Geometry(space).deformation(net);
     EXPECT_NEAR(d.lengths[0], 2, 1e-3);
     EXPECT_NEAR(d.lengths[1], 4, 1e-3);
@@ -142,7 +142,7 @@ TEST(PolarShapes, RedCellHasTheVolumeOfItsOutline) {
     ParticleShape shape;
     shape.shape = "red cell";
     shape.radius = 1;
-    EXPECT_NEAR(volume(space, initial_shape(space, mesh, 2, shape)) / exact, 1, 2e-4);
+    EXPECT_NEAR(volume(space, resting_shape(space, mesh, 2, shape)) / exact, 1, 2e-4);
   }
 }
 

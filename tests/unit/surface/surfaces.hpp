@@ -14,11 +14,11 @@ struct CubeMesh {
 
   explicit CubeMesh(int n, spline::ExtraordinaryRule rule = spline::ExtraordinaryRule::g1)
       : mesh(spline::cube(n)), space(spline::space(mesh, rule)) {}
-  Net shape(const ParticleShape& shape) const { return initial_shape(space, mesh, shape); }
+  Net shape(const ParticleShape& shape) const { return resting_shape(space, mesh, shape); }
   Net sphere() const {
     ParticleShape shape;
     shape.radius = 1;
-    return initial_shape(space, mesh, shape);
+    return resting_shape(space, mesh, shape);
   }
   Net ellipsoid(const Vec3& semi_axes, const Vec3& orientation = Vec3::Zero(), const Vec3& center = Vec3::Zero()) const {
     ParticleShape shape;
@@ -26,7 +26,7 @@ struct CubeMesh {
     shape.semi_axes = semi_axes;
     shape.orientation = orientation;
     shape.center = center;
-    return initial_shape(space, mesh, shape);
+    return resting_shape(space, mesh, shape);
   }
   /// Returns an ellipsoid in general position with every control point moved at random: no symmetry, and all effects are large enough to be seen.
   Net crumpled(double amplitude, unsigned seed = 1) const {

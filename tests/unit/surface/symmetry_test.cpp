@@ -55,7 +55,7 @@ TEST(Symmetry, IsLostWhereOneElementIsCut) {
   const spline::Space space = spline::space(cut, spline::ExtraordinaryRule::g1);
   ParticleShape shape;
   shape.radius = 1;
-  EXPECT_LT(of(space, initial_shape(space, cut, shape)).order(), 8);
+  EXPECT_LT(of(space, resting_shape(space, cut, shape)).order(), 8);
 }
 
 TEST(Symmetry, IsKeptByCutsThatStandForTheirImages) {
@@ -65,13 +65,13 @@ TEST(Symmetry, IsKeptByCutsThatStandForTheirImages) {
   for (const Vec3& turned : {Vec3(0, 0, 0), Vec3(20, 35, 50)}) {
     shape.orientation = turned;
     const spline::Space space = spline::space(whole, spline::ExtraordinaryRule::catmull_clark);
-    const Symmetry found = of(space, initial_shape(space, whole, shape));
+    const Symmetry found = of(space, resting_shape(space, whole, shape));
     spline::RepairRules rules;
     for (const Image& image : found.images())
       rules.images.push_back(spline::lattice_map(whole, space, image.element, image.signs.prod() < 0).value());
     const spline::TMesh cut = spline::refine(whole, {{8, true, true}, {100, true, false}}, rules).mesh;
     const spline::Space finer = spline::space(cut, spline::ExtraordinaryRule::catmull_clark);
-    EXPECT_EQ(of(finer, initial_shape(finer, cut, shape)).description(), found.description());
+    EXPECT_EQ(of(finer, resting_shape(finer, cut, shape)).description(), found.description());
   }
 }
 

@@ -122,10 +122,10 @@ TEST(Capsule, VelocityFollowsAFlowThatChangesInTime) {
   const Net none = capsule.velocity(x);
   capsule.at(0, 0);
   EXPECT_LT((capsule.velocity(x) - one).norm(), 1e-13 * one.norm());
-  const long before = capsule.work().evaluations;
+  const long before = capsule.counts().evaluations;
   capsule.at(0, 0);
   capsule.velocity(x);
-  EXPECT_EQ(capsule.work().evaluations, before) << "the same flow, so nothing is evaluated again";
+  EXPECT_EQ(capsule.counts().evaluations, before) << "the same flow, so nothing is evaluated again";
   capsule.at(1.5, 0);
   EXPECT_LT((capsule.velocity(x) - none + 0.5 * (one - none)).norm(), 1e-13 * one.norm()) << "what the flow adds is linear in it";
 }

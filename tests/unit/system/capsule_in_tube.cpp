@@ -75,7 +75,7 @@ TEST(CapsuleInTube, EveryFormOfTheBlockSystemGivesTheVelocityOfTheSchurComplemen
     for (const char* form : {"block triangular", "block diagonal"}) {
       Confined blocks(ratio, form);
       EXPECT_LT((blocks.capsule->velocity(blocks.x) - v).norm(), 1e-8 * v.norm()) << form;  // residuals of 1e-11, condition numbers of 1e3
-      EXPECT_GT(blocks.capsule->work().velocity_iterations, 0);
+      EXPECT_GT(blocks.capsule->counts().velocity_iterations, 0);
     }
   }
 }
@@ -101,10 +101,10 @@ TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
     known.capsule->velocity(elsewhere);
     const Net v = known.capsule->velocity(known.x);
     EXPECT_EQ(known.capsule->velocity(known.x), v);
-    EXPECT_EQ(known.capsule->work().evaluations, 2);
+    EXPECT_EQ(known.capsule->counts().evaluations, 2);
     known.capsule->freeze(elsewhere);  // moves the tube's particle to the other shape
     const Tube::Response response = known.capsule->evaluate(known.x)->response();
-    EXPECT_EQ(known.capsule->work().evaluations, 2);
+    EXPECT_EQ(known.capsule->counts().evaluations, 2);
 
     EXPECT_EQ(fresh.capsule->velocity(fresh.x), v);
     const Net f = fresh.capsule->evaluate(fresh.x)->load();
@@ -119,24 +119,24 @@ TEST(CapsuleInTube, AVelocityNearTheAnswerSavesIterationsAndNothingElse) {
   Confined plain(4, "schur"), helped(4, "schur");
   const Net v = plain.capsule->velocity(plain.x), start = v + 1e-5 * Net::Random(v.rows(), 3);
   EXPECT_LT((helped.capsule->evaluate(helped.x, start)->velocity() - v).norm(), 1e-8 * v.norm());  // residuals of 1e-11, condition numbers of 1e3
-  EXPECT_LT(helped.capsule->work().velocity_iterations, plain.capsule->work().velocity_iterations);
+  EXPECT_LT(helped.capsule->counts().velocity_iterations, plain.capsule->counts().velocity_iterations);
 }
 
 TEST(CapsuleInTube, ARoughVelocityHasTheErrorAllowedAndIsNotTakenForAnExactOne) {
   Confined exact(4, "schur"), rough(4, "schur");
   const Net v = exact.capsule->velocity(exact.x);
-  int fewer = exact.capsule->work().velocity_iterations;
+  int fewer = exact.capsule->counts().velocity_iterations;
   for (const double error : {1e-6, 1e-4, 1e-2}) {
     Confined scene(4, "schur");
     EXPECT_LT(scene.capsule->norm(scene.capsule->evaluate(scene.x, {}, error)->velocity() - v), error);
-    EXPECT_LT(scene.capsule->work().velocity_iterations, fewer) << error;
-    fewer = scene.capsule->work().velocity_iterations;
+    EXPECT_LT(scene.capsule->counts().velocity_iterations, fewer) << error;
+    fewer = scene.capsule->counts().velocity_iterations;
   }
   rough.capsule->evaluate(rough.x, {}, 1e-3);
   EXPECT_LT((rough.capsule->velocity(rough.x) - v).norm(), 1e-8 * v.norm());  // residuals of 1e-11, condition numbers of 1e3
-  const long evaluations = rough.capsule->work().evaluations;
+  const long evaluations = rough.capsule->counts().evaluations;
   rough.capsule->evaluate(rough.x, {}, 1e-3);
-  EXPECT_EQ(rough.capsule->work().evaluations, evaluations);  // the exact velocity also serves as a rough one
+  EXPECT_EQ(rough.capsule->counts().evaluations, evaluations);  // the exact velocity also serves as a rough one
 }
 
 TEST(CapsuleInTube, TheJacobianHoldsTheAnswerOfTheWall) {

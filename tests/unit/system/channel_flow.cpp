@@ -90,7 +90,7 @@ struct InStraightChannel {
   InStraightChannel(double ratio, int around) {
     surface::ParticleShape shape;
     shape.radius = 0.5, shape.center = Vec3(0.2, 0.1, -0.05);
-    x = surface::initial_shape(space, mesh, shape);
+    x = surface::resting_shape(space, mesh, shape);
     f = Net(x.rows(), 3), v = f;
     for (Eigen::Index i = 0; i < f.rows(); ++i) {
       f.row(i) << 1 + x(i, 1) * x(i, 1), x(i, 0), std::sin(3 * x(i, 2));

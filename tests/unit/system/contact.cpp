@@ -35,7 +35,7 @@ TEST(Contact, WhatCannotBeHeldIsNotFinite) {
 TEST(Contact, ForcesAreEqualAndOppositeAndTurnNothing) {
   const spline::TMesh mesh = spline::cube(3);
   const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  const Net sphere = surface::initial_shape(space, mesh, {});
+  const Net sphere = surface::resting_shape(space, mesh, {});
   std::vector<Particle> particles(2);
   particles[0].space = particles[1].space = &space;
   place(particles);

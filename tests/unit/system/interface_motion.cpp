@@ -80,7 +80,7 @@ TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
   Drop drop;
   const spline::PolarMesh polar{8, 6, spline::PoleRule::plain};
   drop.space = spline::space(polar);
-  drop.sphere = surface::initial_shape(drop.space, polar, 2, {});
+  drop.sphere = surface::resting_shape(drop.space, polar, 2, {});
   drop.parameters.volume.constraint = "none";
   for (const char* motion : {"normal", "relaxed"}) {
     const Net v = drop.velocity(motion, drop.sphere);

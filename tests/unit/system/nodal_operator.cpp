@@ -16,7 +16,7 @@ namespace nodal_operator_test {
 struct Fixture {
   spline::TMesh mesh;
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  Net sphere = surface::initial_shape(space, mesh, {});
+  Net sphere = surface::resting_shape(space, mesh, {});
   Net x = sphere * Eigen::Vector3d(1.4, 0.9, 0.8).asDiagonal();
   stokes::SingleLayer layer{space, {}};
   std::vector<int> targets;

@@ -47,7 +47,7 @@ struct Bodies {
       spaces.push_back(spline::space(mesh, spline::ExtraordinaryRule::g1));
       surface::ParticleShape shape;
       shape.shape = "ellipsoid", shape.semi_axes = one.semi_axes, shape.center = one.centre;
-      nets.push_back(surface::initial_shape(spaces.back(), mesh, shape));
+      nets.push_back(surface::resting_shape(spaces.back(), mesh, shape));
     }
     for (const spline::Space& one : spaces) all.push_back(&one);
     space = spline::stacked(all);
@@ -155,7 +155,7 @@ TEST(RigidParticles, IterationsDoNotGrowAsAFilmThins) {
     pair.parameters.solvers.tolerance = 1e-8;
     Capsule system = pair.system();
     system.velocity(pair.rest);
-    iterations.push_back(system.work().most_velocity_iterations);
+    iterations.push_back(system.counts().most_velocity_iterations);
   }
   EXPECT_LE(iterations[0], 20);
   EXPECT_LE(iterations[1], 20);

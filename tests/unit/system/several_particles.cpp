@@ -36,7 +36,7 @@ struct Several {
     for (const Kind& kind : kinds) {
       const spline::TMesh mesh = spline::cube(kind.elements_per_side);
       spaces.push_back(spline::space(mesh, spline::ExtraordinaryRule::g1));
-      nets.push_back(surface::initial_shape(spaces.back(), mesh, {}));
+      nets.push_back(surface::resting_shape(spaces.back(), mesh, {}));
     }
     for (const spline::Space& one : spaces) all.push_back(&one);
     space = spline::stacked(all);

@@ -22,7 +22,7 @@ struct SingleEllipsoid {
 
   SingleEllipsoid(const Vec3& semi_axes, const Vec3& center) {
     shape.shape = "ellipsoid", shape.semi_axes = semi_axes, shape.center = center;
-    rest = surface::initial_shape(space, mesh, shape);
+    rest = surface::resting_shape(space, mesh, shape);
     quadrature::Options quadrature;
     quadrature.tolerance = 1e-7;
     tractions = std::make_unique<RigidTractions>(space, rest, shape.equivalent_radius(), viscosity, quadrature, SolverOptions(), ranks);

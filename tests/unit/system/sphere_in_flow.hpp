@@ -11,7 +11,7 @@ namespace tanktread::coupling {
 struct SphereInFlow {
   spline::TMesh mesh;
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  Net sphere = surface::initial_shape(space, mesh, {});
+  Net sphere = surface::resting_shape(space, mesh, {});
   stokes::FlowOptions flow;
   CapsuleParameters parameters;
   Ranks ranks;

@@ -24,7 +24,7 @@ using Keeps = std::function<bool(const surface::Image&)>;
 struct Surface {
   spline::TMesh mesh;
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  Net net = surface::initial_shape(space, mesh, ellipsoid());
+  Net net = surface::resting_shape(space, mesh, ellipsoid());
 
   explicit Surface(spline::TMesh m) : mesh(std::move(m)) {}
 

@@ -59,7 +59,7 @@ TEST(Symmetry, IsThatOfTheSameSceneInOtherUnits) {
     surface::ParticleShape shape;
     shape.radius = unit;
     shape.center = {0.01 * unit, 0, 0};  // off the stagnation point
-    f.sphere = surface::initial_shape(f.space, f.mesh, shape);
+    f.sphere = surface::resting_shape(f.space, f.mesh, shape);
     EXPECT_EQ(f.symmetry().description(), "mirror x2 and mirror x3") << unit;
   }
 }
@@ -69,7 +69,7 @@ TEST(Symmetry, OfAParticleOffTheMiddleOfAShearFlowIsTheMirrorPlaneAlone) {
   surface::ParticleShape shape;
   shape.radius = 1;
   shape.center = {0.3, 0.2, 0.4};  // the flow convects it along x1
-  f.sphere = surface::initial_shape(f.space, f.mesh, shape);
+  f.sphere = surface::resting_shape(f.space, f.mesh, shape);
   EXPECT_EQ(f.symmetry().description(), "mirror x2");
 }
 

@@ -35,7 +35,7 @@ struct Fixture {
   explicit Fixture(double ratio) {
     shape.radius = 0.5;
     shape.center = Vec3(0, 0.1, -0.05);
-    x = surface::initial_shape(space, mesh, shape);
+    x = surface::resting_shape(space, mesh, shape);
     f = Net(x.rows(), 3), v = f;
     for (Eigen::Index i = 0; i < f.rows(); ++i) {
       f.row(i) << x(i, 1) * x(i, 1), x(i, 0), std::sin(3 * x(i, 2));
@@ -122,7 +122,7 @@ TEST(Tube, ServesAnotherMeshOfTheParticle) {
   Fixture s(5);
   const spline::TMesh finer = spline::cube(4);
   const spline::Space space = spline::space(finer, spline::ExtraordinaryRule::g1);
-  const Net x = surface::initial_shape(space, finer, s.shape);
+  const Net x = surface::resting_shape(space, finer, s.shape);
   Tube other(*s.tube, space);
   other.set_reference(x);
   other.place(x);

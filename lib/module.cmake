@@ -1,11 +1,11 @@
-# room(FOLDER [USES room…] [EXTERNAL library…]): library tanktread_NAME from the files below lib/FOLDER, which may use just the rooms and libraries
-# named. NAME is FOLDER with _ for /.
+# module(FOLDER [USES module...] [EXTERNAL library...]): makes the library tanktread_NAME from the files in lib/FOLDER, which may include the
+# modules and libraries named. NAME is FOLDER with _ instead of /.
 #
-# Files *_kernel.cpp hold plain loops over arrays; there sums may be reordered and divisions turned into products. Where the program is built for
-# any processor of the family x86-64, each is compiled for several sets of instructions (base/kernel.hpp), with -fno-weak: what a header brings along,
-# inline or as a template, stays in the object, for the linker must not take a function with AVX-512 for that of another file.
-# NaN and infinity keep their meaning (-fno-finite-math-only): a run that goes wrong must still be noticed.
-# So do comparisons with them; what a kernel may not rely on is the last bit of a sum. With the checks of sanitizers between, -O3 takes ten times as long.
+# Files *_kernel.cpp contain plain loops over arrays, in which the compiler may reorder sums and replace divisions by products. If the program is
+# built for any x86-64 processor, each of these files is compiled for several instruction sets (base/kernel.hpp), with -fno-weak: inline functions
+# and templates of headers stay in the object file, because the linker must not use a function with AVX-512 instructions in place of another file's
+# function. NaN and infinity keep their meaning (-fno-finite-math-only), because a run that goes wrong must be noticed. Under the sanitizers -O3
+# takes ten times as long to compile.
 set(kernel_flags $<IF:$<CONFIG:Sanitized>,-O2,-O3> -ffast-math -fno-finite-math-only)
 set(instruction_sets)
 if(SEVERAL_INSTRUCTION_SETS)
@@ -16,7 +16,7 @@ elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   list(APPEND kernel_flags -mprefer-vector-width=512)
 endif()
 
-# What nearly every file reads first, compiled once: a third of the time to compile a file. Files still include what they use, which a build with
+# Precompiled headers, which nearly every file includes; they save a third of the compile time. Files still include what they use, as a build with
 # -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON shows.
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/headers.cpp CONTENT "")
 add_library(headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/headers.cpp)
@@ -26,16 +26,16 @@ set(common_headers <algorithm> <array> <cmath> <functional> <map> <memory> <opti
 set_property(GLOBAL PROPERTY common_headers ${common_headers})
 target_precompile_headers(headers PRIVATE ${common_headers})
 
-function(room folder)
+function(module folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "USES;EXTERNAL")
   string(REPLACE / _ name ${folder})
-  string(REPLACE / _ rooms "${arg_USES}")
+  string(REPLACE / _ modules "${arg_USES}")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
   get_property(folders GLOBAL PROPERTY folders)
-  foreach(other ${folders}) # rooms in subfolders stand above
+  foreach(other ${folders}) # modules in subfolders come first
     list(FILTER sources EXCLUDE REGEX "/lib/${other}/")
   endforeach()
-  list(TRANSFORM rooms PREPEND tanktread_)
+  list(TRANSFORM modules PREPEND tanktread_)
   set(externals ${arg_EXTERNAL})
   list(TRANSFORM externals PREPEND external_)
 
@@ -49,9 +49,9 @@ function(room folder)
     set(visibility INTERFACE)
   endif()
   target_include_directories(tanktread_${name} ${visibility} $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/tanktread>)
-  target_link_libraries(tanktread_${name} ${visibility} ${rooms} Eigen3::Eigen)
-  set_property(GLOBAL PROPERTY externals_of_${name} ${externals}) # for the room's unit tests
-  set_property(GLOBAL APPEND PROPERTY rooms ${name})
+  target_link_libraries(tanktread_${name} ${visibility} ${modules} Eigen3::Eigen)
+  set_property(GLOBAL PROPERTY externals_of_${name} ${externals}) # for the module's unit tests
+  set_property(GLOBAL APPEND PROPERTY modules ${name})
   set_property(GLOBAL APPEND PROPERTY folders ${folder})
 
   set(kernels ${sources})
@@ -63,7 +63,7 @@ function(room folder)
       target_compile_options(tanktread_${name}_${set} PRIVATE ${flags_of_${set}} -fno-weak -w) # the first compilation warns
       target_compile_definitions(tanktread_${name}_${set} PRIVATE INSTRUCTIONS=${set} ONE_OF_SEVERAL_INSTRUCTION_SETS)
       target_include_directories(tanktread_${name}_${set} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
-      target_link_libraries(tanktread_${name}_${set} PRIVATE ${rooms} ${externals} Eigen3::Eigen)
+      target_link_libraries(tanktread_${name}_${set} PRIVATE ${modules} ${externals} Eigen3::Eigen)
       target_sources(tanktread_${name} PRIVATE $<TARGET_OBJECTS:tanktread_${name}_${set}>)
     endforeach()
     if(instruction_sets)

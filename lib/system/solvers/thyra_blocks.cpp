@@ -1,4 +1,4 @@
-#include "system/solvers/block_system.hpp"
+#include "system/solvers/thyra_blocks.hpp"
 
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Thyra_DefaultProductVectorSpace.hpp>
