@@ -80,8 +80,8 @@ class SteadyRun {
     report_.iterations = found.iterations, report_.error = found.rest;
     write();
     if (!found.converged)
-      throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g; another Steady/step may help",
-                                 found.iterations, found.rest));
+      throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g; another Steady/step or Steady/method "
+                                 "`newton-krylov` may help", found.iterations, found.rest));
   }
 
   /// Finds the steady shape of the system `of` by approach_steady(), after the search from `start` has failed with the report `failed` and the best
