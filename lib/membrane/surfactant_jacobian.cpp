@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t most_gauss_points = 144, functions_of_element = 64;  // per element
 constexpr double shift_ratio = 1.25;                           // ratio of neighbouring values of the shift for which solve() computes factors
 
-/// Returns the power of shift_ratio that is nearest to `spread`, the shift times the diffusivity divided by the area of the interface. Factors
+/// Returns the power of shift_ratio that is nearest to `spread`, the shift times the diffusivity divided by the initial area. Factors
 /// computed for this power serve all shifts close to it. The result depends neither on earlier shifts nor on units.
 double rounded(double spread) { return std::pow(shift_ratio, std::round(std::log(spread) / std::log(shift_ratio))); }
 
@@ -159,7 +159,7 @@ Eigen::SparseMatrix<double> Surfactant::stiffness() const {
 /// the coefficients of the contents M c.
 Eigen::VectorXd Surfactant::solve(double shift, const Eigen::VectorXd& r) const {
   if (diffusivity_ == 0 || frozen_mass_.rows() != r.size()) return r;
-  const double area = frozen_mass_.sum();
+  const double area = share_.sum();  // of the initial surface
   if (const double close = area * rounded(shift * diffusivity_ / area); !factors_ || factored_spread_ != close) {
     factors_ = std::make_unique<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(frozen_mass_ + close * frozen_stiffness_);
     factored_spread_ = close;
