@@ -141,7 +141,7 @@ def compare(scenes, tolerance, pairs=pairs):
     largest, count = {}, 0
     for scene in scenes:
         for kind, apart in pairs(scene):
-            check(apart <= tolerance, f"{scene.kind}, viscosity ratio {scene.ratio}, {scene.flow}, {kind}: {apart:.2e}")
+            check(apart <= (tolerance(scene, kind) if callable(tolerance) else tolerance), f"{scene.kind}, viscosity ratio {scene.ratio}, {scene.flow}, {kind}: {apart:.2e}")
             largest[kind] = max(largest.get(kind, 0), apart)
             count += 1
     print(f"{count} pairs; largest difference of a kind: " + ", ".join(f"{kind} {value:.0e}" for kind, value in largest.items()))

@@ -9,7 +9,6 @@ DROPS = ["material", "normal", "relaxed"]
 SCENES = [*(Scene(kind, ratio, flow) for flow in ("linear", "quiescent", "duct") for kind in ("capsule", *DROPS) for ratio in (1.0, 3.0)),
           Scene("free"), Scene("free", 1.0, "duct")]
 
-# The filtered error that is subtracted at the end of a step is solved for to the linear tolerance, with an operator of rounded numbers.
 IMPLICIT = FIXED.replace("bs3", "tr-bdf2, newton tolerance: 1.0e-9, newton iterations: 40, linear tolerance: 1.0e-10")
 
 
@@ -18,7 +17,13 @@ def fixed_steps_of_an_explicit_scheme():
 
 
 def fixed_steps_of_an_implicit_scheme():
-    compare([scene.but(steps=IMPLICIT) for scene in SCENES], 1e-10)
+    """The filtered error that is subtracted at the end of a step, up to 1e-3 here, is solved for with a stored operator. For viscosity ratios other
+    than 1 and in tubes its numbers are rounded to 2^-9, in another way if the scene is turned, moved or in other units."""
+    def tolerance(scene, kind):
+        rounded = scene.kind != "free" and (scene.ratio != 1 or scene.flow == "duct")
+        return 1e-6 if rounded and kind in ("units", "turned", "moved") else 1e-10
+
+    compare([scene.but(steps=IMPLICIT) for scene in SCENES], tolerance)
 
 
 def controlled_steps():
