@@ -383,7 +383,7 @@ class SteadyRun {
   motion::StepReport report_;
   RunTotals totals_;
   int earlier_coarsenings_ = 0;  // coarsenings up to the last recorded point of a branch
-  coupling::OperationCounts counts_;         // operation counts of systems that were deleted
+  coupling::OperationCounts counts_;  // operation counts of systems that were deleted
   stokes::Evaluations kernel_;  // kernel evaluations of systems that were deleted
   std::optional<motion::ReturnMap> returns_;
   SteadyRow found_;

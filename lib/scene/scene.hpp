@@ -1,6 +1,7 @@
 #pragma once
 // All options of a run, as read from its deck.
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>

@@ -115,9 +115,7 @@ class Deforming : public ParticleSystem {
       hold_centre(capsule_->flow(), capsule_->geometry(), members_.front().scene.particle.shape.center, own);
       fields_->put_back(own, state);
     }
-    const auto due = [&](const Member& member) {
-      return member.scene.adaptation.enabled && totals.step % member.scene.adaptation.interval == 0;
-    };
+    const auto due = [&](const Member& member) { return member.scene.adaptation.enabled && totals.step % member.scene.adaptation.interval == 0; };
     if (std::ranges::none_of(members_, due)) return false;
     const auto clock = phases_.time("adaptation");
     fields_->set_state(state.x);
@@ -164,15 +162,15 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    // Solves again if the velocity is inaccurate and tractions on walls follow from it, or if the load of deformable particles beside bodies does
-    const auto n_rigid = std::ranges::count_if(members_, [](const Member& member) { return member.scene.particle.rigid(); });
-    const bool mixed = n_rigid > 0 && n_rigid < std::ssize(members_);
-    if (mixed || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
+    // Solves again if tractions on walls need a more accurate velocity. Beside rigid bodies, the loads of deformable particles need a solution here.
+    const coupling::RigidParticles bodies = capsule_->rigid_at(state.x);
+    const bool deforms = std::ranges::any_of(members_, [](const Member& member) { return !member.scene.particle.rigid(); });
+    if ((deforms && !bodies.empty()) || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.counts = capsule_->counts();
     std::vector<Columns> columns(members_.size());
     std::vector<std::unique_ptr<ParticleRow>> rows;
-    for (std::size_t p = 0; p < members_.size(); ++p) rows.push_back(particle_row(p, *here, state, whole_state.x, columns[p]));
+    for (std::size_t p = 0; p < members_.size(); ++p) rows.push_back(particle_row(p, *here, bodies, state, whole_state.x, columns[p]));
     add_treading(state.x, v, rows);
     const std::vector<RecordedParticle> recorded = recorded_particles(members_, state.x, v);
     Together whole;
@@ -266,9 +264,10 @@ class Deforming : public ParticleSystem {
   double accuracy() const { return scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate()); }
 
   /// Returns the data of particle p for a row, except what add_treading() sets. Adds the columns of the particle's surface fields to `to`.
-  std::unique_ptr<ParticleRow> particle_row(std::size_t p, coupling::Evaluation& here, const motion::State& state, const Net& y, Columns& to) {
+  std::unique_ptr<ParticleRow> particle_row(std::size_t p, coupling::Evaluation& here, const coupling::RigidParticles& bodies,
+                                            const motion::State& state, const Net& y, Columns& to) {
     const Member& member = members_[p];
-    if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, here));
+    if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, here, bodies));
     const Net x = member.own(state.x), slope = member.own(state.history.front());
     DeformingRow now = deforming_row(member.scene, *member.body, geometry(member), membrane(member), x, slope, ranks_);
     now.volume_error = capsule_->volume_error(now.measures.volume, p);
@@ -309,11 +308,11 @@ class Deforming : public ParticleSystem {
     now.phase = member.phase_angle.degrees;
   }
 
-  RigidRow rigid_row(std::size_t p, coupling::Evaluation& here) {
+  RigidRow rigid_row(std::size_t p, coupling::Evaluation& here, const coupling::RigidParticles& bodies) {
     const Member& member = members_[p];
     const coupling::RigidParticles& rigid = here.rigid();
     RigidRow now = tanktread::rigid_row(member.scene, *member.body, capsule_->flow(), geometry(member), member.own(here.x()),
-                                        rigid.motion(p), Eigen::Quaterniond(capsule_->rigid_at(here.x()).turn(p)), here.stresslet(p), ranks_);
+                                        rigid.motion(p), Eigen::Quaterniond(bodies.turn(p)), here.stresslet(p), ranks_);
     now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
     return now;
   }
@@ -382,7 +381,7 @@ class Deforming : public ParticleSystem {
   std::unique_ptr<SurfaceFields> fields_;
   motion::State pictured_;  // state of the latest snapshot; the function that computes the snapshot's fields refers to it
   std::optional<coupling::PowerBalance> power_;  // constructed at the first use
-  coupling::OperationCounts counts_;                     // work (solves, iterations) of the systems on earlier meshes
+  coupling::OperationCounts counts_;  // work (solves, iterations) of the systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // number of kernel evaluations on earlier meshes
   std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // particles whose mesh the latest step changed, and their previous bodies
   std::optional<coupling::RigidParticles> placed_;  // positions of rigid particles, stored before their meshes change

@@ -21,7 +21,7 @@ using Sites = std::vector<std::vector<spline::Site>>;
 /// A pair of a site and one of the panels that contain the site.
 struct SelfPair {
   int panel = 0;
-  quadrature::MetricBin bin;         ///< metric of the panel at the site, rounded to a bin; the rule was constructed for this bin
+  quadrature::MetricBin bin;       ///< metric of the panel at the site, rounded to a bin; the rule was constructed for this bin
   quadrature::PolarOrders orders;  ///< higher orders of the rule if the panel is distorted, otherwise 0. If only the angular orders are 0, the rule
                                    ///< is a tensor Gauss rule of the radial order
   const PointTable* table = nullptr;

@@ -9,13 +9,8 @@ namespace tanktread::coupling {
 FrozenLayers::FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout,
                            const Targets& targets, const membrane::MassMatrix& mass, ParticleLayers& layers)
     : unstressed_(unstressed), parameters_(parameters), layout_(layout), targets_(targets), mass_(mass), layers_(layers) {
-  using stokes::Layer;
   nodal_.share(layout.ranks().rank(), layout.ranks().size(), parameters.symmetry.fundamental());
-  if (!targets.projection()) return;
-  site_single_.emplace(Layer::Kernel::single_layer, space, space.collocation, parameters.quadrature);
-  site_single_->set_reference(unstressed);
-  if (layers.has_double())
-    site_double_.emplace(Layer::Kernel::double_layer, space, space.collocation, parameters.quadrature, viscosity_contrasts(parameters.particles));
+  if (targets.projection()) at_sites_.emplace(space, space.collocation, unstressed, parameters.particles, parameters.quadrature, parameters.wall);
 }
 
 void FrozenLayers::assemble(const Net& at, const Net& x) {
@@ -23,7 +18,7 @@ void FrozenLayers::assemble(const Net& at, const Net& x) {
   corotation_ = {};
   const std::vector<int>& own = layout_.points();
   const int n = static_cast<int>(x.rows());
-  stokes::Layer& single = site_single_ ? *site_single_ : layers_.single_layer();
+  stokes::Layer& single = at_sites_ ? at_sites_->single_layer : layers_.single_layer();
   const auto assemble = [&](std::span<const int> targets, auto&&... of) { single.assemble(targets, of...); };
   single.place(x, stokes::Measure::reference);
   if (nodal()) {
@@ -34,7 +29,7 @@ void FrozenLayers::assemble(const Net& at, const Net& x) {
     single_.assemble(own, n, assemble);
   }
   if (!has_double()) return;
-  stokes::Layer& layer = site_double_ ? *site_double_ : *layers_.double_layer();
+  stokes::Layer& layer = at_sites_ ? *at_sites_->double_layer : *layers_.double_layer();
   layer.place(x);
   double_.assemble(own, n, [&](std::span<const int> targets, stokes::Rows<float>& rows) { layer.assemble(targets, rows); });
 }
@@ -67,11 +62,6 @@ double FrozenLayers::bytes() const {
   return FrozenOperator::bytes_a_pair * ((nodal() ? 0 : 1) + has_double()) * pairs;
 }
 
-stokes::Evaluations FrozenLayers::evaluations() const {
-  stokes::Evaluations sum;
-  for (const auto* layer : {&site_single_, &site_double_})
-    if (*layer) sum += (*layer)->evaluations();
-  return sum;
-}
+stokes::Evaluations FrozenLayers::evaluations() const { return at_sites_ ? at_sites_->evaluations() : stokes::Evaluations(); }
 
 }  // namespace tanktread::coupling

@@ -45,8 +45,8 @@ class FrozenLayers {
   const Targets& targets_;
   const membrane::MassMatrix& mass_;
   ParticleLayers& layers_;
-  std::optional<stokes::Layer> site_single_, site_double_;  // layers at the collocation sites; not set if the targets are these sites
-  NodalOperator nodal_;                                     // single layer A; the option `frozen_operator` selects either nodal_ or single_
+  std::optional<LayerPair> at_sites_;  // layers at the collocation sites; not set if the targets are these sites
+  NodalOperator nodal_;                // single layer A; the option `frozen_operator` selects either nodal_ or single_
   FrozenOperator single_, double_;
   Net at_;                 // shape at which the layers were assembled
   Corotation corotation_;  // rotations of the particles from `at_` to the shape passed to turn_to()
