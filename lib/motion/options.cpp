@@ -54,7 +54,7 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("newton iterations", newton_iterations, deck::at_least(1), "1",
               "largest number of quasi-Newton iterations in a stage of an implicit time step; if more are needed, the step is halved");
   section.key("linear tolerance", linear_tolerance, deck::between(1e-14, 0.5), "1",
-              "relative residual of the linear systems in implicit time steps; smaller by 30/lambda for viscosity ratios lambda from 30 to 2e4");
+              "relative residual of the linear systems in implicit time steps; smaller by 10/lambda for viscosity ratios lambda from 10 to 2e4");
   section.key("contraction limit", contraction_limit, deck::between(0.01, 1.0), "1",
               "convergence factor of the quasi-Newton iteration in implicit time steps (size of a correction divided by the previous one) "
               "above which the boundary-integral operator in the Jacobian, which is kept over several steps, is assembled again");

@@ -167,7 +167,7 @@ Net CapsuleJacobian::solve(double shift, const Net& rhs, double tolerance, const
 /// at all: with lambda = 100, a capsule in shear took 144 steps instead of 12. Above lambda = 2e4, a smaller residual does not help, because the
 /// stored operator (FrozenOperator) is rounded to 2^-9.
 double CapsuleJacobian::weight_of_rotation() const {
-  constexpr double least = 30, most = 2e4;
+  constexpr double least = 10, most = 2e4;
   double ratio = 1;
   for (const Particle& particle : parameters_.particles)
     if (!particle.rigid && !interface_) ratio = std::max(ratio, particle.viscosity_ratio);

@@ -49,8 +49,8 @@ class CapsuleJacobian {
   void prepare_step(double shift);  ///< prepares step_preconditioner() for implicit steps with this shift gamma dt
   Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the matrix of `solve`
 
-  /// Solves the linear system of an implicit step to the relative residual `tolerance`, and counts the solve. With viscosity ratios lambda from 30 to
-  /// 2e4, the residual is smaller by 30/lambda. `rhs` may have any number of rows.
+  /// Solves the linear system of an implicit step to the relative residual `tolerance`, and counts the solve. With viscosity ratios lambda from 10 to
+  /// 2e4, the residual is smaller by 10/lambda. `rhs` may have any number of rows.
   Net solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
 
   /// Solves the system of an implicit step for the displacement delta, with the secant correction E (4.13) of J. If all control points move with the
