@@ -19,8 +19,9 @@ namespace {
 /// not requested, add to a spare row.
 template <class Real>
 struct FarBasis {
-  std::vector<int> panels, index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1 if it
-                                   ///< has no stored values
+  std::vector<int> panels,
+      index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1 if it
+              ///< has no stored values
   std::vector<Real> values;
   std::vector<int> rows;
   std::vector<std::size_t> first_value, first_row;
@@ -38,7 +39,8 @@ struct FarBasis {
     first_value.push_back(values.size());
     first_row.push_back(rows.size());
     values.resize(values.size() + static_cast<std::size_t>(padded) * t.n_nodes, Real(0));
-    for (int a = 0; a < m; ++a)  // plain loops instead of a matrix product, because their order of summation does not depend on memory alignment
+    for (int a = 0; a < m;
+         ++a)  // plain loops instead of a matrix product, because their order of summation does not depend on memory alignment
       for (int b = 0; b < t.n_bernstein; ++b) {
         const Real share = static_cast<Real>(all.extraction(e)[t.n_bernstein * a + b]);
         const double* from = &t.value[static_cast<std::size_t>(t.n_nodes) * b];
@@ -99,23 +101,24 @@ template <class Real>
 class Layer::RowSums {
  public:
   /// `at`: positions of targets off the surfaces, one row per target; if null, the targets are sites.
-  RowSums(Layer& layer, const Net* at) : layer_(layer), at_(at) {}
+  RowSums(Layer& layer, const Net* at) : layer_(layer), sources_(layer.sources_), at_(at) {}
 
   FarBasis<Real> basis;
-  std::vector<Real> sums;  ///< sums[m (6 row + c) + l], with m = assembly_block: integral of kernel entry c (11, 12, 13, 22, 23, 33) times the basis
-                           ///< function of control point `row`, at target l
+  std::vector<Real>
+      sums;  ///< sums[m (6 row + c) + l], with m = assembly_block: integral of kernel entry c (11, 12, 13, 22, 23, 33) times the basis
+             ///< function of control point `row`, at target l
 
   void add(std::span<const int> targets, int rows) {
     sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
     skip_.assign(basis.panels.size(), 0u);
-    const bool repeats = layer_.lattice_.how.assembled;
-    const std::vector<Vec3> itself{Vec3::Zero()}, &close = repeats ? layer_.lattice_.near : itself;
-    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], close, l);
-    for (const Vec3& image : repeats ? layer_.lattice_.sum->images() : itself) {
+    const LayerMedium& medium = *layer_.medium_;
+    const std::vector<Vec3> itself{Vec3::Zero()};
+    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], images() ? medium.near_images() : itself, l);
+    for (const Vec3& image : images() ? medium.far_images() : itself) {
       double place[3 * assembly_block];
       for (int l = 0; l < assembly_block; ++l) {
         const Vec3 x0 = place_of(targets[std::min<std::size_t>(l, targets.size() - 1)]);
-        const Vec3 seen = repeats ? Vec3(layer_.lattice_.sum->wrapped(x0) - image) : x0;
+        const Vec3 seen = images() ? Vec3(medium.wrapped(x0) - image) : x0;
         for (int c = 0; c < 3; ++c) place[assembly_block * c + l] = seen[c];
       }
       for (std::size_t k = 0; k < basis.panels.size(); ++k) add_far_panel(k, place, static_cast<int>(targets.size()));
@@ -123,50 +126,53 @@ class Layer::RowSums {
   }
 
  private:
-  Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : layer_.surface_.site(target); }
+  Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : sources_.surface.site(target); }
+  bool images() const { return layer_.medium_->rows_include_images(); }
 
   /// Adds the corrections by near-singular and singular quadrature for one target. `images`: displacements of the panels; a displaced panel is
   /// corrected if it is close to the target. On a lattice, the far sum that is corrected contains the nodes of displaced panels. l: index of the
   /// target in its block of sixteen.
   void add_close_panels(int target, const std::vector<Vec3>& images, int l) {
-    LayerSurface& surface = layer_.surface_;
+    LayerSurface& surface = sources_.surface;
     for (const Vec3& image : images) {
       const Vec3 x0 = place_of(target) - image;
       const std::span<SelfPair> own = !at_ && image.isZero(0) ? surface.own(target) : std::span<SelfPair>();
       for (const int e : surface.near(x0, own))
         if (basis.index[e] >= 0) add_panel(e, surface.near_field.rule(e, x0, own), nullptr, x0, l);
       for (SelfPair& pair : own)
-        if (basis.index[pair.panel] >= 0) add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
+        if (basis.index[pair.panel] >= 0)
+          add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
     }
   }
 
   void add_panel(int e, const PointTable& table, SelfPair* pair, const Vec3& x0, int l) {
-    const Panels& panels = layer_.surface_.panels;
+    const Panels& panels = sources_.surface.panels;
     const auto k = static_cast<std::size_t>(basis.index[e]);
     moments_.resize(static_cast<std::size_t>(6) * panels[e].table->n_bernstein);
-    if (layer_.lattice_.how.assembled) {
-      layer_.moments_beyond_far_sum(e, table, pair, x0, moments_.data());
+    if (images()) {
+      sources_.moments_beyond_far_sum(e, table, pair, x0, moments_.data());
     } else {
       skip_[k] |= 1u << l;
-      layer_.panel_moments(e, table, pair, x0, moments_.data());
+      sources_.panel_moments(e, table, pair, x0, moments_.data());
     }
     add_moments(panels, e, &basis.rows[basis.first_row[k]], moments_.data(), &sums[l]);
-    (pair ? layer_.evaluations_.self : layer_.evaluations_.near) += table.points;
+    (pair ? sources_.evaluations.self : sources_.evaluations.near) += table.points;
   }
 
   void add_far_panel(std::size_t k, const double* place, int n_targets) {
-    const int first = layer_.surface_.panels[basis.panels[k]].first_node;
-    PanelNodes<Real> nodes = basis.nodes(layer_.surface_, layer_.lattice_.how.assembled ? layer_.far_places() : layer_.surface_.node, k);
-    if (layer_.single())
-      nodes.weight = &layer_.weight_[first];
+    const int first = sources_.surface.panels[basis.panels[k]].first_node;
+    PanelNodes<Real> nodes = basis.nodes(sources_.surface, images() ? layer_.medium_->nodes(sources_) : sources_.surface.node, k);
+    if (sources_.single())
+      nodes.weight = &sources_.weight[first];
     else
-      for (int c = 0; c < 3; ++c) nodes.normal[c] = &layer_.normal_[c][first];
+      for (int c = 0; c < 3; ++c) nodes.normal[c] = &sources_.normal[c][first];
     kernel_.resize(static_cast<std::size_t>(6) * assembly_block * nodes.n_nodes);
     far_moments(nodes, place, skip_[k], kernel_.data(), sums.data());
-    layer_.evaluations_.far += static_cast<long long>(n_targets) * nodes.n_nodes;
+    sources_.evaluations.far += static_cast<long long>(n_targets) * nodes.n_nodes;
   }
 
-  Layer& layer_;
+  const Layer& layer_;
+  LayerSources& sources_;
   const Net* at_;
   std::vector<Real> kernel_;
   std::vector<double> moments_;
@@ -179,34 +185,56 @@ class Layer::RowSums {
 template <class Real>
 void Layer::subtract_density_at_site(int site, Real* sums) const {
   double total[6] = {};
-  for (int p = 0; p < surface_.n_points; ++p)
+  for (int p = 0; p < sources_.surface.n_points; ++p)
     for (int c = 0; c < 6; ++c) total[c] += sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(p) + c)];
-  const auto [panel, basis] = surface_.self_field.basis(site, surface_.panels);
+  const auto [panel, basis] = sources_.surface.self_field.basis(site, sources_.surface.panels);
   for (int b = 0; b < basis.size(); ++b)
     for (int c = 0; c < 6; ++c)
-      sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(surface_.panels.points(panel)[b]) + c)] -= static_cast<Real>(basis[b] * total[c]);
+      sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(sources_.surface.panels.points(panel)[b]) + c)] -=
+          static_cast<Real>(basis[b] * total[c]);
+}
+
+/// Adds the terms of the medium other than displaced images to the matrix rows `a` of the targets. For a double layer at sites, this includes the
+/// term of (2.2) that subtracts the density at the site.
+template <class Real>
+void Layer::add_medium_rows(std::span<const int> targets, const Net* at, Rows<Real>& a) {
+  const LayerSurface& surface = sources_.surface;
+  std::vector<Mat3> block;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    block.assign(static_cast<std::size_t>(surface.n_points), Mat3::Zero());
+    if (!medium_->add_row(sources_, at ? Vec3(at->row(targets[k]).transpose()) : surface.site(targets[k]), block)) return;
+    if (!single() && !at) {
+      Mat3 total = Mat3::Zero();
+      for (const Mat3& of_point : block) total += of_point;
+      const auto [panel, basis] = surface.self_field.basis(targets[k], surface.panels);
+      for (int b = 0; b < basis.size(); ++b) block[static_cast<std::size_t>(surface.panels.points(panel)[b])] -= basis[b] * total;
+    }
+    for (std::size_t p = 0; p < block.size(); ++p)
+      a.template block<3, 3>(3 * static_cast<Eigen::Index>(k), 3 * static_cast<Eigen::Index>(p)) +=
+          (over_8_pi * block[p]).template cast<Real>();
+  }
 }
 
 template <class Real>
 void Layer::assemble_rows(std::span<const int> targets, const Net* at, Rows<Real>& a) {
-  const auto clock = phases_.time("assembly");
+  const auto clock = sources_.phases.time("assembly");
   constexpr std::size_t block = assembly_block;
-  const Panels& panels = surface_.panels;
+  const Panels& panels = sources_.surface.panels;
   RowSums<Real> rows(*this, at);
-  const std::vector<int> row_of_point = indices(surface_.n_points);
+  const std::vector<int> row_of_point = indices(sources_.surface.n_points);
   rows.basis.clear(panels);
-  for (int e = 0; e < panels.size(); ++e) rows.basis.add(panels, e, row_of_point, surface_.n_points);
-  a.resize(3 * static_cast<Eigen::Index>(targets.size()), 3 * surface_.n_points);
+  for (int e = 0; e < panels.size(); ++e) rows.basis.add(panels, e, row_of_point, sources_.surface.n_points);
+  a.resize(3 * static_cast<Eigen::Index>(targets.size()), 3 * sources_.surface.n_points);
   for (std::size_t first = 0; first < targets.size(); first += block) {
     const std::span<const int> some = targets.subspan(first, std::min(block, targets.size() - first));
-    rows.add(some, surface_.n_points);
+    rows.add(some, sources_.surface.n_points);
     for (std::size_t l = 0; l < some.size(); ++l) {
       if (!single() && !at) subtract_density_at_site(some[l], &rows.sums[l]);
-      write_rows(3 * static_cast<int>(first + l), surface_.n_points, &rows.sums[l], a);
+      write_rows(3 * static_cast<int>(first + l), sources_.surface.n_points, &rows.sums[l], a);
     }
   }
-  if (images_) add_image_rows(targets, at, a);
-  if (single() && surface_.options.rule == "desingularised") subtract_identities(targets, a);
+  add_medium_rows(targets, at, a);
+  if (sources_.desingularised()) subtract_identities(targets, a);
 }
 
 void Layer::assemble(std::span<const int> sites, Rows<float>& a) { assemble_rows(sites, nullptr, a); }
@@ -215,35 +243,17 @@ void Layer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a
 void Layer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a) { assemble_rows(targets, &at, a); }
 
 void Layer::assemble_rest(std::span<const int> sites, Rows<double>& a) {
-  assert(single() && lattice_.cell);
-  const auto clock = phases_.time("assembly");
-  std::vector<Vec3> at, nodes;
-  for (const int i : sites) at.push_back(lattice_.sum->wrapped(surface_.site(i)));
-  for (std::size_t k = 0; k < lattice_.node[0].size(); ++k) nodes.emplace_back(lattice_.node[0][k], lattice_.node[1][k], lattice_.node[2][k]);
-  const Eigen::MatrixXd to = lattice_.sum->lagrange(at);
-  Eigen::MatrixXd from = lattice_.sum->lagrange(nodes), basis(from.cols(), surface_.n_points);  // integrals of L_a N_B over the surface, with the
-                                                                                                // Lagrange polynomials L_a
-  for (Eigen::Index a = 0; a < from.cols(); ++a) {
-    from.col(a).array() *= Eigen::Map<const Eigen::ArrayXd>(weight_.data(), n_nodes());
-    basis.row(a) = moments({from.col(a).data(), from.col(a).data() + from.rows()}).transpose();
-  }
-  for (int c = 0; c < 6; ++c) {
-    const auto [i, j] = upper[c];
-    const Eigen::MatrixXd part = over_8_pi * (to * (lattice_.sum->between_nodes(c) * basis));
-    for (Eigen::Index k = 0; k < part.rows(); ++k)
-      for (Eigen::Index b = 0; b < part.cols(); ++b) {
-        a(3 * k + i, 3 * b + j) += part(k, b);
-        if (i != j) a(3 * k + j, 3 * b + i) += part(k, b);
-      }
-  }
+  assert(single());
+  const auto clock = sources_.phases.time("assembly");
+  medium_->add_remainder(sources_, sites, a);
 }
 
 void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) {
   assert(single());
-  const auto clock = phases_.time("assembly");
+  const auto clock = sources_.phases.time("assembly");
   constexpr std::size_t block = assembly_block;
-  const Panels& panels = surface_.panels;
-  std::vector<std::vector<int>> panels_of(static_cast<std::size_t>(surface_.n_points));
+  const Panels& panels = sources_.surface.panels;
+  std::vector<std::vector<int>> panels_of(static_cast<std::size_t>(sources_.surface.n_points));
   for (int e = 0; e < panels.size(); ++e)
     for (int a = 0; a < panels[e].functions; ++a) panels_of[panels.points(e)[a]].push_back(e);
   RowSums<double> rows(*this, nullptr);
@@ -255,7 +265,7 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
                             near.point.begin() + static_cast<std::ptrdiff_t>(near.first[first + some.size()]));
     sort_and_drop_repeated(wanted);
     const int spare = static_cast<int>(wanted.size());
-    row_of_point.assign(static_cast<std::size_t>(surface_.n_points), spare);
+    row_of_point.assign(static_cast<std::size_t>(sources_.surface.n_points), spare);
     for (int k = 0; k < spare; ++k) row_of_point[wanted[k]] = k;
     std::vector<int> carriers;
     for (const int point : wanted) carriers.insert(carriers.end(), panels_of[point].begin(), panels_of[point].end());
@@ -268,7 +278,7 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
         for (std::size_t c = 0; c < 6; ++c)
           entries[6 * j + c] = over_8_pi * rows.sums[block * (6 * static_cast<std::size_t>(row_of_point[near.point[j]]) + c) + l];
   }
-  if (surface_.options.rule == "desingularised") subtract_identities(sites, near, entries);
+  if (sources_.desingularised()) subtract_identities(sites, near, entries);
 }
 
 /// Returns the correction matrix M of the quadrature rule `desingularised` for the collocation site x_i: u_i = sum_q w G f - M f(x_i). With
@@ -278,39 +288,40 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
 /// area, M is scaled to this area.
 Mat3 Layer::identities(int site) const {
   const auto normal_of = [&](const std::vector<double>& bezier) -> Vec3 {
-    const auto [a1, a2] = surface_.self_field.tangents(site, surface_.panels, bezier);
+    const auto [a1, a2] = sources_.surface.self_field.tangents(site, sources_.surface.panels, bezier);
     return a1.cross(a2);
   };
-  const Vec3 at = surface_.site(site), a = normal_of(surface_.bezier), n0 = a.normalized();
-  const auto& node = surface_.node;
-  const IdentitySums s = identity_sums(n_nodes(), node[0].data(), node[1].data(), node[2].data(), normal_[0].data(), normal_[1].data(),
-                                       normal_[2].data(), at.data(), n0.data());
+  const Vec3 at = sources_.surface.site(site), a = normal_of(sources_.surface.bezier), n0 = a.normalized();
+  const auto& node = sources_.surface.node;
+  const IdentitySums s = identity_sums(n_nodes(), node[0].data(), node[1].data(), node[2].data(), sources_.normal[0].data(),
+                                       sources_.normal[1].data(), sources_.normal[2].data(), at.data(), n0.data());
   const Mat3 tangential = Mat3::Identity() - n0 * n0.transpose();
   const Mat3 m = Vec3(s.pressure) * n0.transpose() + Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.shear) * tangential;
-  const bool unstressed = on_reference(surface_.self_field.basis(site, surface_.panels).first);
-  return unstressed ? Mat3(m * (normal_of(reference_.bezier).norm() / a.norm())) : m;
+  const bool unstressed = sources_.on_reference(sources_.surface.self_field.basis(site, sources_.surface.panels).first);
+  return unstressed ? Mat3(m * (normal_of(sources_.reference_bezier()).norm() / a.norm())) : m;
 }
 
 void Layer::subtract_identities(std::span<const int> sites, Net& u) {
-  for (const int i : sites) u.row(i) -= (identities(i) * surface_.value(i, bezier_f_)).transpose();
-  evaluations_.self += static_cast<long long>(sites.size()) * n_nodes();
+  for (const int i : sites) u.row(i) -= (identities(i) * sources_.surface.value(i, sources_.bezier_f)).transpose();
+  sources_.evaluations.self += static_cast<long long>(sites.size()) * n_nodes();
 }
 
 template <class Real>
 void Layer::subtract_identities(std::span<const int> sites, Rows<Real>& a) const {
   for (std::size_t k = 0; k < sites.size(); ++k) {
     const Mat3 m = over_8_pi * identities(sites[k]);
-    const auto [panel, basis] = surface_.self_field.basis(sites[k], surface_.panels);
+    const auto [panel, basis] = sources_.surface.self_field.basis(sites[k], sources_.surface.panels);
     for (int b = 0; b < basis.size(); ++b)
-      a.template block<3, 3>(3 * static_cast<Eigen::Index>(k), 3 * surface_.panels.points(panel)[b]) -= (basis[b] * m).template cast<Real>();
+      a.template block<3, 3>(3 * static_cast<Eigen::Index>(k), 3 * sources_.surface.panels.points(panel)[b]) -=
+          (basis[b] * m).template cast<Real>();
   }
 }
 
 void Layer::subtract_identities(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) const {
   for (std::size_t k = 0; k < sites.size(); ++k) {
     const Mat3 m = over_8_pi * identities(sites[k]);
-    const auto [panel, basis] = surface_.self_field.basis(sites[k], surface_.panels);
-    const std::span<const int> points(surface_.panels.points(panel), static_cast<std::size_t>(basis.size()));
+    const auto [panel, basis] = sources_.surface.self_field.basis(sites[k], sources_.surface.panels);
+    const std::span<const int> points(sources_.surface.panels.points(panel), static_cast<std::size_t>(basis.size()));
     for (std::size_t j = near.first[k]; j < near.first[k + 1]; ++j) {
       const auto b = std::ranges::find(points, near.point[j]) - points.begin();
       if (b == basis.size()) continue;

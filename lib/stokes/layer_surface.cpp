@@ -66,8 +66,9 @@ double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(
 
 bool sums_by_tree(double nodes, const quadrature::Options& options) {
   if (options.far_sum != "auto") return options.far_sum == "tree";
-  if (options.rule == "desingularised") return false;  // This rule subtracts the singularity by two identities (see Layer), which must be summed over
-                                                       // all pairs of nodes and targets. Clusters would save little.
+  if (options.rule == "desingularised")
+    return false;  // This rule subtracts the singularity by two identities (see Layer), which must be summed over
+                   // all pairs of nodes and targets. Clusters would save little.
   return nodes > nodes_worth_a_tree(options.tolerance);
 }
 
@@ -88,8 +89,7 @@ LayerSurface::LayerSurface(const spline::Space& space, const Sites& sites, const
 }
 
 void LayerSurface::repeat() {
-  near_field.repeat();
-  placed_.resize(0, 3);
+  if (near_field.repeat()) placed_.resize(0, 3);
 }
 
 void LayerSurface::set_symmetry(const surface::Symmetry& symmetry) {

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/types.hpp"
@@ -31,7 +32,7 @@ class NearField {
 
   /// Includes images of the panels, on a lattice or in a wall. An image of a panel is treated as part of a different surface. Must be called before
   /// update().
-  void repeat() { across_gaps_ = true; }
+  bool repeat() { return !std::exchange(across_gaps_, true); }
 
   /// Returns the index of the closed surface that contains a panel.
   int surface(int panel) const { return surface_[static_cast<std::size_t>(panel)]; }

@@ -1,0 +1,166 @@
+#include "stokes/layer_sources.hpp"
+
+#include <cassert>
+#include <numeric>
+#include <utility>
+
+#include "stokes/kernels/pair_kernel.hpp"
+
+namespace tanktread::stokes {
+namespace {
+
+/// Returns the options, with an eighth of the tolerance for the double layer. Quadrature rules are chosen for the kernel of the single layer. The
+/// kernel of the double layer is singular by one order more, so that its error with the same rule is up to five times as large
+/// (tests/verify/layers.cpp). The precision of the far sum is chosen from the unchanged tolerance of the deck.
+quadrature::Options for_kernel(quadrature::Options options, LayerKernel kernel) {
+  options.far_precision = options.far_in_single() ? "single" : "double";
+  if (kernel == LayerKernel::double_layer) options.tolerance /= 8;
+  return options;
+}
+
+}  // namespace
+
+LayerSources::LayerSources(LayerKernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options,
+                           std::vector<double> factor)
+    : surface(space, sites, for_kernel(options, kernel), kernel == LayerKernel::double_layer),
+      kernel_(kernel),
+      factor_(std::move(factor)) {}
+
+void LayerSources::set_reference(const Net& unstressed, std::vector<bool> present) {
+  surface.panels.bezier(unstressed, reference_.bezier);
+  node_weights(surface.panels, reference_.bezier, reference_.weight);
+  reference_.present = std::move(present);
+  surface.self_field.forget_weights();
+  place_again();
+}
+
+bool LayerSources::place(const Net& x, Measure measure) {
+  assert((measure == Measure::current || !reference_.weight.empty()) && "set_reference() comes first");
+  if (!surface.place(x) && measure == measure_) return false;
+  measure_ = measure;
+  if (!single() || desingularised()) node_normals(surface.panels, surface.bezier, normal);
+  if (single()) weight = reference_.weight, weight.resize(static_cast<std::size_t>(n_nodes()));
+  for (int e = 0; single() && e < surface.panels.size(); ++e)
+    if (!on_reference(e)) node_weights(surface.panels, e, surface.bezier, weight);
+  for (std::vector<double>& values : single() ? std::span(&weight, 1) : std::span(normal))
+    for (int e = 0; !factor_.empty() && e < surface.panels.size(); ++e)
+      for (int k = 0; k < surface.panels[e].table->n_nodes; ++k) values[surface.panels[e].first_node + k] *= factor_[e];
+  return true;
+}
+
+void LayerSources::values(const Net& field, NodeVectors& value) {
+  surface.panels.bezier(field, bezier_f);
+  node_values(surface.panels, bezier_f, value);
+}
+
+void LayerSources::set_density(const Net& f) {
+  const auto clock = phases.time("setup");
+  values(f, density);
+  if (!single()) return;
+  for (auto& component : density)
+    for (int k = 0; k < n_nodes(); ++k) component[k] *= weight[k];
+}
+
+Eigen::VectorXd LayerSources::moments(const std::vector<double>& g) const {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(surface.n_points);
+  Eigen::VectorXd of_bezier;
+  for (int e = 0; e < surface.panels.size(); ++e) {
+    const Panel& panel = surface.panels[e];
+    const NodeTable& t = *panel.table;
+    of_bezier =
+        Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(t.value.data(), t.n_bernstein, t.n_nodes) *
+        Eigen::Map<const Eigen::VectorXd>(&g[panel.first_node], t.n_nodes);
+    const double* extraction = surface.panels.extraction(e);
+    for (int a = 0; a < panel.functions; ++a, extraction += t.n_bernstein)
+      sums[surface.panels.points(e)[a]] += Eigen::Map<const Eigen::VectorXd>(extraction, t.n_bernstein).dot(of_bezier);
+  }
+  return sums;
+}
+
+Vec3 LayerSources::mean_density() const {
+  Vec3 mean;
+  for (int c = 0; c < 3; ++c)
+    mean[c] = std::accumulate(density[c].begin(), density[c].end(), 0.) / n_nodes();  // independent of memory alignment
+  return mean;
+}
+
+/// Computes the stresslet moments of a density f(node, component).
+template <class Values>
+void LayerSources::set_moments_of(const Values& f) {
+  for (int c = 0; c < 6; ++c) {
+    const auto [i, j] = stresses[c];
+    moment[c].resize(n_nodes());
+    for (int k = 0; k < n_nodes(); ++k) moment[c][k] = (f(k, i) * normal[j][k] + f(k, j) * normal[i][k]) / 2;
+  }
+}
+
+void LayerSources::set_moments(const Vec3& mean) {
+  set_moments_of([&](int k, int i) { return density[i][k] - mean[i]; });
+}
+
+void LayerSources::set_moments_of_constant(int component) {
+  set_moments_of([&](int, int i) { return i == component ? 1. : 0.; });
+}
+
+Net LayerSources::direct_sum(const NodeVectors& x, std::span<const Vec3> at, std::span<const Vec3> f0) {
+  Net sums(at.size(), 3);
+  single() ? far_sums(charges(x, density), at, sums.data(), precision())
+           : far_sums(stresslets(x, density, normal), at, f0, sums.data(), precision());
+  evaluations.far += static_cast<long long>(at.size()) * n_nodes();
+  return sums;
+}
+
+Vec3 LayerSources::direct_sum(int e, const Vec3& at, const Vec3& f0) const {
+  const int first = surface.panels[e].first_node, n = surface.panels[e].table->n_nodes;
+  Vec3 sum;
+  single() ? node_sum(charges(surface.node, density).part(first, n), at.data(), sum.data())
+           : node_sum(stresslets(surface.node, density, normal).part(first, n), at.data(), f0.data(), sum.data());
+  return sum;
+}
+
+Vec3 LayerSources::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count) {
+  const Panel& panel = surface.panels[e];
+  const double *x = &surface.bezier[panel.first_bezier], *f = &bezier_f[panel.first_bezier];
+  Vec3 better;
+  single() ? single_sum(table, x, f, area_weights_of(e, table, pair), at.data(), better.data())
+           : double_sum(table, x, f, at.data(), f0.data(), better.data());
+  count += table.points + panel.table->n_nodes;
+  return factor(e) * better - direct_sum(e, at, f0);
+}
+
+const Pack* LayerSources::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
+  const bool unstressed = on_reference(e), kept = pair && unstressed;
+  std::vector<Pack>& weights = kept ? pair->weights : point_weights_;
+  if (kept && !weights.empty()) return weights.data();
+  weights.resize(table.packs());
+  area_weights(table, &(unstressed ? reference_.bezier : surface.bezier)[surface.panels[e].first_bezier], weights.data());
+  return weights.data();
+}
+
+void LayerSources::panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
+  const double* bezier = &surface.bezier[surface.panels[e].first_bezier];
+  scratch_.resize(static_cast<std::size_t>(6) * table.packs());
+  if (single())
+    single_moments(table, bezier, area_weights_of(e, table, pair), at.data(), scratch_.data(), moments);
+  else
+    double_moments(table, bezier, at.data(), scratch_.data(), moments);
+  if (factor_.empty()) return;
+  for (int k = 0; k < 6 * surface.panels[e].table->n_bernstein; ++k) moments[k] *= factor_[e];
+}
+
+void LayerSources::moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
+  const Panel& panel = surface.panels[e];
+  const NodeTable& t = *panel.table;
+  panel_moments(e, table, pair, at, moments);
+  for (int k = 0; k < t.n_nodes; ++k) {
+    const int node = panel.first_node + k;
+    const Vec3 r = Vec3(surface.node[0][node], surface.node[1][node], surface.node[2][node]) - at;
+    if (r.squaredNorm() <= coincident(at[0], at[1], at[2])) continue;
+    const Mat3 g = single() ? Mat3(weight[node] * stokeslet(r)) : stresslet(r, Vec3(normal[0][node], normal[1][node], normal[2][node]));
+    const double entries[6] = {g(0, 0), g(0, 1), g(0, 2), g(1, 1), g(1, 2), g(2, 2)};
+    for (int b = 0; b < t.n_bernstein; ++b)
+      for (int c = 0; c < 6; ++c) moments[6 * b + c] -= entries[c] * t.value[static_cast<std::size_t>(t.n_nodes * b + k)];
+  }
+}
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,116 @@
+#pragma once
+// Surfaces that carry the density of a layer: quadrature weights and densities at their nodes, and integrals over one of their panels.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/timing.hpp"
+#include "base/types.hpp"
+#include "quadrature/options.hpp"
+#include "spline/space.hpp"
+#include "stokes/kernels/far_kernel.hpp"
+#include "stokes/kernels/kernels.hpp"
+#include "stokes/layer_surface.hpp"
+
+namespace tanktread::stokes {
+
+enum class LayerKernel { single_layer, double_layer };
+
+/// Area to which the density of a single layer refers: unstressed area (3.7), current area (3.6), or a choice between the two for each element
+/// (LayerSources::set_reference).
+enum class Measure { reference, current, by_element };
+
+/// Values at all far nodes: one array for each of three components.
+using NodeVectors = std::vector<double>[3];
+
+/// Surfaces with the density of a single or double layer, in free space: the far nodes with their weights, and the integrals of the free-space kernel
+/// over one panel. The order of calls is set_reference() (if a measure needs it), place(), set_density(), then the sums and integrals. A Layer adds
+/// the panels up; a LayerMedium adds what the boundaries of the fluid change.
+class LayerSources {
+ public:
+  /// Arguments as for Layer.
+  LayerSources(LayerKernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options,
+               std::vector<double> factor);
+
+  bool single() const { return kernel_ == LayerKernel::single_layer; }
+  int n_nodes() const { return surface.panels.n_nodes(); }
+  /// Returns the factor k_p of (2.1) and (2.2) of the surface that contains element e.
+  double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
+  /// Returns whether the density on element e is a force per unstressed area.
+  bool on_reference(int e) const {
+    return measure_ == Measure::reference || (measure_ == Measure::by_element && !reference_.present[static_cast<std::size_t>(e)]);
+  }
+  Precision precision() const { return surface.options.far_in_single() ? Precision::single : Precision::full; }
+  bool desingularised() const { return single() && surface.options.rule == "desingularised"; }
+
+  /// See Layer::set_reference.
+  void set_reference(const Net& unstressed, std::vector<bool> present);
+  const std::vector<double>& reference_bezier() const { return reference_.bezier; }  ///< Bezier points of the unstressed surface
+
+  /// Sets the shape x and the area to which densities refer. Returns false if both are the current ones and place_again() was not called since.
+  bool place(const Net& x, Measure measure);
+  void place_again() { measure_.reset(); }  ///< makes the next place() compute everything anew
+
+  /// Evaluates a field, given by its control values, at the far nodes.
+  void values(const Net& field, NodeVectors& value);
+  /// Sets the control values f of the density, and from them `bezier_f` and `density`.
+  void set_density(const Net& f);
+  /// Returns the integral of a function h times each basis function, the transpose of values(). `g`: h times area and quadrature weight at each far
+  /// node.
+  Eigen::VectorXd moments(const std::vector<double>& g) const;
+
+  Vec3 mean_density() const;  ///< mean of `density` over the far nodes
+  /// Computes the stresslet moments `moment` of the density minus `mean`.
+  void set_moments(const Vec3& mean);
+  /// Computes the stresslet moments `moment` of a constant unit density along axis `component`.
+  void set_moments_of_constant(int component);
+
+  /// Returns the sum of the kernel times the density over the far nodes at the positions x (the far nodes of the surface, or displaced ones), at the
+  /// targets `at`; shape (number of targets, 3). `f0`: for each target the constant that is subtracted from the density of a double layer. For all
+  /// nodes, or for the nodes of panel e at one target.
+  Net direct_sum(const NodeVectors& x, std::span<const Vec3> at, std::span<const Vec3> f0);
+  Vec3 direct_sum(int e, const Vec3& at, const Vec3& f0) const;
+
+  /// Returns the integral over panel e by the near-singular or singular rule `table` minus the contribution of the panel to the far sum. `pair`: the
+  /// pair of target and panel if the panel contains the target, otherwise null. `count` is increased by the number of kernel evaluations.
+  Vec3 beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count);
+
+  /// Computes the integrals of the kernel times each Bernstein polynomial (six numbers for each: 11, 12, 13, 22, 23, 33) over panel e by the rule
+  /// `table`, times the factor of the panel. moments_beyond_far_sum() subtracts the contribution of the panel to the far sum.
+  void panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments);
+  void moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments);
+
+  /// Returns the weights of a quadrature rule on panel e, times the area element. If the panel contains the target and the areas are unstressed
+  /// areas, the weights are kept in `pair`.
+  const Pack* area_weights_of(int e, const PointTable& table, SelfPair* pair);
+
+  LayerSurface surface;
+  std::vector<double> bezier_f;   ///< Bezier points of the density
+  std::vector<double> weight;     ///< quadrature weights of the far nodes, times area and the factor k_p of (2.1); single layer only
+  NodeVectors density, normal;    ///< values at the far nodes. density: density f (times `weight` in a single layer). normal: normal times
+                                  ///< quadrature weight, area and factor k_p of (2.2)
+  std::vector<double> moment[6];  ///< stresslet moments (f n + n f)/2 at the far nodes, with n = `normal`, components as in `stresses`
+  Evaluations evaluations;        ///< kernel evaluations since construction
+  Phases phases;                  ///< computing times since construction
+
+ private:
+  /// The unstressed surface.
+  struct Reference {
+    std::vector<double> bezier,
+        weight;                 // bezier: Bezier points of the unstressed surface. weight: quadrature weights of this surface at the far
+                                // nodes, areas included
+    std::vector<bool> present;  // used with Measure::by_element; one entry per element: true if the density is per current area of the
+                                // element, false if it is per unstressed area
+  };
+  template <class Values>
+  void set_moments_of(const Values& f);
+
+  LayerKernel kernel_;
+  std::vector<double> factor_;
+  std::optional<Measure> measure_;  // area of the current `weight`
+  Reference reference_;
+  std::vector<Pack> point_weights_, scratch_;
+};
+
+}  // namespace tanktread::stokes

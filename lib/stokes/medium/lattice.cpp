@@ -1,0 +1,133 @@
+#include "stokes/medium/lattice.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace tanktread::stokes {
+namespace {
+
+/// Tolerance for the sum over the images that are not near, divided by the tolerance of the layer. The ratio is below 1 because the loads are in
+/// equilibrium, so that velocities are small compared with the sum of the magnitudes of their terms (as in TreeSum).
+constexpr double share_of_rest = 0.1;
+
+}  // namespace
+
+void Lattice::place(const LayerSources& sources) {
+  const LayerSurface& surface = sources.surface;
+  std::array<Vec3, 2> extent = how_.across;
+  for (int e = 0; e < surface.panels.size(); ++e) {
+    const int n = surface.panels[e].table->n_bernstein;
+    const double* x = &surface.bezier[surface.panels[e].first_bezier];
+    for (int b = 0; b < n; ++b) {
+      const Vec3 s = cell_.coordinates({x[b], x[n + b], x[2 * n + b]});
+      extent[0] = extent[0].cwiseMin(s), extent[1] = extent[1].cwiseMax(s);
+    }
+  }
+  if (!sum_ || !sum_->suits(extent)) {
+    const auto kind = sources.single() ? PeriodicKernel::Kind::stokeslet : PeriodicKernel::Kind::stresslet;
+    sum_.emplace(kind, cell_, share_of_rest * surface.options.tolerance, extent);
+  }
+  rest_at_.clear();
+  for (auto& component : node_) component.resize(static_cast<std::size_t>(sources.n_nodes()));
+  for (std::size_t k = 0; k < node_[0].size(); ++k) {
+    const Vec3 x = sum_->wrapped({surface.node[0][k], surface.node[1][k], surface.node[2][k]});
+    for (int c = 0; c < 3; ++c) node_[c][k] = x[c];
+  }
+}
+
+void Lattice::add(LayerSources& sources, const LayerTargets& targets, Net& u) {
+  subtract_surfaces(sources, targets, u);
+  add_rest(sources, targets, u);
+}
+
+/// Subtracts the contribution of the surfaces from the far sum at targets to which only images contribute. The far sum cannot omit the surfaces,
+/// because each node is wrapped into the cell separately, so that the wrapped nodes of one surface may belong to different images.
+void Lattice::subtract_surfaces(LayerSources& sources, const LayerTargets& targets, Net& u) const {
+  const auto clock = sources.phases.time("far");
+  std::vector<int> rows;
+  std::ranges::copy_if(targets.far_rows, std::back_inserter(rows), [&](int i) { return i >= targets.images_only; });
+  if (rows.empty()) return;
+  const Net sums = sources.direct_sum(sources.surface.node, rows_of(targets.at, rows), rows_of(targets.f0, rows));
+  for (std::size_t k = 0; k < rows.size(); ++k) u.row(rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
+}
+
+/// Adds the contribution of the images that are not in the far sum, and for a double layer with three periods the pressure of (2.28).
+void Lattice::add_rest(LayerSources& sources, const LayerTargets& targets, Net& u) {
+  const auto clock = sources.phases.time("rest of the lattice");
+  std::vector<Vec3> at = rows_of(targets.at, targets.rows);
+  for (Vec3& x : at) x = wrapped(x);
+  Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
+  if (sources.single()) {
+    sum_->add_rest(charges(node_, sources.density), at, sums.data());
+  } else {
+    const Vec3 mean = sources.mean_density();
+    if (at != rest_at_) place_rest(sources, at);
+    sources.set_moments(mean);
+    sum_->add_rest(charges(node_, sources.moment), at, sums.data());
+    if (cell_.n() == 3) sums.rowwise() += pressure_along(sources).transpose();
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const Vec3 value = targets.f0.row(targets.rows[k]).transpose();
+      sums.row(static_cast<Eigen::Index>(k)) -= (rest_stress_[k] * (value - mean)).transpose();
+    }
+  }
+  for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.rows[k]) += sums.row(static_cast<Eigen::Index>(k));
+}
+
+/// Computes the double layer of constant unit densities due to the images that are not in the far sum, at the targets `at`, one column per component
+/// of the density. Each surface has images in the far sum and others that are not. Therefore neither the far sum nor this double layer vanishes for a
+/// constant density.
+void Lattice::place_rest(LayerSources& sources, const std::vector<Vec3>& at) {
+  rest_at_ = at;
+  rest_stress_.assign(at.size(), Mat3::Zero());
+  for (int c = 0; c < 3; ++c) {
+    sources.set_moments_of_constant(c);
+    Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
+    sum_->add_rest(charges(node_, sources.moment), at, sums.data());
+    if (cell_.n() == 3) sums.rowwise() += pressure_along(sources).transpose();
+    for (std::size_t k = 0; k < at.size(); ++k) rest_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
+  }
+}
+
+/// Returns the contribution of the additional pressure of (2.28) to the double layer, -(8 pi/V) sum_p k_p int_p (f.n) (x - x_p) dG, for the density f
+/// whose moments are set. x_p is the mean of the nodes of surface p, and k_p the factor of (2.2).
+Vec3 Lattice::pressure_along(const LayerSources& sources) const {
+  const LayerSurface& surface = sources.surface;
+  const auto number = [&](int e) { return static_cast<std::size_t>(surface.near_field.surface(e)); };
+  const auto place = [&](int k) { return Vec3(surface.node[0][k], surface.node[1][k], surface.node[2][k]); };
+  std::vector<Vec3> middle(static_cast<std::size_t>(surface.near_field.n_surfaces()), Vec3::Zero());
+  std::vector<int> nodes(middle.size(), 0);
+  for (int e = 0; e < surface.panels.size(); ++e)
+    for (int k = 0; k < surface.panels[e].table->n_nodes; ++k)
+      middle[number(e)] += place(surface.panels[e].first_node + k), ++nodes[number(e)];
+  for (std::size_t p = 0; p < middle.size(); ++p) middle[p] /= nodes[p];
+  Vec3 sum = Vec3::Zero();
+  for (int e = 0; e < surface.panels.size(); ++e)
+    for (int k = surface.panels[e].first_node; k < surface.panels[e].first_node + surface.panels[e].table->n_nodes; ++k)
+      sum += (sources.moment[0][k] + sources.moment[1][k] + sources.moment[2][k]) * (place(k) - middle[number(e)]);
+  return -1 / (over_8_pi * cell_.volume()) * sum;
+}
+
+/// Adds the interpolated sum over the images that are not near: with the Lagrange polynomials L_a of the interpolation nodes x_a, and the integrals
+/// of L_a N_B over the surface.
+void Lattice::add_remainder(const LayerSources& sources, std::span<const int> sites, Rows<double>& a) const {
+  std::vector<Vec3> at, nodes;
+  for (const int i : sites) at.push_back(wrapped(sources.surface.site(i)));
+  for (std::size_t k = 0; k < node_[0].size(); ++k) nodes.emplace_back(node_[0][k], node_[1][k], node_[2][k]);
+  const Eigen::MatrixXd to = sum_->lagrange(at);
+  Eigen::MatrixXd from = sum_->lagrange(nodes), basis(from.cols(), sources.surface.n_points);
+  for (Eigen::Index k = 0; k < from.cols(); ++k) {
+    from.col(k).array() *= Eigen::Map<const Eigen::ArrayXd>(sources.weight.data(), sources.n_nodes());
+    basis.row(k) = sources.moments({from.col(k).data(), from.col(k).data() + from.rows()}).transpose();
+  }
+  for (int c = 0; c < 6; ++c) {
+    const auto [i, j] = upper[c];
+    const Eigen::MatrixXd part = over_8_pi * (to * (sum_->between_nodes(c) * basis));
+    for (Eigen::Index k = 0; k < part.rows(); ++k)
+      for (Eigen::Index b = 0; b < part.cols(); ++b) {
+        a(3 * k + i, 3 * b + j) += part(k, b);
+        if (i != j) a(3 * k + j, 3 * b + i) += part(k, b);
+      }
+  }
+}
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,60 @@
+#pragma once
+// Medium of a layer whose surfaces repeat on a lattice.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "stokes/medium/layer_medium.hpp"
+#include "stokes/medium/periodic_sum.hpp"
+
+namespace tanktread::stokes {
+
+/// Options for the periodic images of the surfaces on a lattice.
+struct Repetition {
+  bool assembled =
+      false;  ///< true: assembled rows include the near images, and Layer::assemble_rest() adds all other images (PeriodicSum). false:
+              ///< assembled rows include no images
+  std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off the
+                                                                              ///< surfaces
+
+  bool operator==(const Repetition& other) const = default;
+};
+
+/// Images of the surfaces on a lattice of one, two or three periods, with the kernels of PeriodicKernel. The near images are displaced images; the
+/// sum over all others is interpolated (PeriodicSum).
+class Lattice : public LayerMedium {
+ public:
+  Lattice(const PeriodicCell& cell, const Repetition& how) : cell_(cell), how_(how), near_(cell.around({2, 2, 2})) {}
+
+  /// Returns whether Lattice(cell, how) would be equal to this lattice.
+  bool is(const PeriodicCell& cell, const Repetition& how) const { return cell_ == cell && how_ == how; }
+
+  void place(const LayerSources& sources) override;
+  const std::vector<Vec3>& far_images() const override { return sum_->images(); }
+  const std::vector<Vec3>& near_images() const override { return near_; }
+  bool wraps() const override { return true; }
+  Vec3 wrapped(const Vec3& x) const override { return sum_->wrapped(x); }
+  const NodeVectors& nodes(const LayerSources& /*sources*/) const override { return node_; }
+  bool rows_include_images() const override { return how_.assembled; }
+  void add(LayerSources& sources, const LayerTargets& targets, Net& u) override;
+  void add_remainder(const LayerSources& sources, std::span<const int> sites, Rows<double>& a) const override;
+
+ private:
+  void subtract_surfaces(LayerSources& sources, const LayerTargets& targets, Net& u) const;
+  void add_rest(LayerSources& sources, const LayerTargets& targets, Net& u);
+  void place_rest(LayerSources& sources, const std::vector<Vec3>& at);
+  Vec3 pressure_along(const LayerSources& sources) const;
+
+  PeriodicCell cell_;
+  Repetition how_;
+  std::optional<PeriodicSum> sum_;
+  NodeVectors node_;           // far nodes, wrapped into the cell
+  std::vector<Vec3> near_;     // lattice vectors of images whose panels may be close to a target
+  std::vector<Vec3> rest_at_;  // targets at which rest_stress_ was computed, wrapped into the cell
+  std::vector<Mat3>
+      rest_stress_;  // at the targets rest_at_: double layer over all images except the near ones, column c for the constant density
+                     // e_c
+};
+
+}  // namespace tanktread::stokes

@@ -1,0 +1,78 @@
+#pragma once
+// What the surroundings of the surfaces, such as a wall or periodic images, change in a layer.
+
+#include <span>
+#include <vector>
+
+#include "base/types.hpp"
+#include "stokes/layer_sources.hpp"
+
+namespace tanktread::stokes {
+
+/// Dense matrix, stored row by row, for rows of an operator. Linear systems use double precision. The Jacobian uses single precision and rounds the
+/// rows further (FrozenOperator).
+template <class Real>
+using Rows = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Returns the given rows of a net (one point or vector per row) as vectors.
+inline std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
+  std::vector<Vec3> all;
+  for (const int i : rows) all.push_back(net.row(i).transpose());
+  return all;
+}
+
+/// Targets of one evaluation of a layer: their positions, and the rows of the result to compute.
+struct LayerTargets {
+  std::span<const int> rows, far_rows;  ///< rows of the result that get near-singular and singular quadrature, and rows that get far sums
+  const Net& at;                        ///< positions
+  const Net& f0;                        ///< for each target, the constant subtracted from the density of a double layer
+  std::span<const int> in_tree;         ///< ascending indices of the targets that are in the tree of clusters
+  bool sites;                           ///< true if the targets are sites of the surfaces, false if they are off the surfaces
+  int images_only;                      ///< first row to which only displaced images contribute, see Layer::see_images_only
+};
+
+/// Medium of a layer: the fluid and the boundaries that the kernels of the layer take into account. This class is unbounded fluid. A derived class
+/// adds the difference between its kernels and those of free space, in up to three ways:
+///
+///   displaced images   copies of the surfaces by lattice vectors, with the kernel of free space, which the layer sums and integrates like the
+///                      surfaces themselves: far_images(), near_images(), nodes(), wrapped()
+///   other terms        anything that the derived class sums or integrates itself: add(), add_row()
+///   smooth remainder   of assembled rows that contain displaced images: add_remainder()
+///
+/// Order of calls: place() for each shape, then any of the others. One object belongs to one layer.
+class LayerMedium {
+ public:
+  virtual ~LayerMedium() = default;
+
+  /// Prepares the sums for the shape and the weights of `sources`.
+  virtual void place(const LayerSources& sources);
+
+  /// Shares sums by clusters among ranks, see TreeSum::share.
+  virtual void share(int part, int parts);
+
+  /// Displacements of the nodes() that are included in far sums. In far sums each node and each target is first moved by wrapped().
+  virtual const std::vector<Vec3>& far_images() const { return itself_; }
+  /// Displacements of the surfaces for which panels may be close to a target.
+  virtual const std::vector<Vec3>& near_images() const { return itself_; }
+  /// Returns whether positions are wrapped into a cell, each by itself, so that nodes of one panel may be far apart and symmetry is lost.
+  virtual bool wraps() const { return false; }
+  virtual Vec3 wrapped(const Vec3& x) const { return x; }
+  virtual const NodeVectors& nodes(const LayerSources& sources) const { return sources.surface.node; }  ///< far nodes, wrapped
+  /// Returns whether assembled rows include the displaced images.
+  virtual bool rows_include_images() const { return false; }
+
+  /// Adds to rows of u, which are later divided by 8 pi, all terms other than those of the displaced images.
+  virtual void add(LayerSources& sources, const LayerTargets& targets, Net& u);
+
+  /// Adds the same terms to assembled rows of the target x0: block[B] is the 3 x 3 block of control point B, before the division by 8 pi. Returns
+  /// false if there are none.
+  virtual bool add_row(LayerSources& sources, const Vec3& x0, std::vector<Mat3>& block);
+
+  /// Adds to assembled rows `a` of a single layer at `sites` the part of the kernel that rows_include_images() does not cover.
+  virtual void add_remainder(const LayerSources& sources, std::span<const int> sites, Rows<double>& a) const;
+
+ private:
+  std::vector<Vec3> itself_{Vec3::Zero()};
+};
+
+}  // namespace tanktread::stokes
