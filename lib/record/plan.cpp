@@ -126,6 +126,10 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
       lines.emplace_back("flow", scene.flow.type + history + ", beside a plane wall: represented by images, no wall unknowns");
       return;
     }
+    if (scene.domain.medium) {
+      lines.emplace_back("flow", scene.flow.type + history + ", in the medium `" + scene.domain.kind + "`: no unknowns on its boundaries");
+      return;
+    }
     lines.emplace_back("flow", scene.flow.type + history + ", unbounded: no wall unknowns, no pressure drop");
     return;
   }

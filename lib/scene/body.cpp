@@ -161,6 +161,7 @@ Body body(const Scene& scene, const Member* alike) {
   b.law = law(scene.membrane, b.modulus);
   check_fit(scene, b);
   if (scene.wall.present) check_in_front(scene, b);
+  check_in_medium(scene, b);
   if (scene.name.empty()) b.wall = wall(scene, b);
   b.symmetry = symmetry(scene, b, b.initial);
   const bool own = scene.particle.shape.initial && scene.particle.shape.initial->volume == "own";
@@ -174,8 +175,9 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
   if (scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
   if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, loads(scene, body, body.wall.get()));
+  const auto plates = scene.wall.planes();
   return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, loads(scene, body, nullptr),
-                            scene.wall.present ? scene.wall.normal : Vec3::Zero(), scene.domain.cell());
+                            plates.empty() ? scene.domain.medium.get() : &plates.front(), scene.domain.cell());
 }
 
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall) {

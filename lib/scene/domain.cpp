@@ -15,6 +15,7 @@
 namespace tanktread {
 
 void DomainOptions::declare(deck::Section& section) {
+  if (registered && !registered->empty()) declare_medium(section);
   section.key("periodic", periodic, deck::Choice{"x1 x2 x3", "x1 x2", "x1 x3", "x2 x3", "x1", "x2", "x3"},
               "directions in which particles and flow are periodic. If all three are periodic, the mean velocity over the cell, particles "
               "included, equals the ambient flow, and a net force on the particles is balanced by a uniform pressure gradient");
@@ -65,6 +66,8 @@ bool DomainOptions::deforms(const stokes::FlowOptions& flow) const {
 }
 
 void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& duct) const {
+  if (medium && flow.type != "duct") check_flow(flow, *medium, "Domain/kind `" + kind + "`");
+  if (!present) return;
   if (!duct.empty()) return check_duct(duct);
   if (side_lengths.has_value() == lattice_vectors.has_value())
     throw UserError(side_lengths ? "Domain/side lengths and Domain/lattice vectors contradict each other: give one of them."
@@ -100,6 +103,7 @@ void DomainOptions::check_duct(const std::string& duct) const {
 }
 
 void DomainOptions::reject(const Scene& scene, Rejections& to) const {
+  if (medium || to.every()) reject_medium(scene, to);
   if (!present && !to.every()) return;
   if (to.every()) reject_duct("Tube or Channel", to);
   to.pair(!scene.tube.present && !to.every() && !repeats(stokes::AmbientFlow(scene.flow), vectors().leftCols(directions())),

@@ -1,6 +1,7 @@
 #pragma once
-// Periodicity of a scene: options `Domain/*` of the deck.
+// Periodicity or medium of a scene: options `Domain/*` of the deck.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "base/types.hpp"
 #include "deck/forward.hpp"
 #include "stokes/flow/flow_options.hpp"
+#include "stokes/medium/medium.hpp"
 #include "stokes/medium/periodic_images.hpp"
 
 namespace tanktread {
@@ -16,7 +18,11 @@ namespace tanktread {
 struct Scene;
 
 struct DomainOptions {
-  bool present = false;  ///< true if the scene is periodic; otherwise all other members are ignored
+  bool present = false;  ///< true if the scene is periodic; otherwise only `kind` and `medium` are used
+
+  std::string kind = "lattice";  ///< "lattice", or the name of a registered medium
+  const stokes::UserMedia* registered = nullptr;  ///< media that the program has added, with keys in `Domain/<kind>`; null if there are none
+  std::shared_ptr<const stokes::Medium> medium;   ///< the registered medium of the scene; null if `kind` is "lattice"
 
   std::string periodic = "x1 x2 x3";    ///< periodic directions
   std::optional<std::vector<double>> side_lengths;  ///< three side lengths of a box, or the period of a duct; not set if lattice vectors are given
@@ -24,8 +30,9 @@ struct DomainOptions {
 
   void declare(deck::Section& section);
 
-  /// Throws UserError if keys contradict each other or are missing, if the lattice vectors span no cell, or if `Flow/type` is `duct` without a duct.
-  /// `duct`: section that describes a periodic duct, `Tube` or `Channel`; empty without a duct.
+  /// Throws UserError if the flow does not satisfy the conditions of the registered medium, if keys contradict each other or are missing, if the
+  /// lattice vectors span no cell, or if `Flow/type` is `duct` without a duct. `duct`: section that describes a periodic duct, `Tube` or `Channel`;
+  /// empty without a duct.
   void check(const stokes::FlowOptions& flow, const std::string& duct) const;
 
   void reject(const Scene& scene, Rejections& to) const;  ///< adds the choices of the scene that contradict a lattice
@@ -37,12 +44,18 @@ struct DomainOptions {
   std::optional<stokes::PeriodicCell> cell() const;
 
  private:
+  void declare_medium(deck::Section& section);
+  void reject_medium(const Scene& scene, Rejections& to) const;
   /// Returns true if the flow changes the lattice vectors. The amplitude is taken as 1, and the time dependence `Flow/history` is ignored.
   bool deforms(const stokes::FlowOptions& flow) const;
   Mat3 vectors() const;
   void check_duct(const std::string& duct) const;
   void reject_duct(const std::string& duct, Rejections& to) const;
 };
+
+/// Throws UserError if the flow, in any of its directions over time, does not satisfy the conditions of a medium. `name`: section or choice of the
+/// deck that gives the medium.
+void check_flow(const stokes::FlowOptions& flow, const stokes::Medium& medium, const std::string& name);
 
 /// Data of the lattice for one row of the results.
 struct DomainRow {

@@ -31,7 +31,7 @@ coupling::RigidMotion prescribed_motion(const Scene& scene) {
 }
 
 std::optional<ExactBody> exact_body(const Scene& scene) {
-  if (scene.wall.present) return {};
+  if (scene.wall.present || scene.domain.medium) return {};
   const surface::ParticleShape& shape = scene.particle.shape;
   const coupling::RigidMotion motion = prescribed_motion(scene);
   if (scene.tube.present || (shape.shape != "sphere" && shape.shape != "spheroid" && shape.shape != "ellipsoid")) return {};

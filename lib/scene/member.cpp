@@ -156,7 +156,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
   parameters.quadrature = scene.quadrature;
   parameters.symmetry = all.symmetry;
   parameters.cell = scene.domain.cell();
-  parameters.wall = scene.wall.plane();
+  parameters.medium = scene.medium();
   parameters.solids = solids;
   return std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
 }

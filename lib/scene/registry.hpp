@@ -1,5 +1,5 @@
 #pragma once
-// Registry of user-defined parts (loads, fields, flows, series), which a program adds to the parts of the library.
+// Registry of user-defined parts (loads, fields, flows, media, series), which a program adds to the parts of the library.
 
 #include <functional>
 #include <span>
@@ -11,6 +11,7 @@
 #include "membrane/load.hpp"
 #include "spline/space.hpp"
 #include "stokes/flow/user_flow.hpp"
+#include "stokes/medium/medium.hpp"
 
 namespace tanktread {
 
@@ -28,12 +29,13 @@ using RunSeries = std::function<std::vector<double>(double time, std::span<const
 /// The registered series. Each is computed per particle, or once for all particles together.
 using SeriesParts = deck::Parts<std::variant<ParticleSeries, RunSeries>()>;
 
-/// User-defined parts of the program, by name: loads, fields, flows and series. Each part declares its keys of the deck. `main` (app/program.hpp)
-/// accepts a registry. The section Recipes of lib/README.md shows an example of each kind of part.
+/// User-defined parts of the program, by name: loads, fields, flows, media and series. Each part declares its keys of the deck. `main`
+/// (app/program.hpp) accepts a registry. The section Recipes of lib/README.md shows an example of each kind of part.
 struct Registry {
   membrane::LoadParts loads;    ///< `Membrane/loads/<name>`
   membrane::FieldParts fields;  ///< `Interface/fields/<name>`, on interfaces and membranes
   stokes::UserFlows flows;      ///< `Flow/type <name>`, keys in `Flow/<name>`
+  stokes::UserMedia media;      ///< `Domain/kind <name>`, keys in `Domain/<name>`
   SeriesParts series;           ///< `Output/series/<name>`
 };
 

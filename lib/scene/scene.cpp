@@ -222,7 +222,7 @@ void Scene::declare(deck::Section& root) {
                                                      "physical units of the deck: the meaning of a length, time or force of 1. With this section a "
                                                      "value may have a unit, `5.3 uN/m`, and results are labelled with SI units"))
     root.take(units = std::make_shared<const deck::Units>(given));
-  flow.registered = &registry->flows;
+  flow.registered = &registry->flows, domain.registered = &registry->media;
   root.section("Flow", flow, "the ambient flow and the outer fluid");
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
   surface::TubeOptions documented;
@@ -247,8 +247,8 @@ void Scene::declare(deck::Section& root) {
   if (several || root.given("Domain") || root.documenting())
     root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
   volume_given = root.given("Volume");
-  domain.present = root.optional_section(
-      "Domain", domain, "periodic cell of fluid and particles, whose lattice the flow convects; nothing is periodic without this section");
+  constexpr const char* cell = "periodic cell of fluid and particles, whose lattice the flow convects; nothing is periodic without this section";
+  domain.present = root.optional_section("Domain", domain, cell) && !domain.medium;
   if (tube.present && !tube.channel && tube.periodic_length) {
     refuse(domain.present, "Tube/periodic length", "Domain", "both give the period along x1");
     domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
@@ -314,7 +314,7 @@ void Scene::check() const {
   flow.check();
   check_motion(*this);
   if (tube.present) tube.check();
-  if (domain.present) domain.check(flow, tube.present ? tube.list() : "");
+  domain.check(flow, tube.present ? tube.list() : "");
   if (wall.present) wall.check(flow, domain.cell());
   check_posts(*this);
   if (only_solids) {

@@ -71,7 +71,7 @@ struct ParticleKind {
   surface::MeshOptions surface;
   coupling::InterfaceOptions interface;
   std::optional<membrane::SurfactantOptions> surfactant;  ///< Interface/surfactant; not set for a clean interface
-  const Registry* registry = &no_parts;                   ///< user-defined loads, fields, flows and series
+  const Registry* registry = &no_parts;                   ///< user-defined loads, fields, flows, media and series
   std::vector<membrane::LoadParts::Chosen> loads;         ///< Membrane/loads
   std::vector<membrane::FieldParts::Chosen> fields;       ///< Interface/fields
   motion::AdaptationOptions adaptation;
@@ -142,6 +142,8 @@ struct Scene : ParticleKind {
                                                                             ///< combinations
   Chosen duct_choice() const { return {tube.list(), "Tube or Channel"}; }  ///< returns the section that describes a duct, for messages about rejected
                                                                            ///< combinations
+  /// Returns the plane wall that acts by images, or the medium that the program has added; null in all other scenes.
+  std::shared_ptr<const stokes::Medium> medium() const;
   bool load_is_strong() const { return membrane.load == "strong"; }
 
   /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the motion or resistance problem of one rigid body.

@@ -12,10 +12,6 @@
 
 namespace tanktread {
 
-namespace {
-constexpr std::string_view along_the_wall = "a flow must be along the wall and the same everywhere on it";
-}
-
 void WallOptions::declare(deck::Section& section) {
   section.key("shape", shape, deck::Choice{"plane"}, "shape of the wall. `plane`: an infinite plane");
   section.key("point", point, deck::any(), "length", "position of any point on the plane wall");
@@ -62,7 +58,7 @@ void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<sto
         throw UserError(
             "Wall and Domain do not fit each other: walls bound the fluid along Wall/normal, so that the Domain must be periodic along "
             "both directions in the walls and along no other. Give these two as Domain/periodic.");
-  for (const stokes::PlaneWall& wall : planes()) check_flow(flow, wall);
+  for (const stokes::PlaneWall& wall : planes()) check_flow(flow, wall, "Wall");
   if (!flow.pressure_gradient || !solid) return;
   if (!distance)
     throw UserError(
@@ -74,27 +70,11 @@ void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<sto
         "Wall/normal.");
 }
 
-void WallOptions::check_flow(const stokes::FlowOptions& flow, const stokes::PlaneWall& wall) const {
-  const Vec3 along = wall.axes().row(0).transpose(), across = wall.axes().row(1).transpose(), &on_wall = wall.point();
-  for (const stokes::AmbientFlow& ambient : stokes::AmbientFlow(flow).directions()) {
-    const Vec3 here = ambient.velocity(on_wall);
-    const double size = here.norm() + ambient.velocity(on_wall + wall.normal()).norm() + ambient.rate();
-    for (const auto& [a, b] : {std::pair(0, 0), {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}}) {
-      const Vec3 place = on_wall + a * along + b * across, there = ambient.velocity(place);
-      if ((there - here).norm() + std::abs(there.dot(wall.normal())) <= 1e-9 * size) continue;
-      throw UserError("Wall and Flow/type `" + flow.type +
-                      "` contradict each other: " + std::string(along_the_wall) + ", but at " +
-                      formatted("[%.4g, %.4g, %.4g] it is [%.4g, %.4g, %.4g], and at [%.4g, %.4g, %.4g] on the wall.", place[0], place[1], place[2],
-                                there[0], there[1], there[2], here[0], here[1], here[2]));
-    }
-  }
-}
-
 void WallOptions::reject(const Scene& scene, Rejections& to) const {
   if (!present && !to.every()) return;
   // This row is only for the table of rejected combinations in the documentation. For a given deck, check() throws UserError if the flow is not along
   // the wall or not uniform on it.
-  if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(along_the_wall));
+  if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(stokes::along_the_wall));
   to.pair(scene.flow.type == "duct" && !scene.tube.present, "Wall", "Flow/type `duct`",
           "the wall of a duct is given in a section Tube or Channel");
   to.pair(scene.tube.present, "Wall", scene.duct_choice(), "a plane wall is represented by images, which need a fluid without other walls");

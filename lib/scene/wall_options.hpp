@@ -43,9 +43,6 @@ struct WallOptions {
   /// Returns the numbers of elements of a plate along the two periods. By default the length of an element is a twelfth of the distance of the
   /// plates, or a twelfth of `radius` if there is only one plate, but a period has at least 4 and at most 48 elements.
   std::array<int, 2> elements(const stokes::PeriodicCell& cell, double radius) const;
-
- private:
-  void check_flow(const stokes::FlowOptions& flow, const stokes::PlaneWall& wall) const;
 };
 
 }  // namespace tanktread

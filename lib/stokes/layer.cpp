@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/indices.hpp"
-#include "stokes/medium/wall_images.hpp"
 
 namespace tanktread::stokes {
 
@@ -24,7 +23,7 @@ void Layer::set_symmetry(const surface::Symmetry& symmetry) {
 
 void Layer::set_reference(const Net& unstressed, std::vector<bool> present) { sources_.set_reference(unstressed, std::move(present)); }
 
-void Layer::set_medium(std::unique_ptr<LayerMedium> medium) {
+void Layer::use(std::unique_ptr<LayerMedium> medium) {
   medium_ = std::move(medium);
   sources_.surface.repeat();
   sources_.place_again();
@@ -34,12 +33,12 @@ void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
   constexpr int least_images = 27;
   if (const auto* lattice = dynamic_cast<const Lattice*>(medium_.get()); lattice && lattice->is(cell, how)) return;
   if (!tree_ && sums_by_tree(least_images * n_nodes(), sources_.surface.options)) tree_.emplace(tree_tolerance(), sources_.precision());
-  set_medium(std::make_unique<Lattice>(cell, how));
+  use(std::make_unique<Lattice>(cell, how));
 }
 
-void Layer::set_wall(const PlaneWall& wall) {
-  assert(!shared() && "a wall is told before far sums are shared");
-  set_medium(std::make_unique<WallImages>(wall, sources_, by_clusters()));
+void Layer::set_medium(const Medium& medium) {
+  assert(!shared() && "the medium is set before far sums are shared");
+  use(medium.in_layer(sources_, by_clusters()));
 }
 
 void Layer::share(int part, int parts, std::vector<int> everybody) {

@@ -13,8 +13,7 @@
 #include "spline/space.hpp"
 #include "stokes/layer_sources.hpp"
 #include "stokes/medium/lattice.hpp"
-#include "stokes/medium/layer_medium.hpp"
-#include "stokes/medium/plane_wall.hpp"
+#include "stokes/medium/medium.hpp"
 #include "stokes/sums/tree_sum.hpp"
 #include "surface/symmetry.hpp"
 
@@ -62,8 +61,9 @@ class Layer {
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(+-1)                                                         (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
 
-  /// Sets the medium, by default unbounded fluid. repeat() and set_wall() set the media of this library.
-  void set_medium(std::unique_ptr<LayerMedium> medium);
+  /// Sets the medium, by default unbounded fluid. All later shapes must be in it. Must be called before share(). Blocks that are assembled for near
+  /// control points do not include what the medium adds.
+  void set_medium(const Medium& medium);
 
   /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again when the cell
   /// deforms. With three periods, a double layer includes an additional pressure linear in x. The double layer then does not change the mean velocity
@@ -78,10 +78,6 @@ class Layer {
   /// In later evaluations at targets off the surfaces, restricts the sums in rows `first` and higher to the images of the surfaces on the lattice. In
   /// these rows the surfaces themselves do not contribute.
   void see_images_only(int first) { images_only_ = first; }
-
-  /// Sets a plane wall; all later shapes must be in front of it. G and T become the kernels that vanish on the wall, (2.35) and (2.36). Not available
-  /// on a lattice. The blocks assembled for near control points do not include the wall.
-  void set_wall(const PlaneWall& wall);
 
   /// If far sums use clusters, divides the far sums at the sites `everybody` among the ranks 0 .. parts - 1; `part` is the number of this rank. Then
   /// `apply` computes only the share of this rank in the rows `everybody`. The caller must sum these rows over all ranks. Near-singular and singular
@@ -159,6 +155,7 @@ class Layer {
   /// Returns the tolerance of the sum by clusters: for the single layer that of the deck, for the double layer half of it, with which the measured
   /// error of the double layer is a quarter of the deck's tolerance. In a double layer, the options hold an eighth of the deck's tolerance.
   double tree_tolerance() const { return (single() ? 1 : 4) * sources_.surface.options.tolerance; }
+  void use(std::unique_ptr<LayerMedium> medium);
   void integrate(const LayerTargets& targets, const Near* kept, Net& u);
   void add_far(const LayerTargets& targets, Net& u);
   std::vector<Vec3> far_targets(const LayerTargets& targets, std::span<const int> rows) const;

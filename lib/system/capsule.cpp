@@ -180,14 +180,14 @@ bool Capsule::enter_tube(const Net& x) {
   return !layout_.any(outside);
 }
 
-/// Returns whether all collocation sites are in front of the plane walls and outside the posts, if there are any walls or posts.
-bool Capsule::in_front_of_wall(const Net& x) {
+/// Returns whether all collocation sites are in the medium, or in front of plates and outside posts, if there are any.
+bool Capsule::in_fluid(const Net& x) {
   if (solids()) return solids()->inside(targets_.at_sites() * x);
-  return !parameters_.wall || stokes::in_front({&*parameters_.wall, 1}, targets_.at_sites() * x);
+  return stokes::contains(parameters_.medium.get(), targets_.at_sites() * x);
 }
 
-/// Moves the tube to the particles. Returns whether the shape is finite, inside the tube and in front of the walls.
-bool Capsule::enters(const Net& x) { return x.allFinite() && (!duct_.tube || enter_tube(x)) && in_front_of_wall(x); }
+/// Moves the tube to the particles. Returns whether the shape is finite, and in the fluid.
+bool Capsule::enters(const Net& x) { return x.allFinite() && (!duct_.tube || enter_tube(x)) && in_fluid(x); }
 
 /// Returns whether defect() uses (3.14), which does not require a solve for the velocity.
 bool Capsule::defect_spares_system() const { return jacobian_.flows_by_system() && schur(); }

@@ -193,7 +193,7 @@ class Capsule : public Dynamics {
   void place_among_solids(const Net& x);
   void make_solid_response();
   bool enter_tube(const Net& x);
-  bool in_front_of_wall(const Net& x);
+  bool in_fluid(const Net& x);
   bool enters(const Net& x);
   Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
   void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);

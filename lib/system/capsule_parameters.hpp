@@ -2,12 +2,13 @@
 // Parameters of a Capsule, and counts of its operations.
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "quadrature/options.hpp"
+#include "stokes/medium/medium.hpp"
 #include "stokes/medium/periodic_images.hpp"
-#include "stokes/medium/plane_wall.hpp"
 #include "surface/symmetry.hpp"
 #include "system/particle.hpp"
 #include "system/solids/solid_response.hpp"
@@ -47,7 +48,7 @@ struct CapsuleParameters {
   quadrature::Options quadrature;
   std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero; not set if the scene is not periodic. The flow deforms the cell,
                                              ///< except the cell of a duct
-  std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
+  std::shared_ptr<const stokes::Medium> medium;  ///< for example a plane wall; null in unbounded fluid, a lattice or a tube
   std::optional<SolidScene> solids;          ///< plates and posts in the cell
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; Symmetry() if there is none
 

@@ -46,7 +46,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (parameters.solvers.rigid_bodies == "first kind" && !bodies_.rigid.empty())
     bodies_.tractions =
         std::make_unique<RigidTractions>(space, membranes_.unstressed(), initial, particles(), parameters.viscosity, parameters.quadrature,
-                                         parameters.solvers, parameters.wall, duct_.tube.get(), layout_.points(), ranks);
+                                         parameters.solvers, parameters.medium, duct_.tube.get(), layout_.points(), ranks);
   if (parameters_.cell) deform_cell(0);
   make_solid_response();
   if (!duct_.tube) return;

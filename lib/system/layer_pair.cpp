@@ -5,14 +5,14 @@
 namespace tanktread::coupling {
 
 LayerPair::LayerPair(const spline::Space& space, const stokes::Sites& points, const Net& unstressed, std::span<const Particle> particles,
-                     const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall)
+                     const quadrature::Options& quadrature, const stokes::Medium* medium)
     : single_layer(stokes::Layer::Kernel::single_layer, space, points, quadrature), measure(coupling::measure(particles)) {
   single_layer.set_reference(unstressed, measured_on_present(particles));
   if (std::vector<double> contrasts = viscosity_contrasts(particles); !contrasts.empty())
     double_layer.emplace(stokes::Layer::Kernel::double_layer, space, points, quadrature, std::move(contrasts));
-  if (!wall) return;
-  single_layer.set_wall(*wall);
-  if (double_layer) double_layer->set_wall(*wall);
+  if (!medium) return;
+  single_layer.set_medium(*medium);
+  if (double_layer) double_layer->set_medium(*medium);
 }
 
 void LayerPair::repeat(const stokes::PeriodicCell& cell) {

@@ -9,14 +9,14 @@
 
 namespace tanktread::coupling {
 
-/// The single layer and the double layer of (2.22) of all particles at given points, with images of the particles in a plane wall or on a lattice. A
+/// The single layer and the double layer of (2.22) of all particles at given points, in a medium or on a lattice. A
 /// medium that changes the kernels is set here for the velocity of the particles, the residual of rigid bodies and the power balance alike.
 class LayerPair {
  public:
-  /// `points`: points on the particles. `unstressed`: control net of the unstressed surfaces, to which the loads of membranes refer. `wall`: plane
-  /// wall in front of which all particles are; unset without a wall. References, except `unstressed` and `wall`, must outlive this object.
+  /// `points`: points on the particles. `unstressed`: control net of the unstressed surfaces, to which the loads of membranes refer. `medium`:
+  /// medium that contains all particles; null without one. References, except `unstressed` and `medium`, must outlive this object.
   LayerPair(const spline::Space& space, const stokes::Sites& points, const Net& unstressed, std::span<const Particle> particles,
-            const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall);
+            const quadrature::Options& quadrature, const stokes::Medium* medium);
 
   /// Sets the cell of the lattice. Must be called again when the cell deforms.
   void repeat(const stokes::PeriodicCell& cell);

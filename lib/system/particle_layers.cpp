@@ -32,7 +32,7 @@ Net Targets::serial_control_values(const Net& at_targets) const {
 ParticleLayers::ParticleLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout,
                                const Targets& targets, Phases& phases)
     : parameters_(parameters), layout_(layout), targets_(targets), phases_(phases),
-      pair_(space, targets.sites(), unstressed, parameters.particles, parameters.quadrature, parameters.wall) {
+      pair_(space, targets.sites(), unstressed, parameters.particles, parameters.quadrature, parameters.medium.get()) {
   pair_.single_layer.set_symmetry(parameters.symmetry);
   const std::vector<int> everybody = targets.projection() ? indices(targets.sites().size()) : parameters.symmetry.fundamental();
   for (stokes::Layer* const layer : {&pair_.single_layer, double_layer()})

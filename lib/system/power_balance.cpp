@@ -45,9 +45,9 @@ void Powers::add_columns(Columns& to) const {
 }
 
 PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,
-                           const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks)
+                           const quadrature::Options& quadrature, const stokes::Medium* medium, const Ranks& ranks)
     : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), places_(places(space)), values_(value_matrix(space, places_)),
-      mass_(space), layers_(space, places_, unstressed, capsule.particles(), quadrature, wall) {}
+      mass_(space), layers_(space, places_, unstressed, capsule.particles(), quadrature, medium) {}
 
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const std::shared_ptr<Evaluation> e = capsule_.evaluation(x, slope, 0);

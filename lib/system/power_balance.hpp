@@ -37,7 +37,7 @@ class PowerBalance {
  public:
   /// `capsule`: the system with its particles on their current meshes. References must outlive this object.
   PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity, const quadrature::Options& quadrature,
-               const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks);
+               const stokes::Medium* medium, const Ranks& ranks);
 
   /// Returns the powers at x, where control points move with the velocity `slope`. Evaluates the layers once at 2 x 2 Gauss points per element.
   /// Collective.

@@ -47,12 +47,12 @@ static bool admit(const LoadList& loads, const surface::Image& image) {
 }
 
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
-                           const stokes::AmbientFlow& flow, const LoadList& loads, const Vec3& wall_normal,
+                           const stokes::AmbientFlow& flow, const LoadList& loads, const stokes::Medium* medium,
                            const std::optional<stokes::PeriodicCell>& cell) {
   if (options.use == "none") return surface::Symmetry(space.n_points);
   const std::vector<stokes::AmbientFlow> flows = flow.directions();
   return surface::symmetry(space, nets, [&](const surface::Image& image) {
-    return image.signs.cwiseProduct(wall_normal) == wall_normal && (!cell || keeps(*cell, image)) && admit(loads, image) &&
+    return (!medium || medium->keeps(image.signs)) && (!cell || keeps(*cell, image)) && admit(loads, image) &&
            std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
   });
 }

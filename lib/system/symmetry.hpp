@@ -13,6 +13,7 @@
 #include "membrane/symmetric_solver.hpp"
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
+#include "stokes/medium/medium.hpp"
 #include "stokes/medium/periodic_images.hpp"
 #include "surface/symmetry.hpp"
 #include "surface/tube_wall.hpp"
@@ -32,11 +33,11 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
 
 using LoadList = std::vector<std::shared_ptr<membrane::Load>>;
 
-/// Returns the symmetries (mirror planes, half turns, point symmetry) that the flow (in all its directions over time), the loads, the normal of a
-/// plane wall, the lattice of a periodic cell, the space and all nets have in common. Returns only the identity if the option `use` is "none". Other
+/// Returns the symmetries (mirror planes, half turns, point symmetry) that the flow (in all its directions over time), the loads, the medium or a
+/// plate, the lattice of a periodic cell, the space and all nets have in common. Returns only the identity if the option `use` is "none". Other
 /// boundaries of the fluid, for example posts, are not checked; the caller must exclude them.
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
-                           const stokes::AmbientFlow& flow, const LoadList& loads = {}, const Vec3& wall_normal = Vec3::Zero(),
+                           const stokes::AmbientFlow& flow, const LoadList& loads = {}, const stokes::Medium* medium = nullptr,
                            const std::optional<stokes::PeriodicCell>& cell = {});
 
 /// Returns the symmetries of a scene in a channel: mirror planes and half turns that map the wall onto itself.

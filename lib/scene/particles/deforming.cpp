@@ -222,7 +222,7 @@ class Deforming : public ParticleSystem {
   coupling::Powers powers(const motion::State& state) {
     const auto clock = phases_.time("power balance");
     if (!power_)
-      power_.emplace(*capsule_, body().space, body().unstressed, scene_.flow.viscosity, scene_.quadrature, scene_.wall.plane(), ranks_);
+      power_.emplace(*capsule_, body().space, body().unstressed, scene_.flow.viscosity, scene_.quadrature, scene_.medium().get(), ranks_);
     coupling::Powers powers = (*power_)(state.x, state.history.front());
     if (!fields_->empty()) powers.forces += fields_->power(capsule_->evaluation(state.x, state.history.front(), 0)->fluid_velocity());
     return powers;

@@ -94,10 +94,10 @@ class Free : public ParticleSystem {
     return body;
   }
 
-  /// Returns the free body with the given equation for its traction, in a tube or at a wall if the scene has one.
+  /// Returns the free body with the given equation for its traction, in a tube or a medium if the scene has one.
   static std::unique_ptr<coupling::LoneRigidBody> driven(const Scene& scene, const Body& body, coupling::RigidTractions& tractions) {
     const Vec3& centre = scene.particle.shape.center;
-    if (scene.tube.present || scene.wall.present)
+    if (scene.tube.present || scene.medium())
       return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
                                                         rigid(scene, body));
     return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, rigid(scene, body));

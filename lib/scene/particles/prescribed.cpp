@@ -44,7 +44,7 @@ void PrescribedRow::add_columns(const Scene& scene, Columns& to) const {
 }
 
 coupling::RigidTractions tractions_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
-  return {body.space, body.rest, body.radius, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, tube, scene.wall.plane()};
+  return {body.space, body.rest, body.radius, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, tube, scene.medium()};
 }
 
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases) {

@@ -29,7 +29,7 @@ spline::Space common_space(std::span<const Particle> bodies) {
 }  // namespace
 
 BodyLayer::BodyLayer(std::span<const Particle> bodies, double viscosity, const quadrature::Options& quadrature,
-                     const std::optional<stokes::PlaneWall>& wall, std::span<const int> own, Ranks& ranks)
+                     const stokes::Medium* medium, std::span<const int> own, Ranks& ranks)
     : bodies_(without_others(bodies)),
       space_(common_space(bodies_)),
       viscosity_(viscosity),
@@ -44,8 +44,8 @@ BodyLayer::BodyLayer(std::span<const Particle> bodies, double viscosity, const q
   }
   std::ranges::set_difference(own, points_, std::back_inserter(others_));
   if (!others_.empty()) beyond_.emplace(stokes::Layer::Kernel::single_layer, space_, stokes::Sites(), quadrature);
-  if (wall) layer_.set_wall(*wall);
-  if (wall && beyond_) beyond_->set_wall(*wall);
+  if (medium) layer_.set_medium(*medium);
+  if (medium && beyond_) beyond_->set_medium(*medium);
 }
 
 /// Sets the two vectors of the regularising term (2.10) of each body. flux_: flux vector b = dV/dx, with the volume V. outward_: s (R c)/(b.c), with

@@ -10,7 +10,7 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/layer.hpp"
-#include "stokes/medium/plane_wall.hpp"
+#include "stokes/medium/medium.hpp"
 #include "system/particle.hpp"
 #include "system/ranks.hpp"
 
@@ -23,7 +23,7 @@ class BodyLayer {
   /// `bodies`: the rigid bodies; their blocks are rows of nets of all particles. `own`: indices, in these nets, of the collocation points at which
   /// this rank computes velocities. References must outlive this object.
   BodyLayer(std::span<const Particle> bodies, double viscosity, const quadrature::Options& quadrature,
-            const std::optional<stokes::PlaneWall>& wall, std::span<const int> own, Ranks& ranks);
+            const stokes::Medium* medium, std::span<const int> own, Ranks& ranks);
 
   /// Sets the shape x with the collocation sites `at`. Assembles and factors the single layer A at the sites of the bodies, without images on a
   /// lattice. `keep_rows`: true to store the matrix for many calls of velocity(); false to save memory, and velocity() is then zero in the rows of

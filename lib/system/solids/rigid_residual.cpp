@@ -27,11 +27,11 @@ quadrature::Options for_residual(quadrature::Options options) {
 }  // namespace
 
 RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles,
-                             double viscosity, const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, Ranks& ranks)
+                             double viscosity, const quadrature::Options& quadrature, const stokes::Medium* medium, Ranks& ranks)
     : viscosity_(viscosity),
       ranks_(ranks),
       between_(between_sites(space, rest, blocks_of_bodies(particles))),
-      layers_(space, between_.places, unstressed, particles, for_residual(quadrature), wall) {}
+      layers_(space, between_.places, unstressed, particles, for_residual(quadrature), medium) {}
 
 Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls) {
   layers_.place(x);

@@ -8,7 +8,7 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
-#include "stokes/medium/plane_wall.hpp"
+#include "stokes/medium/medium.hpp"
 #include "system/collocation.hpp"
 #include "system/layer_pair.hpp"
 #include "system/particle.hpp"
@@ -22,7 +22,7 @@ namespace tanktread::coupling {
 struct FluidWalls {
   Tube* tube = nullptr;
   SolidResponse* solids = nullptr;
-  std::optional<stokes::PlaneWall> plane;
+  std::shared_ptr<const stokes::Medium> medium;
 };
 
 /// Residual of the velocity on rigid bodies at Gauss points between the collocation sites. With this residual, (2.11) corrects the forces for the
@@ -31,7 +31,7 @@ class RigidResidual {
  public:
   /// The arguments are explained at the constructor of RigidTractions. Only `particles` that are rigid bodies have Gauss points.
   RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles, double viscosity,
-                const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, Ranks& ranks);
+                const quadrature::Options& quadrature, const stokes::Medium* medium, Ranks& ranks);
 
   void repeat(const stokes::PeriodicCell& cell) { layers_.repeat(cell); }
 

@@ -90,12 +90,12 @@ Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& res
 
 RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles,
                                double viscosity, const quadrature::Options& quadrature, const SolverOptions& solvers,
-                               const std::optional<stokes::PlaneWall>& wall, Tube* tube, const std::vector<int>& own, Ranks& ranks)
+                               std::shared_ptr<const stokes::Medium> medium, Tube* tube, const std::vector<int>& own, Ranks& ranks)
     : alone_(std::ranges::all_of(particles, [](const Particle& one) { return one.rigid.has_value(); })),
       particles_(bodies_among(particles)),
-      walls_{tube, nullptr, wall},
-      layer_(particles_, viscosity, quadrature, wall, own, ranks),
-      residual_(space, unstressed, rest, particles, viscosity, quadrature, wall, ranks),
+      walls_{tube, nullptr, std::move(medium)},
+      layer_(particles_, viscosity, quadrature, walls_.medium.get(), own, ranks),
+      residual_(space, unstressed, rest, particles, viscosity, quadrature, walls_.medium.get(), ranks),
       sites_(collocation_matrix(space)),
       mass_(space, 8),  // mass matrix by eight Gauss points per direction, because the area element is not a polynomial
       krylov_(solvers.of(solvers.velocity)),
@@ -103,8 +103,9 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed
       bodies_(particles_.size()) {}
 
 RigidTractions::RigidTractions(const spline::Space& space, const Net& surface, double radius, double viscosity, const quadrature::Options& quadrature,
-                               const SolverOptions& solvers, Ranks& ranks, Tube* tube, const std::optional<stokes::PlaneWall>& wall)
-    : RigidTractions(space, surface, surface, std::vector{single(space, radius)}, viscosity, quadrature, for_single(solvers), wall, tube, {}, ranks) {
+                               const SolverOptions& solvers, Ranks& ranks, Tube* tube, std::shared_ptr<const stokes::Medium> medium)
+    : RigidTractions(space, surface, surface, std::vector{single(space, radius)}, viscosity, quadrature, for_single(solvers), std::move(medium), tube,
+                     {}, ranks) {
   if (tube) tube->set_reference(surface);
 }
 
@@ -245,7 +246,7 @@ SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {
 }
 
 bool RigidTractions::inside(const Net& x) const {
-  return (!walls_.tube || walls_.tube->gap() > 0) && (!walls_.plane || stokes::in_front({&*walls_.plane, 1}, sites_ * x));
+  return (!walls_.tube || walls_.tube->gap() > 0) && stokes::contains(walls_.medium.get(), sites_ * x);
 }
 
 Mat3 RigidTractions::moment(std::size_t p) {

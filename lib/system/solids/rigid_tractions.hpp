@@ -13,7 +13,7 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
-#include "stokes/medium/plane_wall.hpp"
+#include "stokes/medium/medium.hpp"
 #include "system/particle.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/body_layer.hpp"
@@ -52,12 +52,12 @@ class RigidTractions {
   /// `space`: common space of all particles. `unstressed`, `rest`: control nets of all particles, unstressed and at rest. `own`: collocation points
   /// whose rows this rank computes. References must outlive this object.
   RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles, double viscosity,
-                 const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall, Tube* tube,
+                 const quadrature::Options& quadrature, const SolverOptions& solvers, std::shared_ptr<const stokes::Medium> medium, Tube* tube,
                  const std::vector<int>& own, Ranks& ranks);
 
-  /// Constructs the equation of a single body, in a tube or near a plane wall if they are given. `surface`: net of the body.
+  /// Constructs the equation of a single body, in a tube or in a medium if they are given. `surface`: net of the body.
   RigidTractions(const spline::Space& space, const Net& surface, double radius, double viscosity, const quadrature::Options& quadrature,
-                 const SolverOptions& solvers, Ranks& ranks, Tube* tube = nullptr, const std::optional<stokes::PlaneWall>& wall = {});
+                 const SolverOptions& solvers, Ranks& ranks, Tube* tube = nullptr, std::shared_ptr<const stokes::Medium> medium = nullptr);
 
   /// Sets the periodic cell of the particles, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
@@ -105,7 +105,7 @@ class RigidTractions {
 
   BodyLayer& layer() { return layer_; }  ///< returns the single layer on the net passed to place() last
 
-  /// Returns whether the bodies with the net x are inside the tube and in front of the plane wall. If there is a tube, call Tube::place(x) before.
+  /// Returns whether the bodies with the net x are inside the tube and in the medium. If there is a tube, call Tube::place(x) before.
   bool inside(const Net& x) const;
 
   /// Returns the results for the bodies in the order of the particles. Their moments lack the collocation-error correction that moment() adds.

@@ -10,7 +10,8 @@ FrozenLayers::FrozenLayers(const spline::Space& space, const Net& unstressed, co
                            const Targets& targets, const membrane::MassMatrix& mass, ParticleLayers& layers)
     : unstressed_(unstressed), parameters_(parameters), layout_(layout), targets_(targets), mass_(mass), layers_(layers) {
   nodal_.share(layout.ranks().rank(), layout.ranks().size(), parameters.symmetry.fundamental());
-  if (targets.projection()) at_sites_.emplace(space, space.collocation, unstressed, parameters.particles, parameters.quadrature, parameters.wall);
+  if (targets.projection())
+    at_sites_.emplace(space, space.collocation, unstressed, parameters.particles, parameters.quadrature, parameters.medium.get());
 }
 
 void FrozenLayers::assemble(const Net& at, const Net& x) {

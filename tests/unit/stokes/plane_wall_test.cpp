@@ -141,7 +141,7 @@ const Surface& ellipsoid() {
 Net layer_of(Layer::Kernel kernel, const Net& x, const Net& f, const PlaneWall& wall, double tolerance, const std::string& far_sum = "auto") {
   const Surface& of = ellipsoid();
   Layer layer(kernel, of.space, of.space.collocation, {.tolerance = tolerance, .far_sum = far_sum});
-  layer.set_wall(wall);
+  layer.set_medium(wall);
   layer.place(x);
   Net u = Net::Zero(of.space.n_points, 3);
   layer.apply(f, of.all, u);
@@ -196,7 +196,7 @@ TEST(PlaneWall, RowsMakeTheSameSums) {
   const Surface& of = ellipsoid();
   for (const auto kernel : {single, twofold}) {
     Layer layer(kernel, of.space, of.space.collocation, {.tolerance = 1e-7});
-    layer.set_wall(of.below(0.02));
+    layer.set_medium(of.below(0.02));
     layer.place(of.x);
     Rows<double> rows;
     layer.assemble(of.all, rows);
@@ -213,7 +213,7 @@ TEST(PlaneWall, FluidSticksToIt) {
   const std::vector<int> targets = {0, 1, 2, 3, 4, 5, 6};
   for (const auto kernel : {single, twofold}) {
     CrossLayer layer(of.space, {.tolerance = 1e-6}, kernel);
-    layer.set_wall(wall);
+    layer.set_medium(wall);
     layer.place(of.x);
     Net u = Net::Zero(7, 3);
     layer.apply(of.field, at, targets, u);

@@ -247,7 +247,7 @@ TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
 /// Drag of a sphere that moves along a plane wall at a gap of one radius: Goldman, Cox & Brenner 1967.
 TEST(RigidTractions, AWallResists) {
   ByTractions one({{Vec3(0.2, 0, 2), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
-  one.parameters.wall = stokes::PlaneWall(Vec3::Zero(), Vec3(0, 0, 1));
+  one.parameters.medium = std::make_shared<stokes::PlaneWall>(Vec3::Zero(), Vec3(0, 0, 1));
   Capsule system = one.system();
   EXPECT_NEAR(system.evaluate(one.rest)->rigid().force(0)[0] / (6 * pi * viscosity), 1.38275238, 1e-5);
 }
