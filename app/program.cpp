@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -238,6 +239,7 @@ RunRequest run_request(const Arguments& arguments, const std::string& deck, cons
 /// Runs the deck on finer and finer levels until the errors requested by the section Accuracy are reached. With `--check`, only prints the predicted
 /// errors and levels. Returns the exit code.
 int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, const Registry& registry, bool speaks) {
+  const auto start = std::chrono::steady_clock::now();
   const RunRequest whole = run_request(arguments, deck.effective(), registry);
   if (!arguments.check) check_vacant(whole);
   accuracy::Task task{scene.accuracy, scene.expect, deck.values(), deck.effective(), whole.output, whole.resume, whole.overwrite, whole.quiet,
@@ -254,6 +256,10 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
   };
   program.run = [&](const std::string& text, const std::filesystem::path& directory, bool resume, std::optional<double> limit) {
     Scene of_level = scene_of(text, {}, arguments, registry);
+    if (auto& own = of_level.output.wall_clock_limit; own) {  // the limit is that of all levels together
+      const std::chrono::duration<double> past = std::chrono::steady_clock::now() - start;
+      own = std::max(0., *own - past.count());
+    }
     if (limit) of_level.output.wall_clock_limit = std::min(*limit, of_level.output.wall_clock_limit.value_or(*limit));
     RunRequest request = run_request(arguments, text, registry);
     request.output = directory, request.resume = resume, request.overwrite = true, request.quiet = true, request.of_ladder = true;

@@ -48,8 +48,15 @@ Curve difference(const Curve& a, const Curve& b);
 /// Returns the largest value that is not NaN; NaN if there is none.
 double largest(const std::vector<double>& values);
 
-/// Returns the time average of a curve by the trapezoidal rule over the parts without NaN; the value itself if the curve has one point.
-double mean(const Curve& curve);
+/// Time average of a curve, and the error of its quadrature.
+struct Average {
+  double value, error;
+};
+
+/// Returns the time average over the parts of a curve without NaN, of the cubics through the four nearest points; the value itself if the curve has
+/// one point. The error is estimated from every second and every fourth point. All levels have the same points where the interval of snapshots limits
+/// their steps, so that this error does not show in differences between levels.
+Average average(const Curve& curve);
 
 /// Returns the standard error of the time average, from the averages over eight parts of equal length, which are assumed to be independent; NaN if
 /// the curve has fewer than 32 points.

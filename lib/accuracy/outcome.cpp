@@ -34,7 +34,7 @@ bool holds(const output::RunRecord& record, const std::string& name) {
 /// Returns the values whose error a request limits, as a curve: the whole series, its last value, or its average.
 Curve part(const Curve& whole, Of of) {
   if (of == Of::run || whole.at.empty()) return whole;
-  return {{0}, {of == Of::end ? whole.values.back() : mean(whole)}};
+  return {{0}, {of == Of::end ? whole.values.back() : average(whole).value}};
 }
 
 double magnitude(const Curve& whole) {
@@ -191,6 +191,7 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
     found.estimate = {std::max(sizes.back(), found.estimate.ratio > most_ratio ? before / most_ratio : before), found.estimate.ratio, ""};
   }
   if (!sizes.empty()) found.estimate.error = std::max(found.estimate.error, cancelled(request, levels, sizes.back(), looser));
+  if (request.of == Of::mean) found.estimate.error += average(whole).error;
   if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
   const std::vector<double> noise = norms(differences(request.series, Of::run, levels));
   found.vanishes = request.relative && !tiny && noise.size() > 1 && std::min(noise.back(), noise[noise.size() - 2]) > magnitude(whole) / 2 &&

@@ -61,7 +61,7 @@ Request request_of(const std::string& text) {
   if (number.ends_with('%')) request.relative = true, number = trimmed(number.substr(0, number.size() - 1));
   const auto [rest, error] = std::from_chars(number.data(), number.data() + number.size(), request.value);
   if (error != std::errc() || rest != number.data() + number.size() || !(request.value > 0) || request.value > 1e300)
-    refuse_form(text, "needs a positive number after the sign =");
+    refuse_form(text, "needs a positive number after the sign =, in the unit of the series and without its name");
   if (request.relative) request.value /= 100;
   return request;
 }

@@ -65,7 +65,8 @@ std::vector<double> numbers_with_units(const std::string& path, const Teuchos::P
   for (const std::string& text : texts) try {
       numbers.push_back(units->number(text, unit));
     } catch (const std::invalid_argument& error) {
-      refuse(path, "a number with a unit", unit, in_quotes(shortened(text, 80)) + ", which " + error.what());
+      const char* must = error.what() == Units::plain ? "a plain number" : "a number with a unit";
+      refuse(path, must, unit, in_quotes(shortened(text, 80)) + ", which " + error.what());
     }
   return numbers;
 }

@@ -83,7 +83,7 @@ double Units::number(const std::string& text, std::string_view kind) const {
   const Unit own = parsed(system_, scaled(kind));
   const double factor = ratio(unit, own);
   if (factor > 0) return number * factor;
-  throw std::invalid_argument(own && kind != "1" ? "has a unit of another kind" : "has a unit where a plain number belongs");
+  throw std::invalid_argument(own && kind != "1" ? "has a unit of another kind" : std::string(plain));
 }
 
 std::string Units::in_si(std::string_view kind, double number) const {

@@ -21,6 +21,9 @@ struct UnitOptions {
 /// `force/length`.
 class Units {
  public:
+  /// Message of number() for keys whose values have no unit, or the unit of another choice of the deck.
+  static constexpr std::string_view plain = "has a unit where a plain number belongs";
+
   /// Throws UserError if the option `length`, `time` or `force` is not a quantity of this dimension, or if UDUNITS finds no table of units.
   explicit Units(const UnitOptions& options);
 

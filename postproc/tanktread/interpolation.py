@@ -23,8 +23,14 @@ def averages_between(t, values, ends):
 
 
 def mean(t, values):
-    """Returns the average of values(t) over the times t by the trapezoidal rule; the value if there is one time."""
-    return float(averages_between(t, values, t[[0, -1]])[0] if t[-1] > t[0] else values[-1])
+    """Returns the average of values(t) over the times t, of the cubics through the four nearest rows; the value if
+    there is one time. Rows of a repeated time, where a mesh has changed, are left out."""
+    kept = numpy.diff(t, prepend=-numpy.inf) > 0
+    t, values = numpy.asarray(t)[kept], numpy.asarray(values)[kept]
+    if len(t) < 2:
+        return float(values[-1])
+    middles = interpolated(t, values, (t[1:] + t[:-1]) / 2, order=4)
+    return float(numpy.diff(t) @ (values[1:] + 4 * middles + values[:-1]) / 6 / (t[-1] - t[0]))
 
 
 def difference(t, values, curve_t, curve_values):

@@ -111,10 +111,19 @@ def _set(settings):
     return [word for key, value in settings.items() for word in ("--set", f"{key}={text_of(value)}")]
 
 
+STOPS = signal.SIGTERM, signal.SIGINT, signal.SIGHUP  # a second one kills a run that is writing its checkpoint
+
+
+def _signal(code):
+    """Returns the signal that killed a program with this exit code, or 0; mpirun ends with 128 plus the signal."""
+    killed = 0 if code is None else -code if code < 0 else code - 128
+    return killed if 0 < killed < 65 else 0
+
+
 class Outcome:
     """The end of one run of a Study: `done` (as far as its deck said), `failed`, `refused` (a mistake in the deck) or
-    `slow` (stopped at the time limit). `message`: its last line on standard error. `seconds`, `processor_seconds` (of
-    all ranks). `series`, `final`, `counts` and `phases`: what it recorded."""
+    `slow` (stopped at the time limit, or by a signal: `stopped`). `message`: its last line on standard error.
+    `seconds`, `processor_seconds` (of all ranks). `series`, `final`, `counts` and `phases`: what it recorded."""
 
     def __init__(self, directory, note):
         self.directory, self.message, self.seconds = pathlib.Path(directory), note["message"], note["seconds"]
@@ -124,7 +133,8 @@ class Outcome:
     done = property(lambda self: self.code in (0, 1) and (self.directory / "summary.yaml").exists())
     failed = property(lambda self: self.status == "failed")
     refused = property(lambda self: self.code == 2)
-    slow = property(lambda self: self.code in (None, 4))
+    stopped = property(lambda self: self.code == 4 or _signal(self.code) in STOPS)
+    slow = property(lambda self: self.code is None or self.stopped)
 
     run = functools.cached_property(lambda self: Run(self.directory))
     series = property(lambda self: self.run.series)
@@ -159,7 +169,8 @@ class Study:
 
     def run(self, decks, settings, ranks=1):
         """Returns the Outcome of `tanktread decks… --set …`. `decks`: a path (`deck_at`), or several that overlay each
-        other; `settings`: {"Section/key": value}. A run that a signal stopped is resumed from its checkpoint."""
+        other; `settings`: {"Section/key": value}. A run that a signal stopped, or that was killed with its study, is
+        resumed from its checkpoint."""
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
         note, before = where / "outcome.json", None
@@ -167,18 +178,20 @@ class Study:
             before = Outcome(where, parsed(note, json.loads))
         # a run that never began is made again: another program may know the keys that were refused
         began = before and not before.refused and (where / "run.h5").exists()
-        if before and (where in self._made or (began and before.code != 4 and not self.fresh)):
+        if before and (where in self._made or (began and not before.stopped and not self.fresh)):
             return before
         self._made.add(where)
         # without --bind-to none, runs side by side would all be bound to the first cores
         launcher = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks)] if ranks > 1 else []
-        if before and before.code == 4 and not self.fresh:
-            words = ["--resume", str(where)]
-        else:
-            shutil.rmtree(where, ignore_errors=True)  # of another program, or broken off
+        program, made = launcher + [str(self.program), "--quiet"], None
+        # without a note the study was killed during the run
+        if (where / "run.h5").exists() and (before.stopped if before else True) and not self.fresh:
+            made = self._make(program + ["--resume", str(where)])
+        if made is None or made["code"] == 2:  # there is no checkpoint
+            shutil.rmtree(where, ignore_errors=True)
             where.mkdir(parents=True)
-            words = [str(deck_at(deck)) for deck in decks] + _set(settings) + ["--output", str(where)]
-        made = self._make(launcher + [str(self.program)] + words + ["--quiet"])
+            words = [str(deck_at(deck)) for deck in decks] + _set(settings)
+            made = self._make(program + words + ["--output", str(where)])
         partial = note.with_suffix(".part")  # the note appears as a whole
         partial.write_text(json.dumps(made))
         partial.rename(note)
@@ -196,10 +209,10 @@ class Study:
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = code = os.waitstatus_to_exitcode(status)
             self._running.discard(process)
-        killed = -code if code < 0 else code - 128  # mpirun ends with 128 plus the signal
+        killed = _signal(code)
         if self.limit and killed in (signal.SIGKILL, signal.SIGXCPU):
             code, said = None, [f"stopped after {self.limit:g} s of processor time"]
-        elif 0 < killed < 65:
+        elif killed:
             said.append(f"killed by signal {killed}")
         return {"code": code, "message": said[-1] if said else "", "seconds": time.monotonic() - start,
                 "processor_seconds": usage.ru_utime + usage.ru_stime, "command": " ".join(map(quoted, words))}

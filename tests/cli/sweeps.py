@@ -285,16 +285,19 @@ def a_sweep_that_is_killed_goes_on():
     deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "final time: 8.0"))
     deck(STUDY, "study.yaml")
     for number in signal.SIGTERM, signal.SIGKILL:
-        process = subprocess.Popen([SOURCE / "postproc/tanktread-sweep", "study.yaml", "--jobs", "2"], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        process = subprocess.Popen([SOURCE / "postproc/tanktread-sweep", "study.yaml", "--jobs", "2"], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                   start_new_session=True)
         before = len(list(pathlib.Path("results/study/runs").glob("*/outcome.json"))) if pathlib.Path("results").exists() else 0
         while process.poll() is None and len(list(pathlib.Path("results/study/runs").glob("*/outcome.json"))) < before + 1:
             time.sleep(0.02)
-        process.send_signal(number)
+        os.killpg(process.pid, number)  # the study and its runs, as a queue does; the study tells its runs once more
         process.wait()
     kept = {path: path.stat().st_mtime_ns for path in pathlib.Path("results/study/runs").glob("*/outcome.json") if '"code": 0' in path.read_text()}
     check(kept, "nothing was done before")
     _sweep("study.yaml", "--jobs", "2")
     check(all(row["status"] == "done" for row in _rows()), _rows())
+    notes = [path.read_text() for path in pathlib.Path("results/study/runs").glob("*/outcome.json")]
+    check(any("--resume" in note for note in notes), "no run was resumed", notes)
     check(all(path.stat().st_mtime_ns == when for path, when in kept.items()), "a run that was there is made again")
 
 

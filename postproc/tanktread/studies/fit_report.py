@@ -101,7 +101,8 @@ def told(fits, rows):
         shown = enumerate(itertools.compress(fit.unknowns, fit.told))
         for (i, one), (j, other) in itertools.combinations(shown, 2):
             lines.append(f"  correlation of {one.name} and {other.name}: {correlation[i, j]:.3f}")
-        if any(datum.count >= SERIES for datum in fit.data):
+        # residuals far below the errors of the data, such as round-off, say nothing about the model
+        if any(datum.count >= SERIES for datum in fit.data) and abs(fit.residual).max() > 1e-2:
             z = fit.runs_test()
             meaning = "change as by chance" if z > -2 else "stay the same too long: the model is not the data’s"
             lines.append(f"  signs of the residuals along the data: {meaning} ({z:.1f} standard deviations)")

@@ -98,9 +98,27 @@ TEST(Difference, IsNanWhereACurveIs) {
   EXPECT_TRUE(std::isnan(largest({nan, nan})));
 }
 
-TEST(Mean, IsTheIntegralDividedByTheTime) {
-  EXPECT_DOUBLE_EQ(mean({{0, 1, 4}, {0, 2, 2}}), 7. / 4);
-  EXPECT_DOUBLE_EQ(mean({{3}, {5}}), 5);
+TEST(Average, IsTheIntegralDividedByTheTime) {
+  EXPECT_DOUBLE_EQ(average({{0, 1}, {0, 2}}).value, 1);
+  EXPECT_DOUBLE_EQ(average({{3}, {5}}).value, 5);
+  EXPECT_NEAR(average({{0, 1, 1.5, 3, 4}, {0, 1, 3.375, 27, 64}}).value, 16, 1e-12);  // cubics are exact
+  EXPECT_DOUBLE_EQ(average({{0, 1, 1, 2}, {0, 0, 1, 1}}).value, 0.5);                 // an abscissa of two values is a jump
+}
+
+TEST(Average, KnowsTheErrorOfItsQuadrature) {
+  const auto sampled = [](int n, double (*f)(double)) {
+    Curve curve;
+    for (int k = 0; k <= n; ++k) curve.at.push_back(static_cast<double>(k) / n), curve.values.push_back(f(curve.at.back()));
+    return average(curve);
+  };
+  for (const int n : {20, 40, 80}) {
+    const Average smooth = sampled(n, [](double x) { return std::sin(9 * x); });
+    const double error = std::abs(smooth.value - (1 - std::cos(9.)) / 9);
+    EXPECT_GT(smooth.error, error / 3) << n;
+    EXPECT_LT(smooth.error, 30 * error) << n;  // as of fourth order, but the error falls faster where its signs alternate
+    const Average jump = sampled(n, [](double x) { return x < 0.51 ? 0. : 1.; });
+    EXPECT_GT(jump.error, std::abs(jump.value - 0.49) / 3) << n;
+  }
 }
 
 TEST(StatisticalError, IsTheStandardErrorOfIndependentParts) {
