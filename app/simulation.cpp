@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <optional>
@@ -333,10 +334,10 @@ class Run {
     if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
     if (scene_.has_gaps()) end_at_contact();
     if (coupling::any_told_to_stop(told_to_stop())) return by_signal;
-    const auto limit = scene_.output.wall_clock_limit;
-    if (limit && ranks_.seconds_since(start_) > *limit) return by_clock;
-    const auto tolerance = scene_.time.steady_tolerance;
-    if (tolerance && row_.largest("shape_velocity") < *tolerance) return steady;
+    if (scene_.output.too_late(ranks_.seconds_since(start_))) return by_clock;
+    const double before = std::nextafter(state_.time, 0);  // so that a jump now counts as later: the velocities are those before it
+    const bool flow_changes = scene_.flow.history && std::isfinite(scene_.flow.history->next_kink(before));
+    if (scene_.time.steady_tolerance && !flow_changes && row_.largest("shape_velocity") < *scene_.time.steady_tolerance) return steady;
     if (scene_.time.end_when_past && least_way(scene_, particle_->body(), row_) > *scene_.time.end_when_past) return past;
     return {};
   }

@@ -16,6 +16,7 @@ namespace tanktread {
 
 void DomainOptions::declare(deck::Section& section) {
   if (registered && !registered->empty()) declare_medium(section);
+  if (medium) return;
   section.key("periodic", periodic, deck::Choice{"x1 x2 x3", "x1 x2", "x1 x3", "x2 x3", "x1", "x2", "x3"},
               "directions in which particles and flow are periodic. If all three are periodic, the mean velocity over the cell, particles "
               "included, equals the ambient flow, and a net force on the particles is balanced by a uniform pressure gradient");

@@ -55,6 +55,8 @@ void reject_searches(const Scene& scene, Rejections& to) {
   to.add(scene.continuation.present && !steady, "Continuation needs a section Steady, because it continues steady shapes.");
   to.pair(search && scene.flow.history && !scene.periodic.present, scene.sought(), "Flow/history",
           "no shape is steady in a flow that changes in time");
+  to.pair(scene.time.steady_tolerance && scene.flow.history && scene.flow.history->type == "sine", "Time/steady tolerance",
+          "Flow/history/type `sine`", "no shape is steady in a flow that oscillates");
   to.pair(search && !scene.posts.empty(), scene.sought(), "Particle/shape `cylinder`",
           "a particle among posts drifts past them, so that no shape is steady");
   to.pair(search && scene.volume.constraint != "exact", scene.sought(),

@@ -36,6 +36,15 @@ def a_skalak_membrane_in_explicit_steps():
     _relax("Membrane/law=Skalak", "Membrane/area dilatation=2.0", "Time/scheme=bs3", "Time/maximum step=0.1")
 
 
+def velocities_are_relative_to_relaxation_in_every_unit_of_time():
+    path = deck(DECK.replace("20.0", "0.5, steady tolerance: 1.0e-9"))
+    run(path, "--output", "one", "--quiet")
+    run(path, "--output", "half", "--quiet", "--set", "Flow/viscosity=2", "--set", "Time/final time=1")  # the unit of time is half as long
+    for name in "normal_velocity", "shape_velocity":
+        one, half = series("one", name)[0], series("half", name)[0]
+        check(abs(half / one - 1) < 1e-10, f"{name} is {one}, and {half} in another unit of time")
+
+
 def a_drop_in_a_fluid_that_turns_relaxes_as_in_one_at_rest():
     """D and energy, whatever its mesh does: to what steps and rule let pass."""
     settings = ["Membrane/law=surface tension", "Membrane/pre-inflation=0", "Particle/drift=free", "Time/final time=2.0", "Time/tolerance=1e-5"]

@@ -22,6 +22,15 @@ def a_capsule_that_treads_is_found_steady_where_its_deformation_is():
     check(series("out", "normal_velocity")[-1] > 5e-3, "the largest normal velocity would have told as well")
 
 
+def a_run_is_not_steady_before_its_flow_has_begun():
+    begins = "history: {times: [0, 0.5, 0.5], amplitudes: [0, 0, 1]}"
+    text = DECK.replace("type: simple shear", f"type: simple shear, {begins}").replace("final time: 15", "final time: 1")
+    run(deck(text), "--output", "late", "--quiet")
+    check(series("late", "time")[-1] == 1 and series("late", "taylor_inertia")[-1] > 0.1, series("late", "time"), "ended at rest")
+    sine = text.replace(begins, "history: {type: sine, frequency: 1}")
+    check("oscillates" in run(deck(sine), "--check", code=2).stderr, "a flow that oscillates has no steady shape")
+
+
 def a_shape_that_is_not_found_from_rest_is_approached_through_weaker_flows():
     """Near the fold of a capsule in extension, at Ca 0.52 on this mesh. The way says where steady shapes end."""
     text = """

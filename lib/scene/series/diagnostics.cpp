@@ -67,8 +67,8 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
   return site;
 }
 
-/// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. If the fluid is at rest, the unit is R_C divided by the unit of time.
-double unit_speed(const Scene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : body.radius; }
+/// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. If the flow has none, the rate is that of relaxation (Scene::rate).
+double unit_speed(const Scene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : scene.rate() * body.radius; }
 
 /// Returns an array with one number per rank: `mine` for this rank and 0 for all others, so that a sum over ranks collects the numbers.
 std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
@@ -171,7 +171,7 @@ void DeformingRow::add_columns(const Scene& one, Columns& to) const {
   to.add(normal_velocity,
          {"normal_velocity", "1",
           "largest normal velocity |v.n| on the surface relative to the mean velocity of the particle, divided by rate x R_C, or in a tube by the "
-          "mean velocity of the fluid. It is zero if the shape is steady. R_C: radius of the sphere with the particle's volume"});
+          "mean velocity of the fluid. If the flow has neither, the rate is surface modulus/(viscosity R_C). It is zero if the shape is steady. R_C: radius of the sphere with the particle's volume"});
   to.add(shape_velocity, {"shape_velocity", "1",
                           "root mean square of the part of the normal velocity v.n that changes the shape smoothly (6.8), divided like "
                           "`normal_velocity`. The run is steady when it falls below Time/steady tolerance"});
