@@ -228,8 +228,7 @@ RunRequest run_request(const Arguments& arguments, const std::string& deck, cons
   request.output = request.resume             ? arguments.resume
                    : arguments.output.empty() ? "results/" + default_name(arguments.decks, arguments.settings)
                                               : arguments.output;
-  request.overwrite = arguments.overwrite;
-  request.quiet = arguments.quiet;
+  request.overwrite = arguments.overwrite, request.quiet = arguments.quiet;
   request.deck_text = deck;
   request.changed = [=, &registry](const std::vector<std::string>& settings) { return scene_of(deck, settings, arguments, registry); };
   request.provenance = provenance();
@@ -256,18 +255,13 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
   };
   program.run = [&](const std::string& text, const std::filesystem::path& directory, bool resume, std::optional<double> limit) {
     Scene of_level = scene_of(text, {}, arguments, registry);
-    if (auto& own = of_level.output.wall_clock_limit; own) {  // the limit is that of all levels together
-      const std::chrono::duration<double> past = std::chrono::steady_clock::now() - start;
-      own = std::max(0., *own - past.count());
-    }
-    if (limit) of_level.output.wall_clock_limit = std::min(*limit, of_level.output.wall_clock_limit.value_or(*limit));
+    of_level.output.limit(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), limit);
     RunRequest request = run_request(arguments, text, registry);
     request.output = directory, request.resume = resume, request.overwrite = true, request.quiet = true, request.of_ladder = true;
     return simulate(of_level, request);
   };
   if (!arguments.check) return accuracy::climb(task, program);
-  for (const std::string& line : accuracy::forecast(task, program))
-    if (speaks) std::cout << line << "\n";
+  for (const std::string& line : accuracy::forecast(task, program)) std::cout << (speaks ? line + "\n" : "");
   return done;
 }
 

@@ -31,8 +31,8 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("steady tolerance", steady_tolerance, deck::positive(), "1",
               "value of the series `shape_velocity` below which the shape counts as steady and the run ends: root mean square of the "
               "normal velocity that changes the shape, divided by the velocity scale of the flow (6.8). If not given, the run continues "
-              "to the final time; while a table of Flow/history lasts, it continues in any case. At the default tolerances, the series falls to 2e-4 for a capsule whose membrane tank-treads; a smaller "
-              "value may never be reached");
+              "to the final time; while a table of Flow/history lasts, it continues in any case. At the default tolerances, the series falls "
+              "to 2e-4 for a capsule whose membrane tank-treads; a smaller value may never be reached");
   section.key("end when past", end_when_past, deck::any(), "length",
               "position x1 (in a bent channel, arc length of the centre line); the run ends when the centroids of all particles are "
               "beyond it. If not given, the run ends at the final time");

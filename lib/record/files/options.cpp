@@ -1,5 +1,7 @@
 #include "record/files/options.hpp"
 
+#include <algorithm>
+
 #include "deck/section.hpp"
 
 namespace tanktread::output {
@@ -23,6 +25,11 @@ void Options::declare(deck::Section& section) {
   section.key("surface text", surface_text,
               "whether the final surface is written in Bezier-extraction format to the file `surface.iga`. After a run of one particle, another "
               "deck can read this file by Particle/file");
+}
+
+void Options::limit(double past, std::optional<double> most) {
+  if (wall_clock_limit) wall_clock_limit = std::max(0., *wall_clock_limit - past);
+  if (most) wall_clock_limit = std::min(*most, wall_clock_limit.value_or(*most));
 }
 
 }  // namespace tanktread::output

@@ -171,7 +171,8 @@ void DeformingRow::add_columns(const Scene& one, Columns& to) const {
   to.add(normal_velocity,
          {"normal_velocity", "1",
           "largest normal velocity |v.n| on the surface relative to the mean velocity of the particle, divided by rate x R_C, or in a tube by the "
-          "mean velocity of the fluid. If the flow has neither, the rate is surface modulus/(viscosity R_C). It is zero if the shape is steady. R_C: radius of the sphere with the particle's volume"});
+          "mean velocity of the fluid. If the flow has neither, the rate is surface modulus/(viscosity R_C). It is zero if the shape is "
+          "steady. R_C: radius of the sphere with the particle's volume"});
   to.add(shape_velocity, {"shape_velocity", "1",
                           "root mean square of the part of the normal velocity v.n that changes the shape smoothly (6.8), divided like "
                           "`normal_velocity`. The run is steady when it falls below Time/steady tolerance"});
