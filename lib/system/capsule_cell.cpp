@@ -75,9 +75,9 @@ Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
 void Capsule::make_solid_response() {
   if (!parameters_.solids) return;
   around_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, around_.flow);
-  around_.solids->set_reference(membranes_.unstressed(), measure(), measured_on_present(particles()));
+  around_.solids->particles().set_reference(membranes_.unstressed(), measure(), measured_on_present(particles()));
   if (bodies_.tractions) bodies_.tractions->set_solids(*around_.solids);
-  around_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
+  around_.solids->particles().set_contrasts(viscosity_contrasts_of_points(particles()));
 }
 
 void Capsule::place_among_solids(const Net& x) {

@@ -106,8 +106,7 @@ class Tube {
   Net frozen_response(const Net& f, const Net& v = {});
 
   /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
-  Net load_on_wall(const Net& f);                           ///< -(1/mu) G_C f
-  Net velocity_on_wall(const Net& v);                       ///< double layer (1 - lambda) (1 / 8 pi) int_C T v n dG (2.6)
+  Net particle_on_wall(const Net& f, const Net& v = {});    ///< -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dG
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity due to the particle's images in a periodic duct

@@ -67,7 +67,7 @@ TEST(Tube, SolvesTheBlockSystem) {
   const Tube::Response r = s.tube->respond(s.f, s.v);
   EXPECT_NEAR(r.pressure_drop, s.tube->pressure_of(s.f, s.v), 1e-12 * std::abs(r.pressure_drop));  // round-off
   const Net wall = s.tube->wall_on_wall(r.wall_traction) - r.pressure_drop * s.tube->inlet_on_wall(),
-            particle = s.tube->load_on_wall(s.f) + s.tube->velocity_on_wall(s.v);
+            particle = s.tube->particle_on_wall(s.f, s.v);
   EXPECT_LT((wall - particle).norm() / particle.norm(), 1e-11);
   const Net answer = s.tube->wall_on_particle(r.wall_traction) + r.pressure_drop * s.tube->inlet_on_particle();
   EXPECT_LT((answer - r.velocity).norm() / answer.norm(), 1e-12);
