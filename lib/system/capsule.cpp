@@ -195,12 +195,9 @@ bool Capsule::defect_spares_system() const { return jacobian_.flows_by_system() 
 Net Capsule::defect(const Net& x, const Net& u) {
   if (!defect_spares_system()) return velocity(x) - u;
   ++counts_.evaluations;
-  if (!around_.cell || !x.allFinite()) return defect_here(x, u);
-  Net in_cell = x, slower = u;
-  const std::vector<Vec3> shifts = put_into_cell(in_cell);
-  for (std::size_t p = 0; p < shifts.size(); ++p)
-    particles()[p].block.rows(slower).rowwise() -= faster_beyond(shifts[p]).transpose();
-  return defect_here(in_cell, slower);
+  Net inside = x, v = u;
+  if (x.allFinite()) move_into_cell(inside, v);
+  return defect_here(inside, v);
 }
 
 /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14). P is the volume projection (2.8). B v = w is the linear system for the
@@ -227,7 +224,7 @@ Net Capsule::defect_here(const Net& x, const Net& u) {
 
 void Capsule::freeze(const Net& at) {
   Net x = at;
-  if (around_.cell) put_into_cell(x);
+  move_into_cell(x);
   const auto clock = phases_.time("assembly");
   ++counts_.assemblies;
   frozen_.assemble(at, x);

@@ -139,14 +139,12 @@ class Capsule : public Dynamics {
   const stokes::AmbientFlow& flow() const { return around_.flow; }  ///< flow at the time set by `at`
   const std::optional<stokes::PeriodicCell>& cell() const { return around_.cell; }  ///< cell at the time set by `at`
 
-  /// Subtracts from every particle the lattice vector that moves the mean of its control points into the cell, and returns these vectors. The cell is
-  /// centred on the origin; in a channel, on the middle of the channel; and in a straight tube, whose wall moves with the particles, on the mean of
-  /// the particles.
-  std::vector<Vec3> put_into_cell(Net& x);
-
-  /// Returns the ambient velocity at a point displaced by the lattice vector `shift`, minus the ambient velocity at the point itself. 0 in a duct,
-  /// whose flow is periodic.
-  Vec3 faster_beyond(const Vec3& shift) const { return duct_.tube ? Vec3::Zero() : Vec3(around_.flow.cell_gradient() * shift); }
+  /// Replaces every particle in the net x by its image whose mean control point is in the cell, and converts the velocity v of the control points to
+  /// the velocity of the image. v may have no rows. Returns what was subtracted for each particle. Without a lattice, does nothing and returns an
+  /// empty vector. The cell is centred on the origin; in a channel, on the middle of the channel; and in a straight tube, whose wall moves with the
+  /// particles, on the mean of the particles.
+  std::vector<CellShift> move_into_cell(Net& x, Net& v);
+  void move_into_cell(Net& x);
 
   stokes::Evaluations kernel_evaluations() const;  ///< kernel evaluations of all layers
   const Targets& targets() const { return targets_; }

@@ -23,16 +23,24 @@ bool Capsule::deform_cell(double time) {
   return true;
 }
 
-std::vector<Vec3> Capsule::put_into_cell(Net& x) {
-  std::vector<Vec3> shifts;
+std::vector<CellShift> Capsule::move_into_cell(Net& x, Net& v) {
+  std::vector<CellShift> shifts;
+  if (!around_.cell) return shifts;
   const Vec3 middle = cell_origin(x);
   if (duct_.tube && !duct_.tube->fixed()) duct_.origin = middle[0];
   for (const Particle& particle : particles()) {
     auto rows = particle.block.rows(x);
-    shifts.push_back(around_.cell->shift(rows.colwise().mean().transpose() - middle));
-    rows.rowwise() -= shifts.back().transpose();
+    CellShift& shift = shifts.emplace_back(around_.cell->shift(rows.colwise().mean().transpose() - middle));
+    if (!duct_.tube) shift.velocity = around_.flow.cell_gradient() * shift.position;
+    rows.rowwise() -= shift.position.transpose();
+    if (v.size() > 0) particle.block.rows(v).rowwise() -= shift.velocity.transpose();
   }
   return shifts;
+}
+
+void Capsule::move_into_cell(Net& x) {
+  Net no_velocity;
+  move_into_cell(x, no_velocity);
 }
 
 void Capsule::place_tube(const Net& x) {
@@ -84,23 +92,17 @@ void Capsule::place_among_solids(const Net& x) {
   around_.solids->place(x, targets_.values() * x, targets_.own());
 }
 
-/// Evaluates the shape with each particle moved by a lattice vector so that its mean is in the cell. Converts the velocities to those at the original
-/// positions.
+/// Evaluates the shape with each particle replaced by its image in the cell of a lattice. Converts the velocities to those of the particles.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
   if (!around_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), guess);
-  Net x = e.x();
-  const std::vector<Vec3> shifts = put_into_cell(x);
-  bodies_.rigid.enter(shifts, duct_.tube ? Mat3::Zero() : around_.flow.cell_gradient());
-  Net slower = guess;
-  const auto faster_by = [&](std::size_t p) { return faster_beyond(shifts[p]); };
-  for (std::size_t p = 0; p < shifts.size() && guess.size() > 0; ++p) particles()[p].block.rows(slower).rowwise() -= faster_by(p).transpose();
-  Net v = solve_in_cell(e, std::move(x), slower);
-  for (std::size_t p = 0; p < shifts.size(); ++p) {
-    const Vec3 faster = faster_by(p);
+  Net x = e.x(), v = guess;
+  const std::vector<CellShift> shifts = move_into_cell(x, v);
+  bodies_.rigid.move_into_cell(shifts);
+  v = solve_in_cell(e, std::move(x), v);
+  for (std::size_t p = 0; p < shifts.size(); ++p)
     for (Net* net : {&v, &e.fluid_})
-      if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += faster.transpose();
-    bodies_.rigid.carry(p, shifts[p], faster);
-  }
+      if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += shifts[p].velocity.transpose();
+  bodies_.rigid.move_out_of_cell(shifts);
   return v;
 }
 

@@ -71,7 +71,7 @@ void Evaluation::find_unknowns() {
 const Tube::Response& Evaluation::response() {
   if (!response_) find_unknowns();
   Net inside = x_;
-  if (system_->cell()) system_->put_into_cell(inside);
+  system_->move_into_cell(inside);
   system_->place_tube(inside);
   if (!response_) response_ = system_->duct_.tube->respond(load_, unknowns_);
   return *response_;
@@ -80,7 +80,7 @@ const Tube::Response& Evaluation::response() {
 Evaluation::SolidFlow Evaluation::solid_flow() {
   find_unknowns();
   Net inside = x_;
-  system_->put_into_cell(inside);
+  system_->move_into_cell(inside);
   system_->place_among_solids(inside);
   SolidResponse& solids = *system_->solids();
   SolidFlow found{.flow = {}, .caused = solids.respond(load_, unknowns_)};

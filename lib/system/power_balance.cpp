@@ -71,7 +71,7 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const double done = product(work, v);  // power that the fluids transfer to all surfaces; the fluids dissipate the power `flow` minus this power
   powers.fluids = powers.flow - done;
   powers.forces = powers.storing + powers.membranes - done;
-  powers.left_over = left_over(load, missed(*e, v, inside, load), x, measured);
+  powers.left_over = left_over(load, missed(*e, v, rigid, load), x, measured);
   return powers;
 }
 
@@ -138,25 +138,18 @@ Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
 }
 
 /// Returns the residual of the boundary integral equation (2.22), the velocity v minus the right-hand side, at the Gauss points `places_`.
-Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
+Net PowerBalance::missed(Evaluation& e, Net v, const RigidParticles& rigid, const Net& load) {
   Net x = e.x();
   const stokes::AmbientFlow& flow = capsule_.flow();
-  if (const auto& cell = capsule_.cell()) {
-    if (!capsule_.tube()) layers_.repeat(*cell);
-    const std::vector<Vec3> shifts = capsule_.put_into_cell(x);
-    for (std::size_t p = 0; p < shifts.size(); ++p) {
-      const Particle& particle = capsule_.particles()[p];
-      const Vec3 slower = capsule_.faster_beyond(shifts[p]);
-      particle.block.rows(v).rowwise() -= slower.transpose();
-      if (!particle.rigid) particle.block.rows(density).rowwise() -= slower.transpose();
-    }
-  }
+  if (const auto& cell = capsule_.cell(); cell && !capsule_.tube()) layers_.repeat(*cell);
+  capsule_.move_into_cell(x, v);
+  const Net inside = density(v, rigid);
   const Solids::Flow by_solids = capsule_.solids() ? e.solid_flow().flow : Solids::Flow();
   const Net at = values_ * x;
   layers_.place(x);
   return values_ * v - flow.velocities(at) - ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
     Net part = u;
-    layers_.apply(load, density, viscosity_, own, u);
+    layers_.apply(load, inside, viscosity_, own, u);
     if (SolidResponse* solids = capsule_.solids()) solids->velocity_at(at, own, by_solids, part), u(own, Eigen::all) += part(own, Eigen::all);
     if (Tube* tube = capsule_.tube()) tube->velocity_at(at, e.response(), own, part), u(own, Eigen::all) += part(own, Eigen::all);
   });

@@ -45,7 +45,7 @@ class PowerBalance {
 
  private:
   double left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const;
-  Net missed(Evaluation& e, Net v, Net density, const Net& load);
+  Net missed(Evaluation& e, Net v, const RigidParticles& rigid, const Net& load);
   Net density(const Net& v, const RigidParticles& rigid) const;
   double of_flow(Evaluation& e, const Net& work, const Net& inside);
 

@@ -155,7 +155,7 @@ void RigidParticles::push(const Net& work) {
 
 Rigid RigidParticles::Body::given() const {
   Rigid all = rigid;
-  all.motion.velocity -= faster;
+  all.motion.velocity -= cell_velocity;
   for (Eigen::Index a = 0; a < pushed.rows(); ++a) {
     const Vec3 here = pushed.row(a).transpose();
     all.force += here;
@@ -209,16 +209,18 @@ Net RigidParticles::completing_load(const Net& w) const {
   return load;
 }
 
-void RigidParticles::enter(std::span<const Vec3> shifts, const Mat3& gradient) {
+void RigidParticles::move_into_cell(std::span<const CellShift> shifts) {
   for (std::size_t p = 0; p < shifts.size(); ++p)
-    if (holds(p)) bodies_[static_cast<std::size_t>(of_particle_[p])].faster = gradient * shifts[p];
+    if (holds(p)) bodies_[static_cast<std::size_t>(of_particle_[p])].cell_velocity = shifts[p].velocity;
 }
 
-void RigidParticles::carry(std::size_t p, const Vec3& along, const Vec3& faster) {
-  if (!holds(p)) return;
-  Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
-  body.centre += along;
-  body.motion.velocity += faster;
+void RigidParticles::move_out_of_cell(std::span<const CellShift> shifts) {
+  for (std::size_t p = 0; p < shifts.size(); ++p) {
+    if (!holds(p)) continue;
+    Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
+    body.centre += shifts[p].position;
+    body.motion.velocity += shifts[p].velocity;
+  }
 }
 
 void RigidParticles::move(Net& v) {

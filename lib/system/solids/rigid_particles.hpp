@@ -77,13 +77,11 @@ class RigidParticles {
   /// Sets the motion, force and torque of body p to values that were not computed from (2.23). Sets the rows of the body in v to the control values
   /// of this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
-  /// On a lattice, the solve for the velocities uses the image of each body in the cell. enter() must be called before the solve. For each body, it
-  /// computes the ambient velocity at the body minus the ambient velocity at its image; the solve subtracts this difference from a prescribed
-  /// velocity. shifts[p]: position of particle p minus the position of its image. `gradient`: velocity gradient of the flow.
-  void enter(std::span<const Vec3> shifts, const Mat3& gradient);
-  /// Moves particle p, if it is a body, from its image back to its own position after the solve: adds `along` to its centre and `faster` to its
-  /// velocity.
-  void carry(std::size_t p, const Vec3& along, const Vec3& faster);
+  /// On a lattice, the solve for the velocities uses the image of each body in the cell. move_into_cell() must be called before the solve, so that
+  /// prescribed velocities become the velocities of the images. move_out_of_cell() must be called after the solve. It moves the centres and
+  /// velocities of the images back to those of the bodies. `shifts`: one per particle.
+  void move_into_cell(std::span<const CellShift> shifts);
+  void move_out_of_cell(std::span<const CellShift> shifts);
 
   /// Returns whether particle p is a rigid body. The members below refer to the latest evaluated velocities.
   bool holds(std::size_t p) const { return of_particle_[p] >= 0; }
@@ -124,7 +122,7 @@ class RigidParticles {
     Mat3 second;                          // int r r dG
     Vec3 first;                           // int r dG
     Vec3 rest_centre, centre;
-    Vec3 faster = Vec3::Zero();  // velocity of the body minus the velocity of its image in the cell
+    Vec3 cell_velocity = Vec3::Zero();  // velocity of the body minus the velocity of its image in the cell
     Mat3 turn = Mat3::Identity();
     Net density;
     RigidMotion motion;
