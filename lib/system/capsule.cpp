@@ -123,7 +123,7 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
   if (!bodies_.tractions) bodies_.rigid.add_load(f);
   e.load_ = f;
   Net v = explicit_velocity(x, f, {}, &e.response_);
-  if (!bodies_.tractions) bodies_.rigid.add_lacking(v), bodies_.rigid.subtract_prescribed(v);
+  if (!bodies_.tractions) bodies_.rigid.add_load_correction(v), bodies_.rigid.subtract_prescribed(v);
   if (constrained) volumes_.constrain(v, b, c);
   membranes_.place_viscous(x);
   if (bodies_.tractions) v = solve_tractions(e, x, b, c, symmetric(v));
@@ -212,14 +212,14 @@ Net Capsule::defect_here(const Net& x, const Net& u) {
   if (constrained) volumes_.constrain(inside, b, c);
   membranes_.place_viscous(x);
   if (viscous()) f += membranes_.viscous_load(x, inside);
-  Net lacking = explicit_velocity(x, f, layers_.has_double() ? inside : Net(), nullptr) - inside;
+  Net residual = explicit_velocity(x, f, layers_.has_double() ? inside : Net(), nullptr) - inside;
   if (layers_.has_double()) {
     const auto clock = phases_.time("velocity system");
     layers_.place_double(x);
-    lacking += targets_.control_values(layers_.apply_double(inside));
+    residual += targets_.control_values(layers_.apply_double(inside));
   }
-  if (constrained) volumes_.constrain(lacking, b, c);
-  return symmetric(lacking - (u - inside));
+  if (constrained) volumes_.constrain(residual, b, c);
+  return symmetric(residual - (u - inside));
 }
 
 void Capsule::freeze(const Net& at) {

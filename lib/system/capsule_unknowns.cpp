@@ -142,7 +142,7 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Ne
   e.load_ = load(bodies_.tractions->unknowns());
   for (const SolveReport& report : bodies_.tractions->reports())
     note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()), parameters_.solvers.tolerance);
-  if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, bodies_.tractions->lacking_pressure());
+  if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, bodies_.tractions->pressure_correction());
   return v;
 }
 

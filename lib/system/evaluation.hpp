@@ -40,12 +40,12 @@ class Evaluation {
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
   const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
 
-  /// `flow`: force density of the solids, and the uniform velocity U (2.46) that is added to the flow. `carried`: integral over the cell of the
-  /// velocity that solids and particles add to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_carried`: the parts of `flow` and
-  /// `carried` that are due to the particles.
+  /// `flow`: force density of the solids, and the uniform velocity U (2.46) that is added to the flow. `velocity_integral`: integral over the cell of
+  /// the velocity that solids and particles add to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_integral`: the parts of
+  /// `flow` and `velocity_integral` that are due to the particles.
   struct SolidFlow {
     Solids::Flow flow, caused;
-    Vec3 carried = Vec3::Zero(), caused_carried = Vec3::Zero();
+    Vec3 velocity_integral = Vec3::Zero(), caused_integral = Vec3::Zero();
   };
   SolidFlow solid_flow();  ///< returns the flow caused by the solids. First sets SolidResponse to the shape of this evaluation
 

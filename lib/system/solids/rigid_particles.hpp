@@ -22,7 +22,7 @@ namespace tanktread::coupling {
 /// The velocity of a double layer and the velocity gradient of a single layer jump across a surface. Therefore the velocity at the sites has a
 /// systematic error. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4, and
 /// its stresslet in a straining flow has a similar error.
-struct OwnLacking {
+struct SelfCorrection {
   std::array<Net, 6> loads;  ///< corrections of the single-layer velocity A f for the six loads f = e_k and f = e_k x r, k = 0, 1, 2 (r: position
                              ///< from the centre of volume)
   Eigen::MatrixXd density;   ///< matrix, shape (3 N, 3 N): maps the density w to the correction of the double layer of w; empty if N > `most_points`
@@ -31,7 +31,7 @@ struct OwnLacking {
   /// in double precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
   static constexpr int most_points = 2000;
 
-  OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
+  SelfCorrection(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
 };
 
 /// The limit lambda -> infinity (rigid bodies) of equation (2.22) for particles of viscosity ratio lambda. In this limit v = V + w/(lambda - 1) on
@@ -64,13 +64,13 @@ class RigidParticles {
 
   // The next six functions apply only to bodies whose unknown is the double-layer density w (2.23), not to bodies whose unknown is the traction.
   void add_load(Net& load) const;            ///< adds the load df (2.23) of the bodies whose force and torque are given, in the rows of these bodies
-  void add_lacking(Net& v) const;            ///< adds the collocation-error correction (OwnLacking) of the velocity -(1/mu) R^-1 A df that the load
-                                             ///< df of a body induces on the body
+  void add_load_correction(Net& v) const;    ///< adds the correction (SelfCorrection) of the velocity -(1/mu) R^-1 A df that the load df of a body
+                                             ///< induces on the body
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
   void complete(const Net& w, Net& v) const;  ///< completes the left-hand side v of (2.23), in the rows of bodies. First subtracts the density w and
-                                              ///< adds the collocation-error correction (OwnLacking) of its double layer. If force and torque of the
-                                              ///< body are given, then adds the rigid motion <w>; otherwise adds the collocation-error correction of
-                                              ///< the single layer of the load completing_load()
+                                              ///< adds the correction (SelfCorrection) of its double layer. If force and torque of the body are
+                                              ///< given, then adds the rigid motion <w>; otherwise adds the correction of the single layer of the
+                                              ///< load completing_load()
   Net completing_load(const Net& w) const;   ///< returns the load (mu/R_C) <w> of bodies with prescribed motion, with <w> the rigid motion nearest to
                                              ///< w (2.23); 0 in the rows of other particles
   void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
@@ -97,11 +97,11 @@ class RigidParticles {
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
   /// Returns whether the bodies p and q have equal shapes and orientations at rest.
-  bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
+  bool alike(std::size_t p, std::size_t q) const { return body(p).self_correction == body(q).self_correction; }
 
-  /// Returns the collocation-error correction (OwnLacking) of the velocity that the unit load k of body p induces on the body itself, in the axes of
-  /// the body at rest.
-  const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
+  /// Returns the correction (SelfCorrection) of the velocity that the unit load k of body p induces on the body itself, in the axes of the body at
+  /// rest.
+  const Net& self_correction(std::size_t p, int k) const { return body(p).self_correction->loads[static_cast<std::size_t>(k)]; }
 
   /// Component k of the mean rigid motion <w> (velocity, then angular velocity) is a linear function of the body's rows of w. Returns its
   /// coefficients, three per row, for the body in its position at rest.
@@ -115,7 +115,7 @@ class RigidParticles {
     Net pushed;  // rows of this body in the argument of push(); no rows if there are no such forces
     double radius = 0, viscosity = 0;
     Net rest;             // control net in the reference orientation, relative to the centre of volume
-    std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies
+    std::shared_ptr<const SelfCorrection> self_correction;  // shared by equal bodies
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
     Eigen::Matrix<double, 6, 6> inertia;  // entry (j, k): integral of u_j.u_k over the surface, with the velocity field u_k of unit motion k
@@ -134,10 +134,9 @@ class RigidParticles {
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // load a + b x r whose integral over the surface is `force` and whose moment
                                                                         // is `torque`
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
-    Net lacking_of(const RigidMotion& load) const;                      // collocation-error correction (OwnLacking) of the single layer R^-1 A f of
-                                                                        // the load f = a + b x r
-    Net lacking_of(const Net& w) const;                                 // collocation-error correction (OwnLacking) of R^-1 H w, the double layer of
-                                                                        // the body with density w; `w`: net of all particles
+    Net single_layer_correction(const RigidMotion& load) const;         // SelfCorrection of the single layer R^-1 A f of the load f = a + b x r
+    Net double_layer_correction(const Net& w) const;                    // SelfCorrection of the double layer R^-1 H w with density w; `w`: net of
+                                                                        // all particles
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 

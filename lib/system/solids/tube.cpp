@@ -71,7 +71,7 @@ double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
   return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->sources.strength(v))) / flow_of_pressure_;
 }
 
-double Tube::lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work) {
+double Tube::pressure_correction(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work) {
   if (fixed()) work += dot(between.weights * (at_places - amplitude * (between.values * particle_->interpolated_ambient)), f);
   return amplitude == 0 ? 0 : -work / (amplitude * flow_->flow_rate());
 }
@@ -102,10 +102,10 @@ Net Tube::solve_wall(const Net& rhs) { return viscosity() * wall_->solve(rhs); }
 
 double Tube::viscosity() const { return particle_->parameters.viscosity; }
 
-Tube::Response Tube::respond(const Net& f, const Net& v, double lacking) {
+Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correction) {
   const auto clock = phases_.time("wall");
   Response response;
-  response.pressure_drop = pressure_of(f) + lacking;
+  response.pressure_drop = pressure_of(f) + pressure_correction;
   const bool moves = v.size() > 0 && particle_->sources.has_double(), by_flow = moves && fixed();
   if (moves && !fixed()) response.pressure_drop += dot(particle_->pressure_of_velocity, v);
   if (cell()) {

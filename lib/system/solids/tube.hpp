@@ -92,8 +92,8 @@ class Tube {
     Net load, moves;  ///< load f and velocity v of the particle; set in a periodic duct only
   };
 
-  /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `lacking`: collocation-error correction of dp.
-  Response respond(const Net& f, const Net& v = {}, double lacking = 0);
+  /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `pressure_correction`: collocation-error correction of dp.
+  Response respond(const Net& f, const Net& v = {}, double pressure_correction = 0);
 
   /// Computes rows `rows` of the velocity u of a response at the points x (laboratory frame), which may be on the particle or anywhere in the fluid.
   /// Not collective, except if the duct repeats or its pressure drop is prescribed: then every rank must call it with the same x.
@@ -121,7 +121,7 @@ class Tube {
   /// Returns the correction (2.41) of pressure_of(f) for collocation errors. The ambient flow must be a duct flow, with the amplitude `amplitude`.
   /// `work`: integral (2.11) over the particle of f times the residual of v_inf. In a channel, also corrects for the interpolation error of v_inf.
   /// `between`: Gauss points for this error. `at_places`: exact values of v_inf at these Gauss points.
-  double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
+  double pressure_correction(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
   Net solve_wall(const Net& rhs);  ///< returns the wall traction f^D that solves (1/mu) G_W f^D = rhs
 
   /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
