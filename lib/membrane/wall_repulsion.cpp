@@ -36,7 +36,8 @@ std::vector<WallRepulsion::Place> WallRepulsion::places(const Net& x, std::span<
       if (gap > far * repulsion_.range) continue;
       const double h = step * radius, slope = (repulsion_.radius(at(q, 0) + h) - repulsion_.radius(at(q, 0) - h)) / (2 * h);
       const double energy = area_[static_cast<std::size_t>(e)][q] * repulsion_.stress * repulsion_.range * std::exp(-gap / repulsion_.range);
-      found.push_back({e, q, energy, {slope, -at(q, 1) / from_axis, -at(q, 2) / from_axis}});
+      const double divisor = from_axis > 0 ? from_axis : 1;  // on the axis, where the gap has a ridge, its derivatives along x2 and x3 count as 0
+      found.push_back({e, q, energy, {slope, -at(q, 1) / divisor, -at(q, 2) / divisor}});
     }
   }
   return found;
