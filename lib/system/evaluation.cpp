@@ -11,27 +11,32 @@ Evaluation::Evaluation(Capsule& system, Net x, Net velocity, std::shared_ptr<Eva
     : system_(&system), x_(std::move(x)), known_(std::move(velocity)), near_(std::move(near)) {}
 
 void Evaluation::solve(double error) {
-  if (solved_) return;
-  const std::shared_ptr<Evaluation> found = system_->evaluate(x_, known_, error);
+  if (solved_ && error_ <= error) return;
+  const std::shared_ptr<Evaluation> found = system_->evaluate(x_, solved_ ? velocity_ : known_, error);
   Net known = std::move(known_);
   *this = *found;
   known_ = std::move(known);
 }
 
+void Evaluation::require_solution() {
+  if (!solved_) solve();
+}
+
 const Net& Evaluation::velocity() {
-  if (solved_ || known_.size() == 0) return solve(), velocity_;
-  return known_;
+  if (!solved_ && known_.size() > 0) return known_;
+  require_solution();
+  return velocity_;
 }
 
 const Net& Evaluation::fluid_velocity() {
   if (!system_->slides()) return velocity();
   if (!solved_ && near_) return near_->fluid_velocity();
-  solve();
+  require_solution();
   return fluid_;
 }
 
 const Net& Evaluation::moving() {
-  if (system_->slides()) solve();
+  if (system_->slides()) require_solution();
   return fluid_velocity();
 }
 
@@ -47,7 +52,7 @@ const std::vector<Net>& Evaluation::load_sums() {
 
 const Net& Evaluation::load() {
   if (load_.size() == 0) {
-    if (!system_->bodies_.rigid.empty() || system_->viscous()) solve();  // because the load depends on the solution of the velocity system
+    if (!system_->bodies_.rigid.empty() || system_->viscous()) require_solution();  // because the load depends on the solution of the velocity system
     else load_ = system_->membrane_load(*this, x_, nullptr);
   }
   return load_;
@@ -55,13 +60,13 @@ const Net& Evaluation::load() {
 
 const RigidParticles& Evaluation::rigid() {
   if (!solved_ && near_) return near_->rigid();
-  solve();
+  require_solution();
   return rigid_ ? *rigid_ : system_->bodies_.rigid;
 }
 
 /// Computes the load and the unknowns from the velocity if it is known; otherwise solves for them.
 void Evaluation::find_unknowns() {
-  if (known_.size() == 0 || !system_->unknowns_follow()) solve();
+  if (known_.size() == 0 || !system_->unknowns_follow()) require_solution();
   if (solved_) return;
   unknowns_ = known_;
   load_ = system_->membrane_load(*this, x_, nullptr);

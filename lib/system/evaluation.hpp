@@ -51,8 +51,8 @@ class Evaluation {
 
   Tube::Checks checks();                                 ///< returns the errors of the tube's response in the conditions (2.14)
 
-  /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess. `error`: allowed error of the velocity
-  /// (Capsule::norm per unit of time), if it is larger than the error due to Solvers/tolerance.
+  /// Solves for the unknowns, unless they are known with this error already. Uses the known velocity as initial guess. `error`: allowed error of the
+  /// velocity (Capsule::norm per unit of time), if it is larger than the error due to Solvers/tolerance.
   void solve(double error = 0);
 
   /// Returns the stresslet of particle p (6.7), force x length, with the velocity v of the fluids,
@@ -67,6 +67,7 @@ class Evaluation {
 
  private:
   friend class Capsule;
+  void require_solution();  // solves for the unknowns if they are not known; a solution with any allowed error is kept
   void find_unknowns();
   const Net& moving();  // fluid velocity from a solve at this shape. It is never a copy of the velocity of `near_`
   const Net& viscous_work();
