@@ -60,16 +60,21 @@ void Capsule::push_bodies(const Net& x) {
   bodies_.rigid.push(push);
 }
 
-/// Returns the load of the membranes at x. `x`: shape of `e`, with each particle moved into the cell if there is a lattice. If `other` is given,
-/// replaces `*other` by M0^-1 times `*other`, with the mass matrix M0.
-Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
+/// Returns the load of the membranes at x. `x`: shape of `e`, with each particle moved into the cell if there is a lattice. If `volume` is given, it
+/// is set to the constraint on velocities at x, and remains inactive if the volumes are free.
+Net Capsule::membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume) {
+  Net* response = nullptr;
+  if (volume && parameters_.constrained()) {
+    volume->gradient = volume->response = volumes_.gradient(x);
+    response = &volume->response;
+  }
   const auto clock = phases_.time("membrane");
   if (parameters_.strong_load) {
-    if (other) *other = membranes_.solved(std::move(*other));
+    if (response) *response = membranes_.solved(std::move(*response));
     return targets_.collocated(membranes_.strong_load(x));
   }
   if (e.work_.size() == 0) e.work_ = work_of_loads(x, e.load_sums_);
-  return membranes_.load(x, e.work_, other);
+  return membranes_.load(x, e.work_, response);
 }
 
 /// Returns velocity fields, with the symmetry of the scene, that do not change the shape: rotations of the meshes of drops and of membranes (4.22).
@@ -116,18 +121,17 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
   bodies_.rigid.place(x);
   if (!enters(x)) return not_a_number(x);
   push_bodies(x);
-  const bool deforms = !bodies_.tractions || !bodies_.tractions->alone(), constrained = deforms && parameters_.constrained();
-  const Net b = constrained ? volumes_.gradient(x) : Net();
-  Net c = b;
-  Net f = deforms ? membrane_load(e, x, constrained ? &c : nullptr) : Net::Zero(x.rows(), 3);
+  const bool deforms = !bodies_.tractions || !bodies_.tractions->alone();
+  VolumeConstraint volume;
+  Net f = deforms ? membrane_load(e, x, &volume) : Net::Zero(x.rows(), 3);
   if (!bodies_.tractions) bodies_.rigid.add_load(f);
   e.load_ = f;
   Net v = explicit_velocity(x, f, {}, &e.response_);
   if (!bodies_.tractions) bodies_.rigid.add_load_correction(v), bodies_.rigid.subtract_prescribed(v);
-  if (constrained) volumes_.constrain(v, b, c);
+  volumes_.constrain(v, volume);
   membranes_.place_viscous(x);
-  if (bodies_.tractions) v = solve_tractions(e, x, b, c, symmetric(v));
-  else if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess, e.error_);
+  if (bodies_.tractions) v = solve_tractions(e, x, volume, symmetric(v));
+  else if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, e.error_);
   e.unknowns_ = v;
   if (viscous() && !bodies_.tractions) e.load_ += membranes_.viscous_load(x, symmetric(v));
   if (!bodies_.rigid.empty() && !bodies_.tractions) {
@@ -138,8 +142,8 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
   if (!interface_) return v;
   e.fluid_ = symmetric(v);
   const auto clock = phases_.time("interface motion");
-  v = interface_->velocity(x, constrained ? b : volumes_.gradient(x), v, e.x());
-  if (constrained) volumes_.constrain(v, b, c);  // removes the small change of volume that the spline interpolation of the normal velocity causes
+  v = interface_->velocity(x, volume.active() ? volume.gradient : volumes_.gradient(x), v, e.x());
+  volumes_.constrain(v, volume);  // removes the small change of volume that the spline interpolation of the normal velocity causes
   return v;
 }
 
@@ -204,12 +208,11 @@ Net Capsule::defect(const Net& x, const Net& u) {
 /// velocity v at x (see solve_velocity). Adds the viscous load due to u to the elastic load, so that one evaluation of the single layer is enough.
 Net Capsule::defect_here(const Net& x, const Net& u) {
   if (!enters(x)) return not_a_number(x);
-  const bool constrained = parameters_.constrained();
-  const Net b = constrained ? volumes_.gradient(x) : Net();
-  Net c = b, inside = u;
+  VolumeConstraint volume;
+  Net inside = u;
   Evaluation e(*this, x);
-  Net f = membrane_load(e, x, constrained ? &c : nullptr);
-  if (constrained) volumes_.constrain(inside, b, c);
+  Net f = membrane_load(e, x, &volume);
+  volumes_.constrain(inside, volume);
   membranes_.place_viscous(x);
   if (viscous()) f += membranes_.viscous_load(x, inside);
   Net residual = explicit_velocity(x, f, layers_.has_double() ? inside : Net(), nullptr) - inside;
@@ -218,7 +221,7 @@ Net Capsule::defect_here(const Net& x, const Net& u) {
     layers_.place_double(x);
     residual += targets_.control_values(layers_.apply_double(inside));
   }
-  if (constrained) volumes_.constrain(residual, b, c);
+  volumes_.constrain(residual, volume);
   return symmetric(residual - (u - inside));
 }
 

@@ -198,14 +198,19 @@ class Capsule : public Dynamics {
   Net in_cell(Evaluation& e, const Net& guess);
   Net solve_in_cell(Evaluation& e, Net x, const Net& guess);
   Net work_of_loads(const Net& x, std::vector<Net>& sums);
-  Net membrane_load(Evaluation& e, const Net& x, Net* other);
+  Net membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume = nullptr);
   void push_bodies(const Net& x);
   Net explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer);
   Net defect_here(const Net& x, const Net& u);
-  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess, double error);
-  Net solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded, const Net& f,
-                   const Net& b, const Net& c, const Net& rhs);
-  Net solve_tractions(Evaluation& e, const Net& x, const Net& b, const Net& c, const Net& flow);
+  Net velocity_load(const Net& x, const Net& v);
+  Net velocity_product(const Net& x, const Net& v, const Net& load);
+  Apply velocity_preconditioner(const Net& x);
+  Net solve_velocity(const Net& x, const Net& f, const VolumeConstraint& volume, const Net& rhs, const Net& guess, double error);
+  Net solve_blocks(const Net& x, const Net& f, const VolumeConstraint& volume, const Net& rhs);
+  Net deformable_velocity(const VolumeConstraint& volume, const Net& y) const;
+  Net traction_load(const Net& x, const Net& y, const Net& v);
+  Net traction_product(const Net& x, const VolumeConstraint& volume, const Net& y, const Net& caused);
+  Net solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint& volume, const Net& flow);
   Mat3 moment_by_traction(Evaluation& at, std::size_t p);
   void note(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
 

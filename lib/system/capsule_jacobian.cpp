@@ -52,8 +52,8 @@ void CapsuleJacobian::linearise(const Net& x, const std::vector<Net>& sums) {
   if (interface_) {
     interface_->linearise(x, volumes_.gradient(x));
   } else if (parameters_.constrained() && (flows_by_system() || std::ranges::any_of(parameters_.particles, keeps_area))) {
-    flux_ = volumes_.gradient(x);
-    flux_response_ = parameters_.symmetry.completed(membranes_.solved(flux_));
+    constraint_.gradient = volumes_.gradient(x);
+    constraint_.response = parameters_.symmetry.completed(membranes_.solved(constraint_.gradient));
   }
   if (by_sites_) gradients_ = gradients_at(targets_.at_sites() * x);
 }
@@ -72,13 +72,14 @@ std::vector<Mat3> CapsuleJacobian::gradients_at(const Net& x) const {
 /// Applies the volume projection P (2.8) of the last linearisation to a rate of change. Without P, the rate would include volume changes, which
 /// incompressible fluids do not allow, and the response of a stiff membrane to these changes would dominate.
 Net CapsuleJacobian::without_flux(Net rate) const {
-  if (flux_.size() > 0) volumes_.constrain(rate, flux_, flux_response_);
+  volumes_.constrain(rate, constraint_);
   return rate;
 }
 
 Net CapsuleJacobian::inflation(const Net& c) {
   constexpr double rough = 0.1;  // relative residual
-  if (latest_shift_ == 0 || interface_ || c.rows() != flux_.rows() || std::ranges::none_of(parameters_.particles, keeps_area)) return c;
+  if (latest_shift_ == 0 || interface_ || c.rows() != constraint_.gradient.rows()) return c;
+  if (std::ranges::none_of(parameters_.particles, keeps_area)) return c;
   const Net along = solve(latest_shift_, c, rough, {});
   return along.allFinite() ? along : c;
 }

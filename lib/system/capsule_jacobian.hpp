@@ -90,7 +90,7 @@ class CapsuleJacobian {
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
   Krylov step_solver_, inner_solver_;
   double latest_shift_ = 0;      // shift gamma dt of the implicit system solved last
-  Net flux_, flux_response_;     // flux_: b = dV/dx. flux_response_: c = M0^{-1} b of the projection P (2.8). No rows if J does not include P
+  VolumeConstraint constraint_;  // projection P (2.8); not active if J does not include P
   std::vector<Mat3> gradients_;  // velocity gradients of the ambient flow at the collocation sites; set if `by_sites`
 };
 

@@ -53,7 +53,7 @@ const std::vector<Net>& Evaluation::load_sums() {
 const Net& Evaluation::load() {
   if (load_.size() == 0) {
     if (!system_->bodies_.rigid.empty() || system_->viscous()) require_solution();  // because the load depends on the solution of the velocity system
-    else load_ = system_->membrane_load(*this, x_, nullptr);
+    else load_ = system_->membrane_load(*this, x_);
   }
   return load_;
 }
@@ -69,7 +69,7 @@ void Evaluation::find_unknowns() {
   if (known_.size() == 0 || !system_->unknowns_follow()) require_solution();
   if (solved_) return;
   unknowns_ = known_;
-  load_ = system_->membrane_load(*this, x_, nullptr);
+  load_ = system_->membrane_load(*this, x_);
   if (system_->viscous()) load_ += system_->membranes_.load(x_, viscous_work());
 }
 
