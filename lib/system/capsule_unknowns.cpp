@@ -43,7 +43,7 @@ Net Capsule::velocity_product(const Net& x, const Net& v, const Net& load) {
 /// Returns the preconditioner of the velocity system at x, from inverses for isolated rigid bodies and for the thin films between bodies. Empty if no
 /// such inverses are stored. Valid until the bodies move.
 Apply Capsule::velocity_preconditioner(const Net& x) {
-  if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, rest_, parameters_.quadrature);
+  if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, initial_, parameters_.quadrature);
   if (bodies_.isolated->empty()) return {};
   const auto films = std::make_shared<FilmInverses>(particles(), *bodies_.isolated, bodies_.rigid, x,
                                                     [&](std::span<const int> sites) { return layers_.double_rows(sites); });
@@ -63,7 +63,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const VolumeConstraint& 
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   layers_.assemble(x, viscous());
-  if (!schur()) return solve_blocks(x, f, volume, rhs);
+  if (!eliminates_walls()) return solve_blocks(x, f, volume, rhs);
   const auto apply = [&](const double* in, double* out) {
     Net v = Eigen::Map<const Net>(in, n, 3);
     volumes_.constrain(v, volume);
@@ -154,7 +154,7 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.holds(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
   const bool responds = layers_.repeats() || duct_.tube || solids() || layers_.has_double() || viscous();
-  bodies_.tractions->solve(x, centres, driven, around_.flow, RigidTractions::Surroundings{flow, responds, product, load});
+  bodies_.tractions->solve(x, centres, driven, surroundings_.flow, RigidTractions::Surroundings{flow, responds, product, load});
   Net v = deformable_velocity(volume, bodies_.tractions->unknowns());
   auto body = bodies_.tractions->bodies().begin();
   for (std::size_t p = 0; p < particles().size(); ++p)

@@ -35,7 +35,7 @@ const Net& Evaluation::fluid_velocity() {
   return fluid_;
 }
 
-const Net& Evaluation::moving() {
+const Net& Evaluation::solved_fluid_velocity() {
   if (system_->slides()) require_solution();
   return fluid_velocity();
 }
@@ -66,7 +66,7 @@ const RigidParticles& Evaluation::rigid() {
 
 /// Computes the load and the unknowns from the velocity if it is known; otherwise solves for them.
 void Evaluation::find_unknowns() {
-  if (known_.size() == 0 || !system_->unknowns_follow()) require_solution();
+  if (known_.size() == 0 || !system_->unknowns_are_velocities()) require_solution();
   if (solved_) return;
   unknowns_ = known_;
   load_ = system_->membrane_load(*this, x_);
@@ -103,7 +103,7 @@ Tube::Checks Evaluation::checks() {
 const Net& Evaluation::viscous_work() {
   if (viscous_work_.size() == 0) {
     system_->membranes_.place_viscous(x_);
-    viscous_work_ = system_->membranes_.viscous_work(moving());
+    viscous_work_ = system_->membranes_.viscous_work(solved_fluid_velocity());
   }
   return viscous_work_;
 }
@@ -119,11 +119,11 @@ Mat3 Evaluation::stresslet(std::size_t p) {
     Net of_particle = own(work());
     if (system.viscous()) of_particle += own(viscous_work());
     moment = of_particle.transpose() * own(x_);  // first moment int df x dG of the load, with x = sum N_A x_A
-    if (!particle.loads.empty() || system.pressed())  // refers the moment to the centroid, because the load has a net force
+    if (!particle.loads.empty() || system.has_forces())  // refers the moment to the centroid, because the load has a net force
       moment -= of_particle.colwise().sum().transpose() * surface::measures(*particle.space, own(x_)).centroid.transpose();
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0) {
-    const Net v = particle.rigid ? rigid().density(p) : Net(own(moving()));
+    const Net v = particle.rigid ? rigid().density(p) : Net(own(solved_fluid_velocity()));
     Net flux;
     system.geometry().volume_gradient(x_, indices(particle.block.n_elements, particle.block.first_element), flux);
     moment -= 2 * contrast * system.parameters_.viscosity * v.transpose() * own(flux);
@@ -134,7 +134,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
 double Evaluation::membrane_dissipation(std::size_t p) {
   if (!system_->viscous()) return 0;
   const spline::Block& block = system_->particles()[p].block;
-  return block.rows(moving()).cwiseProduct(block.rows(viscous_work())).sum();
+  return block.rows(solved_fluid_velocity()).cwiseProduct(block.rows(viscous_work())).sum();
 }
 
 double Evaluation::load_energy(std::size_t p) { return system_->membranes_.loads().energy(x_, load_sums(), p); }

@@ -69,7 +69,7 @@ class Evaluation {
   friend class Capsule;
   void require_solution();  // solves for the unknowns if they are not known; a solution with any allowed error is kept
   void find_unknowns();
-  const Net& moving();  // fluid velocity from a solve at this shape. It is never a copy of the velocity of `near_`
+  const Net& solved_fluid_velocity();  // fluid velocity from a solve at this shape. It is never a copy of the velocity of `near_`
   const Net& viscous_work();
 
   Capsule* system_;
