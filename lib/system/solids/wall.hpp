@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -134,6 +135,7 @@ class Wall {
  private:
   Eigen::Index n_sites() const { return points_.sites().rows(); }
   Net weights(const std::function<Vec3(const surface::Point&)>& field) const;
+  void assemble_rows(std::span<const int> targets, stokes::Rows<double>& rows);
   Eigen::MatrixXd assembled();
   Net iterated(const Net& rhs) const;
   void find_pressure();
