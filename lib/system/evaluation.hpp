@@ -28,8 +28,7 @@ class Evaluation {
   const Net& x() const { return x_; }                    ///< shape, (N, 3)
   const Net& velocity();                                 ///< velocity of the control points, length/time
   const Net& fluid_velocity();                           ///< velocity of the fluids on the surface; equals `velocity` unless control points slide
-  const Net& work();                                     ///< virtual work dE/dx of all loads, minus the work of forces (Capsule::set_forces); 0 for
-                                                         ///< rigid bodies
+  const Net& work();  ///< virtual work dE/dx of the loads minus the work of Capsule::set_forces(); 0 for rigid bodies
   const std::vector<Net>& load_sums();                   ///< surface integrals on which the loads depend (see Loads), summed over all ranks
 
   /// Returns the control values of the load of the fluids on the membranes, per unstressed or per current area, depending on the particle. For a

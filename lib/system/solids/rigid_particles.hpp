@@ -23,8 +23,7 @@ namespace tanktread::coupling {
 /// systematic error. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4, and
 /// its stresslet in a straining flow has a similar error.
 struct SelfCorrection {
-  std::array<Net, 6> loads;  ///< corrections of the single-layer velocity A f for the six loads f = e_k and f = e_k x r, k = 0, 1, 2 (r: position
-                             ///< from the centre of volume)
+  std::array<Net, 6> loads;  ///< corrections of A f for the loads f = e_k and f = e_k x r, k = 0, 1, 2 (r: from the centre of volume)
   Eigen::MatrixXd density;   ///< matrix, shape (3 N, 3 N): maps the density w to the correction of the double layer of w; empty if N > `most_points`
 
   /// Largest number of control points for which the matrix `density` is stored, which takes 72 bytes per pair of control points. The matrix is stored
@@ -64,8 +63,7 @@ class RigidParticles {
 
   // The next six functions apply only to bodies whose unknown is the double-layer density w (2.23), not to bodies whose unknown is the traction.
   void add_load(Net& load) const;            ///< adds the load df (2.23) of the bodies whose force and torque are given, in the rows of these bodies
-  void add_load_correction(Net& v) const;    ///< adds the correction (SelfCorrection) of the velocity -(1/mu) R^-1 A df that the load df of a body
-                                             ///< induces on the body
+  void add_load_correction(Net& v) const;    ///< adds the correction (SelfCorrection) of the velocity -(1/mu) R^-1 A df of each body on itself
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
   void complete(const Net& w, Net& v) const;  ///< completes the left-hand side v of (2.23), in the rows of bodies. First subtracts the density w and
                                               ///< adds the correction (SelfCorrection) of its double layer. If force and torque of the body are
@@ -92,8 +90,7 @@ class RigidParticles {
   const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< centre of its volume
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
-  Rigid given(std::size_t p) const { return body(p).given(); }         ///< prescribed motion; or prescribed force and torque plus the forces set by
-                                                                       ///< push()
+  Rigid given(std::size_t p) const { return body(p).given(); }         ///< prescribed motion, or prescribed force and torque plus push()
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
   /// Returns whether the bodies p and q have equal shapes and orientations at rest.
@@ -129,10 +126,8 @@ class RigidParticles {
     Vec3 force, torque;
 
     Rigid given() const;
-    RigidMotion mean(const Net& w) const;      // rigid motion <w> that fits w best on the body (least squares over its surface) (2.23); `w`: net of
-                                               // all particles
-    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // load a + b x r whose integral over the surface is `force` and whose moment
-                                                                        // is `torque`
+    RigidMotion mean(const Net& w) const;      // rigid motion <w> of (2.23): least-squares fit over the body. `w`: net of all particles
+    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // load a + b x r with the given force and torque
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
     Net single_layer_correction(const RigidMotion& load) const;         // SelfCorrection of the single layer R^-1 A f of the load f = a + b x r
     Net double_layer_correction(const Net& w) const;                    // SelfCorrection of the double layer R^-1 H w with density w; `w`: net of

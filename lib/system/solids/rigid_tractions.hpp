@@ -117,8 +117,7 @@ class RigidTractions {
 
   bool alone() const { return alone_; }              ///< returns whether all particles are rigid bodies
   const Net& unknowns() const { return unknowns_; }  ///< control values of f on bodies, and of v on deformable particles
-  double pressure_correction() const { return pressure_correction_; }   ///< collocation-error correction of the pressure drop (2.7) due to all
-                                                                        ///< bodies together
+  double pressure_correction() const { return pressure_correction_; }   ///< collocation-error correction of the pressure drop (2.7)
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
   /// Throws RunFailure if an iterative solve in `reports()` did not converge. Otherwise returns the number of iterations of all these solves.
   int converged_iterations() const;
@@ -150,8 +149,7 @@ class RigidTractions {
   double tolerance_;
   std::optional<Surroundings> around_;  // surroundings passed to place() last
   Net x_, sites_;                       // x_: net passed to place() last. sites_: positions of the collocation sites on this net
-  Eigen::VectorXd weighted_residual_;   // int N_A (v - v_inf - (1/mu) A f) dG for the latest density f: weighted residual of (2.40), from which
-                                        // (2.11) computes corrections
+  Eigen::VectorXd weighted_residual_;   // int N_A (v - v_inf - (1/mu) A f) dG for the latest f: residual of (2.40), used by (2.11)
   std::vector<Vec3> centres_;
   std::vector<SolvedBody> bodies_;
   Net unknowns_;

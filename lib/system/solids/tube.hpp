@@ -130,8 +130,7 @@ class Tube {
     double force = 0;         ///< unbalanced axial force of the disturbance: dp times section area, minus axial forces on wall and particle. It is
                               ///< divided by the product of section area, radius and pressure gradient of the empty duct
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
-    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops that would make `flux` zero (pressure_by_flux) or `force` zero
-                                                         ///< (pressure_by_force)
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops that would make `flux` or `force` zero
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
@@ -166,8 +165,7 @@ class Tube {
   const surface::TubeWall& wall() const;
   void forget_recycled() const { wall_->forget_recycled(); }  ///< discards data of earlier solves that the wall's iterative solver keeps
   const stokes::DuctFlow& flow() const { return *flow_; }
-  stokes::Evaluations kernel_evaluations() const;  ///< returns the number of kernel evaluations for the particle and the wall, including the assembly
-                                                   ///< of the wall
+  stokes::Evaluations kernel_evaluations() const;  ///< number of kernel evaluations, including the assembly of the wall
 
  private:
   struct Particle;

@@ -58,10 +58,8 @@ struct Tube::Particle {
   Net shape;                                   ///< net of the particle in the frame of the wall
   double centroid = 0;                         ///< x1 of the origin of the wall's frame, which is the particle's centroid in a straight open tube
   Net inlet;                                   ///< velocity c (2.5) per unit pressure drop, at the sites
-  Net ambient, interpolated_ambient;           ///< ambient: duct flow v_inf at the sites. interpolated_ambient: control values of v_inf (in a channel
-                                               ///< only)
-  Net pressure_of_load, pressure_of_velocity;  ///< weights of the load f and of the velocity v in the pressure drop (2.7); pressure_of_velocity is
-                                               ///< empty if lambda = 1
+  Net ambient, interpolated_ambient;           ///< duct flow v_inf at the sites, and its control values (in a channel only)
+  Net pressure_of_load, pressure_of_velocity;  ///< weights of the load f and of the velocity v in dp (2.7). No weights of v if lambda = 1
   Net targets;                                 ///< targets of the wall; in a periodic duct also the particle's collocation points, in later rows
   int n_on_wall = 0;                           ///< number of targets on the wall
   std::vector<int> own_targets;                ///< rank-owned rows of `targets`
