@@ -201,7 +201,7 @@ Net Capsule::defect(const Net& x, const Net& u) {
   if (!defect_spares_system()) return velocity(x) - u;
   ++counts_.evaluations;
   Net inside = x, v = u;
-  if (x.allFinite()) move_into_cell(inside, v);
+  if (x.allFinite()) move_into_cell(inside, &v);
   return defect_here(inside, v);
 }
 

@@ -145,12 +145,11 @@ class Capsule : public Dynamics {
   const stokes::AmbientFlow& flow() const { return surroundings_.flow; }  ///< flow at the time set by `at`
   const std::optional<stokes::PeriodicCell>& cell() const { return surroundings_.cell; }  ///< cell at the time set by `at`
 
-  /// Replaces every particle in the net x by its image whose mean control point is in the cell, and converts the velocity v of the control points to
-  /// the velocity of the image. v may have no rows. Returns what was subtracted for each particle. Without a lattice, does nothing and returns an
-  /// empty vector. The cell is centred on the origin; in a channel, on the middle of the channel; and in a straight tube, whose wall moves with the
-  /// particles, on the mean of the particles.
-  std::vector<CellShift> move_into_cell(Net& x, Net& v);
-  void move_into_cell(Net& x);
+  /// Replaces every particle in the net x by its image whose mean control point is in the cell, and converts the velocity v of the control points, if
+  /// given, to the velocity of the image. Returns what was subtracted for each particle. Without a lattice, does nothing and returns an empty vector.
+  /// The cell is centred on the origin; in a channel, on the middle of the channel; and in a straight tube, whose wall moves with the particles, on
+  /// the mean of the particles.
+  std::vector<CellShift> move_into_cell(Net& x, Net* v = nullptr);
 
   stokes::Evaluations kernel_evaluations() const;  ///< kernel evaluations of all layers
   const Targets& targets() const { return targets_; }

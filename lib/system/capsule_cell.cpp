@@ -24,7 +24,7 @@ bool Capsule::deform_cell(double time) {
   return true;
 }
 
-std::vector<CellShift> Capsule::move_into_cell(Net& x, Net& v) {
+std::vector<CellShift> Capsule::move_into_cell(Net& x, Net* v) {
   std::vector<CellShift> shifts;
   if (!surroundings_.cell) return shifts;
   const Vec3 middle = cell_origin(x);
@@ -34,14 +34,9 @@ std::vector<CellShift> Capsule::move_into_cell(Net& x, Net& v) {
     CellShift& shift = shifts.emplace_back(surroundings_.cell->shift(rows.colwise().mean().transpose() - middle));
     if (!duct_.tube) shift.velocity = surroundings_.flow.cell_gradient() * shift.position;
     rows.rowwise() -= shift.position.transpose();
-    if (v.size() > 0) particle.block.rows(v).rowwise() -= shift.velocity.transpose();
+    if (v && v->size() > 0) particle.block.rows(*v).rowwise() -= shift.velocity.transpose();
   }
   return shifts;
-}
-
-void Capsule::move_into_cell(Net& x) {
-  Net no_velocity;
-  move_into_cell(x, no_velocity);
 }
 
 void Capsule::place_tube(const Net& x) {
@@ -84,9 +79,8 @@ Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
 void Capsule::make_solid_response() {
   if (!parameters_.solids) return;
   surroundings_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, surroundings_.flow);
-  surroundings_.solids->particles().set_reference(membranes_.unstressed(), measure(), measured_on_present(particles()));
+  surroundings_.solids->particles().set(membranes_.unstressed(), particles());
   if (bodies_.tractions) bodies_.tractions->set_solids(*surroundings_.solids);
-  surroundings_.solids->particles().set_contrasts(viscosity_contrasts_of_points(particles()));
 }
 
 void Capsule::place_among_solids(const Net& x) {
@@ -97,7 +91,7 @@ void Capsule::place_among_solids(const Net& x) {
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
   if (!surroundings_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), guess);
   Net x = e.x(), v = guess;
-  const std::vector<CellShift> shifts = move_into_cell(x, v);
+  const std::vector<CellShift> shifts = move_into_cell(x, &v);
   bodies_.rigid.move_into_cell(shifts);
   v = solve_in_cell(e, std::move(x), v);
   for (std::size_t p = 0; p < shifts.size(); ++p)

@@ -52,8 +52,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   make_solid_response();
   if (!duct_.tube) return;
   if (!duct_.tube->fixed()) duct_.inner_radius = duct_.tube->wall().outline.distance(duct_.tube->wall().outline.centroid());
-  duct_.tube->set_reference(unstressed, measure(), measured_on_present(particles()));
-  duct_.tube->set_contrasts(viscosity_contrasts_of_points(particles()));
+  duct_.tube->particles().set(unstressed, particles());
 }
 
 Capsule::~Capsule() = default;

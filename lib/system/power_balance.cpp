@@ -142,7 +142,7 @@ Net PowerBalance::residual_velocity(Evaluation& e, Net v, const RigidParticles& 
   Net x = e.x();
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (const auto& cell = capsule_.cell(); cell && !capsule_.tube()) layers_.repeat(*cell);
-  capsule_.move_into_cell(x, v);
+  capsule_.move_into_cell(x, &v);
   const Net inside = density(v, rigid);
   const Solids::Flow by_solids = capsule_.solids() ? e.solid_flow().flow : Solids::Flow();
   const Net at = values_ * x;

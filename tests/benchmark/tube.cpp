@@ -87,7 +87,7 @@ void velocity_evaluation_in_a_tube(benchmark::State& state) {
                                             std::make_unique<coupling::Tube>(wall, *duct, capsule.space, parameters, phases), with);
     state.counters["tube ms"] = 1e3 * confined;
     coupling::Tube tube(wall, *duct, capsule.space, parameters, phases);
-    tube.set_reference(capsule.unstressed);
+    tube.particles().set_reference(capsule.unstressed);
     const Net f = capsule.x, on_wall = (tube.place(capsule.x), tube.particle_on_wall(f));
     state.counters["place ms"] = milliseconds([&] { tube.place(capsule.x); });
     state.counters["load on wall ms"] = milliseconds([&] { tube.particle_on_wall(f); });

@@ -33,6 +33,11 @@ void ParticleSources::set_contrasts(const Eigen::VectorXd& contrasts) {
   if (cell_) double_layer->repeat(*cell_, how_);
 }
 
+void ParticleSources::set(const Net& unstressed, std::span<const Particle> particles) {
+  set_reference(unstressed, measure(particles), measured_on_present(particles));
+  set_contrasts(viscosity_contrasts_of_points(particles));
+}
+
 void ParticleSources::place(const Net& x) {
   sites_ = collocation_ * x;
   single_layer.place(x, measure_);

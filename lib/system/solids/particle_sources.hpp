@@ -10,6 +10,7 @@
 
 #include "base/types.hpp"
 #include "stokes/layer.hpp"
+#include "system/particle.hpp"
 
 namespace tanktread::coupling {
 
@@ -27,8 +28,9 @@ struct SourceTargets {
 ///
 /// with the single layer G_C of the particles divided by 8 pi. LayerPair is the counterpart for points on the particles.
 ///
-/// Order of calls: set_reference() and set_contrasts() after construction; place() for each shape; then add_velocity() for any f and v. If several f
-/// and v have equal targets, call prepared() once for each shape and pass its result. Nets of particles have one row per control point. Uses no MPI.
+/// Order of calls: set() after construction, or set_reference() and set_contrasts(); place() for each shape; then add_velocity() for any f and v. If
+/// several f and v have equal targets, call prepared() once for each shape and pass its result. Nets of particles have one row per control point.
+/// Uses no MPI.
 class ParticleSources {
  public:
   /// `cell`: lattice whose images of the particles are included; null without a lattice. `how`: see Layer::repeat. `space` must outlive this object.
@@ -36,11 +38,12 @@ class ParticleSources {
                   const stokes::Repetition& how);
 
   /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
-  void set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present);
+  void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
   /// Sets the viscosity contrast at each control point: 1 - lambda of a deformable particle. The contrast of a rigid body is 0 if its unknown is the
   /// traction (2.40). It is -1 if the unknown is the density w of (2.23), which then takes the place of v.
   void set_contrasts(const Eigen::VectorXd& contrasts);
+  void set(const Net& unstressed, std::span<const Particle> particles);  ///< sets the reference and the contrasts of these particles
 
   /// Sets the control net x of the particles.
   void place(const Net& x);

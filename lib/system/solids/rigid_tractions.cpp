@@ -105,7 +105,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed
 RigidTractions::RigidTractions(const spline::Space& space, const Net& surface, double radius, double viscosity, const quadrature::Options& quadrature,
                                const SolverOptions& solvers, Ranks& ranks, Tube* tube, const std::optional<stokes::PlaneWall>& wall)
     : RigidTractions(space, surface, surface, std::vector{single(space, radius)}, viscosity, quadrature, for_single(solvers), wall, tube, {}, ranks) {
-  if (tube) tube->set_reference(surface);
+  if (tube) tube->particles().set_reference(surface);
 }
 
 void RigidTractions::repeat(const stokes::PeriodicCell& cell) {

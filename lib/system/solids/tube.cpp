@@ -32,6 +32,7 @@ Tube::Tube(const Tube& tube, const spline::Space& particle) : flow_(tube.flow_),
 Tube::~Tube() = default;
 
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
+ParticleSources& Tube::particles() { return particle_->sources; }
 const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
 const Net& Tube::ambient() const { return particle_->ambient; }
 const std::optional<stokes::PeriodicCell>& Tube::cell() const { return wall_->cell(); }
@@ -39,12 +40,6 @@ const std::optional<stokes::PeriodicCell>& Tube::cell() const { return wall_->ce
 stokes::Evaluations Tube::kernel_evaluations() const {
   stokes::Evaluations all = wall_->evaluations() + particle_->sources.evaluations();
   return between_ ? all + between_->layer.evaluations() : all;
-}
-
-void Tube::set_contrasts(const Eigen::VectorXd& contrasts) { particle_->sources.set_contrasts(contrasts); }
-
-void Tube::set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present) {
-  particle_->sources.set_reference(unstressed, measure, std::move(present));
 }
 
 Net Tube::in_wall_frame(Net x) const {

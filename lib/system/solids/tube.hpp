@@ -13,11 +13,11 @@
 #include "spline/space.hpp"
 #include "stokes/flow/duct_flow.hpp"
 #include "stokes/kernels/kernels.hpp"
-#include "stokes/layer.hpp"
 #include "surface/symmetry.hpp"
 #include "surface/tube_wall.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/channel_flow.hpp"
+#include "system/solids/particle_sources.hpp"
 
 namespace tanktread::coupling {
 
@@ -26,7 +26,7 @@ struct BetweenSites;
 
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
-  double viscosity_ratio = 1;        ///< lambda, if equal for all particles; otherwise call set_contrasts()
+  double viscosity_ratio = 1;        ///< lambda, if equal for all particles; otherwise see particles()
   surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; Symmetry() if there is none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
@@ -70,13 +70,8 @@ class Tube {
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
-  /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
-  void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
-
-  /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is 0 if
-  /// its unknown is the traction (2.40). Otherwise the contrast is -1, and in rows of this body the argument `v` of the functions below is w of
-  /// (2.23).
-  void set_contrasts(const Eigen::VectorXd& contrasts);
+  /// Returns the particles as sources of flow. Their unstressed net must be set before place().
+  ParticleSources& particles();
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: x1 coordinate of the origin of the frame of
   /// wall() if the wall is straight; by default the x1 coordinate of the particle's centroid.

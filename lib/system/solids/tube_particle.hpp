@@ -8,10 +8,7 @@
 
 #include "base/types.hpp"
 #include "membrane/direct_solver.hpp"
-#include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
-#include "system/collocation.hpp"
-#include "system/solids/particle_sources.hpp"
 #include "system/solids/tube.hpp"
 #include "system/solids/wall.hpp"
 #include "system/solvers/frozen_operator.hpp"

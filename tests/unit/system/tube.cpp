@@ -49,7 +49,7 @@ struct Fixture {
     parameters.viscosity = viscosity, parameters.viscosity_ratio = ratio;
     parameters.quadrature.tolerance = 1e-6;
     tube = std::make_unique<Tube>(surface::tube_wall(flow->outline(), options, 2 * pi), *flow, space, parameters, phases);
-    tube->set_reference(x);
+    tube->particles().set_reference(x);
     tube->place(x);
   }
 };
@@ -124,7 +124,7 @@ TEST(Tube, ServesAnotherMeshOfTheParticle) {
   const spline::Space space = spline::space(finer, spline::ExtraordinaryRule::g1);
   const Net x = surface::resting_shape(space, finer, s.shape);
   Tube other(*s.tube, space);
-  other.set_reference(x);
+  other.particles().set_reference(x);
   other.place(x);
   const auto work = [](Tube& tube, const Net& net) {  // for a constant load and a rigid velocity; independent of the mesh
     const Net load = Eigen::RowVector3d(1, 0.5, 0).replicate(net.rows(), 1);
