@@ -43,15 +43,15 @@ void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& 
   shape.col(0).array() -= centroid;
   sources.place(shape);
   flow_of_strength_.resize(0, 3);
-  targets = wall.points().targets();
+  target_points = wall.points().targets();
   own_targets = wall.points().own_targets();
-  n_on_wall = static_cast<int>(targets.rows());
+  n_on_wall = static_cast<int>(target_points.rows());
   if (periodic) {
-    targets.conservativeResize(n_on_wall + sites().rows(), 3);
-    targets.bottomRows(sites().rows()) = sites();
+    target_points.conservativeResize(n_on_wall + sites().rows(), 3);
+    target_points.bottomRows(sites().rows()) = sites();
     for (const int i : own) own_targets.push_back(n_on_wall + i);
   }
-  prepared_targets = sources.prepared(targets, own_targets, n_on_wall);
+  prepared_targets = sources.prepared(target_points, own_targets, n_on_wall);
   if (sources.has_double()) wall_on_sites = wall.layer().near(sites(), own);
   if (!periodic) inlet = wall.inlet().integral(sites()) / parameters.viscosity;
   weigh_pressure(flow, !wall.surface().channel);
@@ -59,8 +59,8 @@ void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& 
 }
 
 Tube::Particle::Cause Tube::Particle::cause(const Net& f, const Net& v) {
-  Net u = Net::Zero(targets.rows(), 3);
-  sources.add_velocity(f, v, targets, own_targets, u, prepared_targets);
+  Net u = Net::Zero(target_points.rows(), 3);
+  sources.add_velocity(f, v, target_points, own_targets, u, prepared_targets);
   return {u.topRows(n_on_wall), u.bottomRows(u.rows() - n_on_wall)};
 }
 

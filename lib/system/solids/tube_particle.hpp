@@ -57,9 +57,9 @@ struct Tube::Particle {
   Net inlet;                                   ///< velocity c (2.5) per unit pressure drop, at the sites
   Net ambient, interpolated_ambient;           ///< duct flow v_inf at the sites, and its control values (in a channel only)
   Net pressure_of_load, pressure_of_velocity;  ///< weights of the load f and of the velocity v in dp (2.7). No weights of v if lambda = 1
-  Net targets;                                 ///< targets of the wall; in a periodic duct also the particle's collocation points, in later rows
+  Net target_points;                           ///< targets of the wall; in a periodic duct also the particle's collocation points, in later rows
   int n_on_wall = 0;                           ///< number of targets on the wall
-  std::vector<int> own_targets;                ///< rank-owned rows of `targets`
+  std::vector<int> own_targets;                ///< rank-owned rows of `target_points`
   SourceTargets prepared_targets;              ///< see ParticleSources::prepared
   std::optional<stokes::Layer::Near> wall_on_sites;  ///< corrections of the wall's layer at the particle's sites; set if lambda != 1
 
