@@ -26,10 +26,10 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   stop_where_told(scene.output.too_late(ranks.seconds_since(start)));
   const stokes::AmbientFlow ambient(scene.flow);
   const coupling::Solids::Flow flow = coupling::without_particles(around, ambient);
-  const Vec3 carried = coupling::carried(around, flow);
+  const Vec3 velocity_integral = coupling::velocity_integral(around, flow);
   Columns row;
   ProgressRow{.wall_seconds = ranks.seconds_since(start)}.add_columns(scene, row);
-  solids_row(scene, around, ambient, flow, Vec3::Zero(), carried).add_columns(scene, row);
+  solids_row(scene, around, ambient, flow, Vec3::Zero(), velocity_integral).add_columns(scene, row);
   DomainRow now{.cell = all.cell().vectors(), .pressure_gradient = around.driving_gradient};
   now.add_columns(scene, row);
   finish(row);

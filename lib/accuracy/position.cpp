@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "record/files/nodes.hpp"
+#include "spline/limits.hpp"
 
 namespace tanktread::accuracy {
 
@@ -17,11 +18,9 @@ namespace {
 
 using output::StoredSurface;
 
-constexpr int most_degree = 7;
-
 /// Values and derivatives at x in [0, 1] of the Lagrange polynomials of degree p on the equidistant nodes k/p, k = 0 ... p.
 struct Lagrange {
-  std::array<double, most_degree + 1> value, slope;
+  std::array<double, spline::largest_degree + 1> value, slope;
 
   Lagrange(int p, double x) {
     for (int k = 0; k <= p; ++k) {
@@ -39,7 +38,7 @@ struct Lagrange {
 
 /// Returns the grid indices (i, j) of the nodes of a cell of degree p, in the order of the stored nodes (output::node_order).
 const std::vector<std::array<int, 2>>& order_of(int p) {
-  static std::array<std::vector<std::array<int, 2>>, most_degree + 1> orders;
+  static std::array<std::vector<std::array<int, 2>>, spline::largest_degree + 1> orders;
   auto& order = orders.at(static_cast<std::size_t>(p));
   if (order.empty()) order = output::node_order(p);
   return order;

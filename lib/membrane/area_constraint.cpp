@@ -25,7 +25,7 @@ AreaConstraint::AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& 
     const auto parts = material.area_order == 1 ? split(material.law) : std::nullopt;
     if (!parts || parts->area.area == 0) continue;  // Skalak's law with C = 0 has no area elasticity
     const spline::Element& element = space_->elements[e];
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(material.area_order + std::max(0, element.degree - 3));
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(quadrature::gauss_order(material.area_order, element.degree));
     for (int q = 0; q < rule.size(); ++q) {
       const spline::Basis basis = spline::basis(element, rule.s[q], rule.t[q]);
       const auto [a, b] = tangents(element, basis, membrane.unstressed());

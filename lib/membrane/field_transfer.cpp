@@ -19,7 +19,7 @@ Eigen::VectorXd Surfactant::transferred(const Field& field, const Net& x, const 
   Eigen::VectorXd contents = Eigen::VectorXd::Zero(size());
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const spline::Element& element = space_.elements[e];
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(static_cast<int>(std::lround(std::sqrt(elements_[e].n))));
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(quadrature::gauss_order(gauss_points, element.degree));
     for (Eigen::Index q = 0; q < rule.size(); ++q) {
       const spline::Basis here = spline::basis(element, rule.s[q], rule.t[q]);
       const Net own = x(element.points, Eigen::all);

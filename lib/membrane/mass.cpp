@@ -13,7 +13,7 @@ int pairs(const Batch& batch) { return batch.functions * (batch.functions + 1) /
 
 /// Returns a sparse matrix that stores an explicit zero for every pair of functions that share an element: the sparsity pattern of the mass matrix.
 Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
-  const Eigen::MatrixXd zeros = Eigen::MatrixXd::Zero(max_functions, max_functions);
+  const Eigen::MatrixXd zeros = Eigen::MatrixXd::Zero(spline::most_functions, spline::most_functions);
   std::vector<spline::LocalMatrix> local;
   for (const spline::Element& element : space.elements) local.push_back({element.points, &zeros});
   return spline::assemble(space.n_points, local);
@@ -72,7 +72,7 @@ MassMatrix::MassMatrix(const spline::Space& space, int order) : space_(&space), 
 }
 
 Eigen::VectorXd MassMatrix::row_sums(const Net& x) const {
-  Pack a[6 * max_order * max_order], area[max_order * max_order];
+  Pack a[6 * max_gauss], area[max_gauss];
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(x.rows());
   const int lanes = pack_lanes();
   for (std::size_t k = 0; k < groups_.size(); ++k) {
@@ -105,7 +105,7 @@ const Eigen::SparseMatrix<double>& MassMatrix::update(const Net& x) {
     matrix_ = pattern(*space_);
     for (const Group& g : groups_) slots_.push_back(slots_of(g, matrix_, *space_));
   }
-  Pack a[6 * max_order * max_order], area[max_order * max_order], entries[max_functions * (max_functions + 1) / 2];
+  Pack a[6 * max_gauss], area[max_gauss], entries[spline::most_functions * (spline::most_functions + 1) / 2];
   double* const out = matrix_.valuePtr();
   const int lanes = pack_lanes();
   std::fill_n(out, matrix_.nonZeros(), 0.);

@@ -10,8 +10,6 @@ namespace tanktread::membrane {
 
 namespace {
 
-constexpr int most_points = max_order * max_order;
-
 /// Metric of a surface at a Gauss point: contravariant components g^11, g^12, g^22, 1/|g| with |g| = det g_ab, and the area that the point represents
 /// (weight times sqrt|g|).
 struct Metric {
@@ -28,7 +26,7 @@ void MaxwellElement::each_batch(const Net& x, const Use& use) const {
   std::size_t first = 0;
   for (const Group& group : groups_)
     for (const Batch& batch : group.batches) {
-      Pack a[6 * most_points];
+      Pack a[6 * max_gauss];
       tangents(group, batch, x, a);
       use(group, batch, first, a);
       first += static_cast<std::size_t>(group.n_gauss());
@@ -42,7 +40,7 @@ template <class Use>
 void MaxwellElement::each_point(const Net& x, const Use& use) const {
   each_batch(x, [&](const Group& group, const Batch& batch, std::size_t first, const Pack* a) {
     const int n = group.n_gauss(), lanes = pack_lanes();
-    ReferencePoint present[most_points];
+    ReferencePoint present[max_gauss];
     reference_points(n, batch.used, a, group.weight.data(), present);
     for (int q = 0; q < n; ++q)
       for (int l = 0; l < lanes; ++l) {
@@ -103,7 +101,7 @@ void MaxwellElement::set_state(const Net& x, const Eigen::VectorXd& q) {
 Net MaxwellElement::load() const {
   Net d = Net::Zero(space_.n_points, 3);
   each_batch(x_, [&](const Group& group, const Batch& batch, std::size_t first, const Pack* a) {
-    Pack p[6 * most_points];
+    Pack p[6 * max_gauss];
     stresses(spring_, group.n_gauss(), &relaxed_[first], a, p);
     add_transpose(group, batch, p, d);
   });

@@ -11,8 +11,6 @@ namespace tanktread::membrane {
 
 namespace {
 
-constexpr int gauss_room = max_order * max_order;
-
 using Changing = Dual<double>;
 using Symmetric = Vector<Changing>;  // components 11, 12, 22
 
@@ -61,7 +59,7 @@ template <class Use>
 void MaxwellElement::each_change(const Net& dx, const Eigen::VectorXd& dq, const Use& use) const {
   for (const Group& group : groups_)
     for (const Batch& batch : group.batches) {
-      Pack a[6 * gauss_room], da[6 * gauss_room];
+      Pack a[6 * max_gauss], da[6 * max_gauss];
       tangents(group, batch, known_x_, a);
       tangents(group, batch, dx, da);
       for (int q = 0; q < group.n_gauss(); ++q)
@@ -84,7 +82,7 @@ void MaxwellElement::linearise(const Net&) {
 
 Net MaxwellElement::load_change(const Net& dx, const Eigen::VectorXd& dq) const {
   Net d = Net::Zero(space_.n_points, 3);
-  Pack p[6 * gauss_room] = {};
+  Pack p[6 * max_gauss] = {};
   const int lanes = pack_lanes();
   each_change(dx, dq, [&](const Group& group, const Batch& batch, int q, int l, Eigen::Index, const Point& at) {
     const Changing s11 = at.stress(spring_, 0), s12 = at.stress(spring_, 1), s22 = at.stress(spring_, 2);

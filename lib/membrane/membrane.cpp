@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::size_t parts_kept = 3;       // number of element sets whose Part is stored: all elements, the rank-owned elements, and one more set
 constexpr double compressed_below = -1e-9;  // tensions below this multiple of the modulus count as compression; tensions closer to 0 may be round-off
-constexpr int max_gauss = max_order * max_order;
 
 }  // namespace
 

@@ -14,7 +14,7 @@ namespace {
 
 Group group_with_rule(int degree, int order) {
   Group g;
-  assert(degree <= max_degree && order <= max_order);
+  assert(degree <= spline::largest_degree && order <= max_order);
   g.degree = degree;
   g.order = order;
   const auto& rule = quadrature::gauss(order);
@@ -34,7 +34,7 @@ void append(Group& g, const spline::Space& space, std::span<const int> elements,
   batch.used = static_cast<int>(elements.size());
   for (int l = 0; l < lanes; ++l) batch.elements[l] = elements[std::min(l, batch.used - 1)];
   for (int e : elements) batch.functions = std::max(batch.functions, static_cast<int>(space.elements[e].points.size()));
-  assert(batch.functions <= max_functions);
+  assert(batch.functions <= spline::most_functions);
   batch.points = g.points.size();
   batch.extraction = g.extraction.size();
   g.points.resize(batch.points + batch.functions * lanes, 0);
@@ -60,7 +60,7 @@ std::vector<Group> pack(const spline::Space& space, std::span<const int> element
   const std::size_t lanes = pack_lanes();
   for (auto& [kind, list] : alike) {
     std::sort(list.begin(), list.end());
-    Group& g = groups.emplace_back(group_with_rule(kind.second, order + std::max(0, kind.second - 3)));
+    Group& g = groups.emplace_back(group_with_rule(kind.second, quadrature::gauss_order(order, kind.second)));
     g.material = kind.first;
     Tables extractions;
     for (std::size_t first = 0; first < list.size(); first += lanes)

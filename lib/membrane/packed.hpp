@@ -7,13 +7,13 @@
 
 #include "base/types.hpp"
 #include "base/pack.hpp"
+#include "spline/limits.hpp"
 #include "spline/space.hpp"
 
 namespace tanktread::membrane {
 
-constexpr int max_degree = 8;      ///< largest degree of a Bezier element
-constexpr int max_order = 12;      ///< largest number of Gauss points per direction
-constexpr int max_functions = 64;  ///< largest number of functions on one element
+constexpr int max_order = 12;                     ///< largest number of Gauss points per direction
+constexpr int max_gauss = max_order * max_order;  ///< largest number of Gauss points of an element
 
 /// A batch: up to pack_lanes() elements of one degree, one per register lane. Idle lanes repeat the last element with the weight 0.
 struct Batch {
@@ -43,7 +43,7 @@ struct Group {
 };
 
 /// Packs the given elements (any order, no repetition) into one group per material and degree, sorted by material, then by degree. The rule of a
-/// group has `order` points per direction up to degree 3, and one more for each degree above 3. `material`: material of each element of the space; if
+/// group has quadrature::gauss_order(order, degree) points per direction. `material`: material of each element of the space; if
 /// empty, all are 0.
 std::vector<Group> pack(const spline::Space& space, std::span<const int> elements, int order, std::span<const int> material = {});
 

@@ -9,7 +9,7 @@ namespace tanktread::membrane {
 namespace INSTRUCTIONS {
 namespace {
 
-constexpr int max_bernstein = (max_degree + 1) * (max_degree + 1);
+constexpr int max_bernstein = (spline::largest_degree + 1) * (spline::largest_degree + 1);
 
 // Computes the small matrix product out[3 k + c] = sum_r x[3 r + c] e[r * across_r + k * across_k] for k = first .. first + Width - 1 and the
 // components c = 0, 1, 2.
@@ -60,7 +60,7 @@ constexpr int times_s[] = {1, 0, 2, 1, 0}, times_t[] = {0, 1, 0, 1, 2};
 // known only at run time.
 template <int Degree, int Order>
 struct Rule {
-  static constexpr int max_p = Degree ? Degree : max_degree, max_q = Order ? Order : max_order;
+  static constexpr int max_p = Degree ? Degree : spline::largest_degree, max_q = Order ? Order : max_order;
   const int p, q;
   const double* bernstein[3];  // values, first and second derivatives
   explicit Rule(const Group& g)
@@ -124,7 +124,7 @@ void with_rule(const Group& g, const Use& use) {
 
 template <int n>
 void evaluate(const Group& group, const Batch& batch, const Net& net, Pack* a) {
-  Register x[3 * max_functions], bezier[3 * max_bernstein];
+  Register x[3 * spline::most_functions], bezier[3 * max_bernstein];
   gather(group, batch, net, x);
   extract(registers(&group.extraction[batch.extraction]), group.n_bernstein(), 1, x, batch.functions, group.n_bernstein(), bezier);
   with_rule(group, [&](const auto& rule) { rule.template evaluate<n>(bezier, registers(a)); });
@@ -132,7 +132,7 @@ void evaluate(const Group& group, const Batch& batch, const Net& net, Pack* a) {
 
 template <int n>
 void transpose(const Group& group, const Batch& batch, const Pack* a, Net& sum) {
-  Register f[3 * max_functions], bezier[3 * max_bernstein];
+  Register f[3 * spline::most_functions], bezier[3 * max_bernstein];
   with_rule(group, [&](const auto& rule) { rule.template transpose<n>(registers(a), bezier); });
   extract(registers(&group.extraction[batch.extraction]), 1, group.n_bernstein(), bezier, group.n_bernstein(), batch.functions, f);
   scatter(group, batch, f, sum);

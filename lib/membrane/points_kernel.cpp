@@ -239,7 +239,7 @@ void area_weights(int n, const Pack* tangents, const double* weight, Pack* areas
 void mass_entries(int functions, int n, const Pack* values_at_points, const Pack* weights, Pack* all_entries) {
   const Register *values = registers(values_at_points), *weight = registers(weights);
   Register* entries = registers(all_entries);
-  Register row[max_order * max_order];
+  Register row[max_gauss];
   for (int a = 0; a < functions; ++a) {
     for (int q = 0; q < n; ++q) row[q] = weight[q] * values[a * n + q];
     for (int b = 0; b <= a; ++b) {

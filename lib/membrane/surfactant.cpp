@@ -6,24 +6,22 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "membrane/packed.hpp"
 #include "membrane/surfactant_kernel.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
 
 namespace tanktread::membrane {
 
-namespace {
-constexpr int most_area_points = 144, most_functions = 64;  // per element
-}  // namespace
+using spline::most_functions;
 
 Surfactant::Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity)
     : space_(space), bezier_(space), options_(options), clean_tension_(clean_tension), diffusivity_(diffusivity), mass_(space), known_mass_(space) {
-  constexpr int order = 4;  // Gauss points per direction at degree 3, as for the membrane
   for (const spline::Element& element : space.elements) {
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(order + std::max(0, element.degree - 3));
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(quadrature::gauss_order(gauss_points, element.degree));
     ElementPoints& at = elements_.emplace_back();
     at.n = rule.size(), at.functions = static_cast<int>(element.points.size());
-    assert(at.n <= most_area_points && at.functions <= most_functions);
+    assert(at.n <= max_gauss && at.functions <= most_functions);
     const auto n = static_cast<std::size_t>(at.n), table = n * element.points.size();
     for (std::vector<double>* one : {&at.value, &at.by_s, &at.by_t}) one->resize(table);
     for (std::vector<double>* one : {&at.s, &at.t, &at.metric}) one->resize(4 * n);
@@ -78,7 +76,7 @@ Net Surfactant::load() const {
   Net d = Net::Zero(space_.n_points, 3);
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const ElementPoints& at = elements_[e];
-    double along_s[3 * most_area_points], along_t[3 * most_area_points], rows[3 * most_functions];
+    double along_s[3 * max_gauss], along_t[3 * max_gauss], rows[3 * most_functions];
     for (int q = 0; q < at.n; ++q) {
       const double less = clean_tension_ * (options_.tension(at.c[static_cast<std::size_t>(q)]) - 1) * at.area()[q];
       for (int k = 0; k < 3; ++k) {
@@ -105,7 +103,7 @@ Eigen::VectorXd Surfactant::transport(const Net& slip, double diffusivity) const
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const ElementPoints& at = elements_[e];
     const std::vector<int>& points = space_.elements[e].points;
-    double own[3 * most_functions], w[3 * most_area_points] = {}, along_s[most_area_points], along_t[most_area_points], rows[most_functions];
+    double own[3 * most_functions], w[3 * max_gauss] = {}, along_s[max_gauss], along_t[max_gauss], rows[most_functions];
     if (slip.rows() > 0) {
       for (std::size_t a = 0; a < points.size(); ++a) Eigen::Map<Eigen::RowVector3d>(own + 3 * a) = slip.row(points[a]);
       sample(3, at.n, at.functions, at.value.data(), own, w);

@@ -72,6 +72,7 @@ class Surfactant : public Field {
   Eigen::VectorXd contents(const Net& x, const Eigen::VectorXd& c) const;
 
  private:
+  static constexpr int gauss_points = 4;  // per direction up to degree 3, as for the membrane
   /// Basis functions of an element at its n Gauss points, with the surface and the concentration there. Arrays have the layout of
   /// surfactant_kernel.hpp.
   struct ElementPoints {

@@ -1,6 +1,5 @@
 #include "membrane/wall_repulsion.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -14,7 +13,7 @@ WallRepulsion::WallRepulsion(const spline::Space& space, const Net& unstressed, 
     : space_(space), repulsion_(std::move(repulsion)) {
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
     const spline::Element& element = space.elements[static_cast<std::size_t>(e)];
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(4 + std::max(0, element.degree - 3));  // the rule of Membrane
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(quadrature::gauss_order(4, element.degree));  // the rule of Membrane
     auto& value = value_.emplace_back(rule.size(), static_cast<Eigen::Index>(element.points.size()));
     Eigen::VectorXd& area = area_.emplace_back(rule.size());
     for (int q = 0; q < rule.size(); ++q) {
@@ -37,7 +36,8 @@ std::vector<WallRepulsion::Place> WallRepulsion::places(const Net& x, std::span<
       if (gap > far * repulsion_.range) continue;
       const double h = step * radius, slope = (repulsion_.radius(at(q, 0) + h) - repulsion_.radius(at(q, 0) - h)) / (2 * h);
       const double energy = area_[static_cast<std::size_t>(e)][q] * repulsion_.stress * repulsion_.range * std::exp(-gap / repulsion_.range);
-      found.push_back({e, q, energy, {slope, -at(q, 1) / from_axis, -at(q, 2) / from_axis}});
+      const double divisor = from_axis > 0 ? from_axis : 1;  // on the axis, where the gap has a ridge, its derivatives along x2 and x3 count as 0
+      found.push_back({e, q, energy, {slope, -at(q, 1) / divisor, -at(q, 2) / divisor}});
     }
   }
   return found;

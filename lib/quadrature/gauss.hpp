@@ -20,6 +20,10 @@ const GaussRule& gauss(int n);
 /// Returns the smallest number of Gauss points that integrates polynomials of this degree exactly.
 constexpr int gauss_points_for_degree(int degree) { return degree / 2 + 1; }
 
+/// Returns the number of Gauss points per direction on an element of this degree, if elements up to degree 3 have `order`: one more for each degree
+/// above 3.
+constexpr int gauss_order(int order, int degree) { return degree > 3 ? order + degree - 3 : order; }
+
 /// Nodes (s, t) and weights on the unit square, s fastest: node q = n_s j + i consists of node i (of n_s) in s and node j in t.
 struct TensorRule {
   Eigen::VectorXd s, t, weights;

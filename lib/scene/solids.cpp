@@ -129,7 +129,7 @@ void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
 }
 
 SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient, const Solids::Flow& flow,
-                     const Vec3& particle_force, const Vec3& carried) {
+                     const Vec3& particle_force, const Vec3& velocity_integral) {
   const Solids& solids = *of.solids;
   const Vec3 gradient = ambient.change() * scene.flow.pressure_gradient.value_or(Vec3::Zero());
   std::vector<Vec3> forces = solids.forces(flow.force);
@@ -154,7 +154,7 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const s
       const quadrature::GaussRule& rule = quadrature::gauss(2);
       for (int q = 0; q < 2; ++q)
         row.mean_velocity += rule.weights[q] * ambient.velocity(of.planes[0].point() + rule.nodes[q] * distance * n);
-      row.mean_velocity += carried / volume;
+      row.mean_velocity += velocity_integral / volume;
     }
   }
   for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // In the integral equation, the pressure gradient also drives a fictitious flow inside the

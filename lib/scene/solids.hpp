@@ -33,9 +33,9 @@ struct SolidsRow {
 };
 
 /// Returns the data of plates and posts for the flow `flow` around them in the ambient flow `ambient`. `particle_force`: force of the particles on
-/// the fluid. `carried`: integral over the cell of the velocity that solids and particles add to the ambient flow (SolidResponse::carried); used only
+/// the fluid. `velocity_integral`: see SolidResponse::velocity_integral; used only
 /// if there are two plates.
 SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient, const coupling::Solids::Flow& flow,
-                     const Vec3& particle_force, const Vec3& carried);
+                     const Vec3& particle_force, const Vec3& velocity_integral);
 
 }  // namespace tanktread

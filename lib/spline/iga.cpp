@@ -18,14 +18,12 @@
 #include "deck/words.hpp"
 #include "spline/basis.hpp"
 #include "spline/lattice.hpp"
+#include "spline/limits.hpp"
 #include "spline/places.hpp"
 
 namespace tanktread::spline {
 
 namespace {
-
-/// Degrees of elements and largest number of functions per element that the quadrature and the membrane code support.
-constexpr int least_degree = 2, largest_degree = 6, most_functions = 64;
 
 /// Reads the file word by word and keeps the line number for messages.
 class Reader {

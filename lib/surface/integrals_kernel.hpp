@@ -2,11 +2,11 @@
 // Integrals over elements from their Bezier points, vectorised: each lane of a SIMD register holds one element.
 
 #include "base/pack.hpp"
+#include "spline/limits.hpp"
 
 namespace tanktread::surface::kernel {
 
-constexpr int largest_degree = 6;
-constexpr int most_bezier = (largest_degree + 1) * (largest_degree + 1);
+constexpr int most_bezier = (spline::largest_degree + 1) * (spline::largest_degree + 1);
 
 /// Bezier points, or derivatives with respect to them, of one element of degree p per lane: component c of point b in lane l is value[(c * (p+1)^2
 /// + b) * pack_lanes() + l].

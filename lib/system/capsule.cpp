@@ -18,7 +18,7 @@ bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
 
 /// Sets the time. Cached results are kept unless the flow or the cell changes.
 void Capsule::at(double time, double start) {
-  const bool other_flow = around_.flow.at(time, start), other_cell = parameters_.cell && deform_cell(time);
+  const bool other_flow = surroundings_.flow.at(time, start), other_cell = parameters_.cell && deform_cell(time);
   if (other_flow || other_cell) latest_.reset();
 }
 
@@ -26,21 +26,21 @@ void Capsule::at(double time, double start) {
 /// the surface integrals of the loads, summed over all ranks.
 Net Capsule::work_of_loads(const Net& x, std::vector<Net>& sums) {
   Net work = membranes_.work(x, sums);
-  for (const Net& of_forces : forces_)
+  for (const Net& of_forces : work_of_forces_)
     if (of_forces.size() > 0) work -= of_forces;
   clear_rigid(particles(), work);  // rows of rigid bodies are 0; push_bodies() applies the forces on rigid bodies instead
   return work;
 }
 
 void Capsule::set_forces(Forces of, Net work) {
-  Net& known = forces_[static_cast<std::size_t>(of)];
+  Net& known = work_of_forces_[static_cast<std::size_t>(of)];
   if (same(work, known)) return;
   known = std::move(work);
   latest_.reset();
 }
 
 Net Capsule::response(Evaluation& at, const Net& work) {
-  Net& contacts = forces_[static_cast<std::size_t>(Forces::contacts)];
+  Net& contacts = work_of_forces_[static_cast<std::size_t>(Forces::contacts)];
   const Net base = at.velocity(), before = contacts;
   set_forces(Forces::contacts, before.size() > 0 ? Net(before + work) : work);
   const Net change = velocity(at.x()) - base;
@@ -51,7 +51,7 @@ Net Capsule::response(Evaluation& at, const Net& work) {
 /// Sets the contact forces on rigid bodies and the forces of their loads (Particle::loads), in addition to the prescribed forces on the bodies.
 void Capsule::push_bodies(const Net& x) {
   if (bodies_.rigid.empty()) return;
-  Net push = forces_[static_cast<std::size_t>(Forces::contacts)];
+  Net push = work_of_forces_[static_cast<std::size_t>(Forces::contacts)];
   if (std::ranges::any_of(particles(), [](const Particle& one) { return one.rigid && !one.loads.empty(); })) {
     Net work = Net::Zero(x.rows(), 3);
     membranes_.complete_work(x, work);
@@ -60,16 +60,21 @@ void Capsule::push_bodies(const Net& x) {
   bodies_.rigid.push(push);
 }
 
-/// Returns the load of the membranes at x. `x`: shape of `e`, with each particle moved into the cell if there is a lattice. If `other` is given,
-/// replaces `*other` by M0^-1 times `*other`, with the mass matrix M0.
-Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
+/// Returns the load of the membranes at x. `x`: shape of `e`, with each particle moved into the cell if there is a lattice. If `volume` is given, it
+/// is set to the constraint on velocities at x, and remains inactive if the volumes are free.
+Net Capsule::membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume) {
+  Net* response = nullptr;
+  if (volume && parameters_.constrained()) {
+    volume->gradient = volume->response = volumes_.gradient(x);
+    response = &volume->response;
+  }
   const auto clock = phases_.time("membrane");
   if (parameters_.strong_load) {
-    if (other) *other = membranes_.solved(std::move(*other));
+    if (response) *response = membranes_.solved(std::move(*response));
     return targets_.collocated(membranes_.strong_load(x));
   }
   if (e.work_.size() == 0) e.work_ = work_of_loads(x, e.load_sums_);
-  return membranes_.load(x, e.work_, other);
+  return membranes_.load(x, e.work_, response);
 }
 
 /// Returns velocity fields, with the symmetry of the scene, that do not change the shape: rotations of the meshes of drops and of membranes (4.22).
@@ -114,20 +119,19 @@ std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocit
 /// one is needed (has_velocity_system).
 Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
   bodies_.rigid.place(x);
-  if (!enters(x)) return not_a_number(x);
+  if (!admits(x)) return not_a_number(x);
   push_bodies(x);
-  const bool deforms = !bodies_.tractions || !bodies_.tractions->alone(), constrained = deforms && parameters_.constrained();
-  const Net b = constrained ? volumes_.gradient(x) : Net();
-  Net c = b;
-  Net f = deforms ? membrane_load(e, x, constrained ? &c : nullptr) : Net::Zero(x.rows(), 3);
+  const bool deforms = !bodies_.tractions || !bodies_.tractions->alone();
+  VolumeConstraint volume;
+  Net f = deforms ? membrane_load(e, x, &volume) : Net::Zero(x.rows(), 3);
   if (!bodies_.tractions) bodies_.rigid.add_load(f);
   e.load_ = f;
   Net v = explicit_velocity(x, f, {}, &e.response_);
-  if (!bodies_.tractions) bodies_.rigid.add_lacking(v), bodies_.rigid.subtract_prescribed(v);
-  if (constrained) volumes_.constrain(v, b, c);
+  if (!bodies_.tractions) bodies_.rigid.add_load_correction(v), bodies_.rigid.subtract_prescribed(v);
+  volumes_.constrain(v, volume);
   membranes_.place_viscous(x);
-  if (bodies_.tractions) v = solve_tractions(e, x, b, c, symmetric(v));
-  else if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess, e.error_);
+  if (bodies_.tractions) v = solve_tractions(e, x, volume, symmetric(v));
+  else if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, e.error_);
   e.unknowns_ = v;
   if (viscous() && !bodies_.tractions) e.load_ += membranes_.viscous_load(x, symmetric(v));
   if (!bodies_.rigid.empty() && !bodies_.tractions) {
@@ -138,8 +142,8 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
   if (!interface_) return v;
   e.fluid_ = symmetric(v);
   const auto clock = phases_.time("interface motion");
-  v = interface_->velocity(x, constrained ? b : volumes_.gradient(x), v, e.x());
-  if (constrained) volumes_.constrain(v, b, c);  // removes the small change of volume that the spline interpolation of the normal velocity causes
+  v = interface_->velocity(x, volume.active() ? volume.gradient : volumes_.gradient(x), v, e.x());
+  volumes_.constrain(v, volume);  // removes the small change of volume that the spline interpolation of the normal velocity causes
   return v;
 }
 
@@ -149,11 +153,12 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
 /// follows, because the solution changes the response.
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer) {
   Net u = layers_.apply_single(x, f);
-  if (by_sites()) {
-    const bool known = duct_.tube && around_.flow.duct();
-    u = (known ? around_.flow.amplitude() * duct_.tube->ambient() : around_.flow.velocities(targets_.values() * x)) - u / parameters_.viscosity;
+  if (flow_at_targets()) {
+    const bool known = duct_.tube && surroundings_.flow.duct();
+    const stokes::AmbientFlow& flow = surroundings_.flow;
+    u = (known ? flow.amplitude() * duct_.tube->ambient() : flow.velocities(targets_.values() * x)) - u / parameters_.viscosity;
     if (solids()) add_solids(x, f, moves, true, u);
-    if (duct_.tube && schur()) {
+    if (duct_.tube && eliminates_walls()) {
       Tube::Response response = duct_.tube->respond(f, moves);
       u += response.velocity;
       if (answer && !has_velocity_system()) *answer = std::move(response);
@@ -161,14 +166,14 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std
     const auto clock = phases_.time("projection");
     return targets_.control_values(std::move(u));
   }
-  Net v = around_.flow.velocities(x);  // exact control values in an affine flow, because basis functions sum to one
+  Net v = surroundings_.flow.velocities(x);  // exact control values in an affine flow, because basis functions sum to one
   const auto clock = phases_.time("projection");
   v -= targets_.control_values(std::move(u)) / parameters_.viscosity;
   return v;
 }
 
 /// Sets the tube to the shape x. Returns whether all collocation sites of the shape are inside the tube.
-bool Capsule::enter_tube(const Net& x) {
+bool Capsule::inside_tube(const Net& x) {
   place_tube(x);
   const Net at_sites = targets_.at_sites() * x;
   if (duct_.tube->fixed()) return !layout_.any(!duct_.tube->inside(at_sites, layout_.points()));
@@ -187,47 +192,43 @@ bool Capsule::in_fluid(const Net& x) {
 }
 
 /// Moves the tube to the particles. Returns whether the shape is finite, and in the fluid.
-bool Capsule::enters(const Net& x) { return x.allFinite() && (!duct_.tube || enter_tube(x)) && in_fluid(x); }
+bool Capsule::admits(const Net& x) { return x.allFinite() && (!duct_.tube || inside_tube(x)) && in_fluid(x); }
 
 /// Returns whether defect() uses (3.14), which does not require a solve for the velocity.
-bool Capsule::defect_spares_system() const { return jacobian_.flows_by_system() && schur(); }
+bool Capsule::defect_spares_system() const { return jacobian_.flows_by_system() && eliminates_walls(); }
 
 Net Capsule::defect(const Net& x, const Net& u) {
   if (!defect_spares_system()) return velocity(x) - u;
   ++counts_.evaluations;
-  if (!around_.cell || !x.allFinite()) return defect_here(x, u);
-  Net in_cell = x, slower = u;
-  const std::vector<Vec3> shifts = put_into_cell(in_cell);
-  for (std::size_t p = 0; p < shifts.size(); ++p)
-    particles()[p].block.rows(slower).rowwise() -= faster_beyond(shifts[p]).transpose();
-  return defect_here(in_cell, slower);
+  Net inside = x, v = u;
+  if (x.allFinite()) move_into_cell(inside, &v);
+  return defect_here(inside, v);
 }
 
 /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14). P is the volume projection (2.8). B v = w is the linear system for the
 /// velocity v at x (see solve_velocity). Adds the viscous load due to u to the elastic load, so that one evaluation of the single layer is enough.
 Net Capsule::defect_here(const Net& x, const Net& u) {
-  if (!enters(x)) return not_a_number(x);
-  const bool constrained = parameters_.constrained();
-  const Net b = constrained ? volumes_.gradient(x) : Net();
-  Net c = b, inside = u;
+  if (!admits(x)) return not_a_number(x);
+  VolumeConstraint volume;
+  Net inside = u;
   Evaluation e(*this, x);
-  Net f = membrane_load(e, x, constrained ? &c : nullptr);
-  if (constrained) volumes_.constrain(inside, b, c);
+  Net f = membrane_load(e, x, &volume);
+  volumes_.constrain(inside, volume);
   membranes_.place_viscous(x);
   if (viscous()) f += membranes_.viscous_load(x, inside);
-  Net lacking = explicit_velocity(x, f, layers_.has_double() ? inside : Net(), nullptr) - inside;
+  Net residual = explicit_velocity(x, f, layers_.has_double() ? inside : Net(), nullptr) - inside;
   if (layers_.has_double()) {
     const auto clock = phases_.time("velocity system");
     layers_.place_double(x);
-    lacking += targets_.control_values(layers_.apply_double(inside));
+    residual += targets_.control_values(layers_.apply_double(inside));
   }
-  if (constrained) volumes_.constrain(lacking, b, c);
-  return symmetric(lacking - (u - inside));
+  volumes_.constrain(residual, volume);
+  return symmetric(residual - (u - inside));
 }
 
 void Capsule::freeze(const Net& at) {
   Net x = at;
-  if (around_.cell) put_into_cell(x);
+  move_into_cell(x);
   const auto clock = phases_.time("assembly");
   ++counts_.assemblies;
   frozen_.assemble(at, x);
@@ -308,7 +309,7 @@ stokes::Evaluations Capsule::kernel_evaluations() const {
   stokes::Evaluations sum = layers_.evaluations() + frozen_.evaluations();
   if (duct_.tube) sum += duct_.tube->kernel_evaluations();
   if (bodies_.tractions) sum += bodies_.tractions->kernel_evaluations();
-  if (around_.solids) sum += around_.solids->evaluations();
+  if (surroundings_.solids) sum += surroundings_.solids->evaluations();
   return sum;
 }
 

@@ -27,6 +27,12 @@ class RigidTractions;
 
 /// Computes dx/dt = v(x) for the stacked control nets x of all particles.
 ///
+/// Order of calls: at() sets the time. evaluate() solves for the loads and velocities of a shape and returns them as an Evaluation. evaluation()
+/// returns an Evaluation that solves only when a quantity is read that needs it. Implicit schemes call freeze() every few steps, linearise() in each
+/// step, and then solve() or correction(). Schemes call restore_volume() after a step. The functions are in capsule.cpp (evaluation; solve_in_cell()
+/// lists its stages), capsule_unknowns.cpp (linear systems), capsule_cell.cpp (lattices, tubes, plates and posts) and capsule_setup.cpp
+/// (construction).
+///
 /// Basic equation, without a wall (2.4), (4.2):
 ///
 ///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by projection P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
@@ -80,9 +86,9 @@ class Capsule : public Dynamics {
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
   void at(double time, double start) override;
 
-  double next_kink(double time) const override { return around_.flow.next_kink(time); }
+  double next_kink(double time) const override { return surroundings_.flow.next_kink(time); }
   void freeze(const Net& x) override;
-  bool lattice_moves() const override { return parameters_.cell && !duct_.tube && !around_.solids; }
+  bool lattice_moves() const override { return parameters_.cell && !duct_.tube && !surroundings_.solids; }
   double frozen_bytes() const override { return frozen_.bytes(); }
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
@@ -135,18 +141,15 @@ class Capsule : public Dynamics {
   const std::vector<Particle>& particles() const { return parameters_.particles; }
   double volume_error(double volume, std::size_t p = 0) const { return volumes_.error(volume, p); }  ///< V/V0 - 1 of particle p
   Tube* tube() { return duct_.tube.get(); }  ///< null if there is no tube
-  SolidResponse* solids() { return around_.solids.get(); }  ///< null if there are no plates or posts
-  const stokes::AmbientFlow& flow() const { return around_.flow; }  ///< flow at the time set by `at`
-  const std::optional<stokes::PeriodicCell>& cell() const { return around_.cell; }  ///< cell at the time set by `at`
+  SolidResponse* solids() { return surroundings_.solids.get(); }  ///< null if there are no plates or posts
+  const stokes::AmbientFlow& flow() const { return surroundings_.flow; }  ///< flow at the time set by `at`
+  const std::optional<stokes::PeriodicCell>& cell() const { return surroundings_.cell; }  ///< cell at the time set by `at`
 
-  /// Subtracts from every particle the lattice vector that moves the mean of its control points into the cell, and returns these vectors. The cell is
-  /// centred on the origin; in a channel, on the middle of the channel; and in a straight tube, whose wall moves with the particles, on the mean of
-  /// the particles.
-  std::vector<Vec3> put_into_cell(Net& x);
-
-  /// Returns the ambient velocity at a point displaced by the lattice vector `shift`, minus the ambient velocity at the point itself. 0 in a duct,
-  /// whose flow is periodic.
-  Vec3 faster_beyond(const Vec3& shift) const { return duct_.tube ? Vec3::Zero() : Vec3(around_.flow.cell_gradient() * shift); }
+  /// Replaces every particle in the net x by its image whose mean control point is in the cell, and converts the velocity v of the control points, if
+  /// given, to the velocity of the image. Returns what was subtracted for each particle. Without a lattice, does nothing and returns an empty vector.
+  /// The cell is centred on the origin; in a channel, on the middle of the channel; and in a straight tube, whose wall moves with the particles, on
+  /// the mean of the particles.
+  std::vector<CellShift> move_into_cell(Net& x, Net* v = nullptr);
 
   stokes::Evaluations kernel_evaluations() const;  ///< kernel evaluations of all layers
   const Targets& targets() const { return targets_; }
@@ -182,38 +185,45 @@ class Capsule : public Dynamics {
     std::unique_ptr<RigidTractions> tractions;
     std::optional<OneBodyInverses> isolated;
   };
-  bool by_sites() const { return duct_.tube || parameters_.solids || !around_.flow.affine(); }
-  bool schur() const { return !duct_.tube || bodies_.tractions || parameters_.solvers.tube == "schur"; }
-  bool has_velocity_system() const { return layers_.has_double() || viscous() || !schur(); }
-  bool unknowns_follow() const { return !interface_ && bodies_.rigid.empty(); }  // true if the unknowns are velocities of control points
-  bool pressed() const { return forces_[0].size() > 0 || forces_[1].size() > 0; }
+  /// Returns whether the ambient velocity is evaluated at the targets. Otherwise it is affine, and exact at the control points.
+  bool flow_at_targets() const { return duct_.tube || parameters_.solids || !surroundings_.flow.affine(); }
+  /// Returns whether the wall traction is eliminated from the velocity system, so that the system's unknowns are those of the particles only.
+  bool eliminates_walls() const { return !duct_.tube || bodies_.tractions || parameters_.solvers.tube == "schur"; }
+  bool has_velocity_system() const { return layers_.has_double() || viscous() || !eliminates_walls(); }
+  bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // velocities of control points
+  bool has_forces() const { return work_of_forces_[0].size() > 0 || work_of_forces_[1].size() > 0; }
   bool deform_cell(double time);
   Vec3 cell_origin(const Net& x) const;
   void place_tube(const Net& x);
   void place_among_solids(const Net& x);
   void make_solid_response();
-  bool enter_tube(const Net& x);
+  bool inside_tube(const Net& x);
   bool in_fluid(const Net& x);
-  bool enters(const Net& x);
+  bool admits(const Net& x);
   Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
   void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
   Net in_cell(Evaluation& e, const Net& guess);
   Net solve_in_cell(Evaluation& e, Net x, const Net& guess);
   Net work_of_loads(const Net& x, std::vector<Net>& sums);
-  Net membrane_load(Evaluation& e, const Net& x, Net* other);
+  Net membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume = nullptr);
   void push_bodies(const Net& x);
   Net explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer);
   Net defect_here(const Net& x, const Net& u);
-  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess, double error);
-  Net solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded, const Net& f,
-                   const Net& b, const Net& c, const Net& rhs);
-  Net solve_tractions(Evaluation& e, const Net& x, const Net& b, const Net& c, const Net& flow);
+  Net velocity_load(const Net& x, const Net& v);
+  Net velocity_product(const Net& x, const Net& v, const Net& load);
+  Apply velocity_preconditioner(const Net& x);
+  Net solve_velocity(const Net& x, const Net& f, const VolumeConstraint& volume, const Net& rhs, const Net& guess, double error);
+  Net solve_blocks(const Net& x, const Net& f, const VolumeConstraint& volume, const Net& rhs);
+  Net deformable_velocity(const VolumeConstraint& volume, const Net& y) const;
+  Net traction_load(const Net& x, const Net& y, const Net& v);
+  Net traction_product(const Net& x, const VolumeConstraint& volume, const Net& y, const Net& caused);
+  Net solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint& volume, const Net& flow);
   Mat3 moment_by_traction(Evaluation& at, std::size_t p);
   void note(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
 
   const spline::Space& space_;
-  Net rest_;
-  Surroundings around_;
+  Net initial_;
+  Surroundings surroundings_;
   CapsuleParameters parameters_;
   Phases& phases_;
   OperationCounts counts_;
@@ -229,7 +239,7 @@ class Capsule : public Dynamics {
   Krylov velocity_solver_;
   CapsuleJacobian jacobian_;
   std::shared_ptr<Evaluation> latest_;
-  std::array<Net, 2> forces_;  // virtual work of contact forces, then of loads due to fields; empty nets if there are none
+  std::array<Net, 2> work_of_forces_;  // virtual work of contact forces, then of loads due to fields; empty nets if there are none
 };
 
 }  // namespace tanktread::coupling

@@ -11,26 +11,30 @@ namespace tanktread::coupling {
 /// Sets the cell as deformed by the flow until `time` (2.51). Returns whether the cell has changed. The cell of a duct is constant.
 bool Capsule::deform_cell(double time) {
   if (duct_.tube) {
-    around_.cell = duct_.tube->cell();
+    surroundings_.cell = duct_.tube->cell();
     return false;
   }
-  const Mat3 deformation = around_.solids ? Mat3(Mat3::Identity()) : around_.flow.deformation(time);  // a cell with walls or posts is not deformed
+  // A cell with walls or posts is not deformed.
+  const Mat3 deformation = surroundings_.solids ? Mat3(Mat3::Identity()) : surroundings_.flow.deformation(time);
   const stokes::PeriodicCell now(deformation * parameters_.cell->vectors(), parameters_.cell->n());
-  if (around_.cell && *around_.cell == now) return false;
-  around_.cell = now;
+  if (surroundings_.cell && *surroundings_.cell == now) return false;
+  surroundings_.cell = now;
   layers_.repeat(now);
   if (bodies_.tractions) bodies_.tractions->repeat(now);
   return true;
 }
 
-std::vector<Vec3> Capsule::put_into_cell(Net& x) {
-  std::vector<Vec3> shifts;
+std::vector<CellShift> Capsule::move_into_cell(Net& x, Net* v) {
+  std::vector<CellShift> shifts;
+  if (!surroundings_.cell) return shifts;
   const Vec3 middle = cell_origin(x);
   if (duct_.tube && !duct_.tube->fixed()) duct_.origin = middle[0];
   for (const Particle& particle : particles()) {
     auto rows = particle.block.rows(x);
-    shifts.push_back(around_.cell->shift(rows.colwise().mean().transpose() - middle));
-    rows.rowwise() -= shifts.back().transpose();
+    CellShift& shift = shifts.emplace_back(surroundings_.cell->shift(rows.colwise().mean().transpose() - middle));
+    if (!duct_.tube) shift.velocity = surroundings_.flow.cell_gradient() * shift.position;
+    rows.rowwise() -= shift.position.transpose();
+    if (v && v->size() > 0) particle.block.rows(*v).rowwise() -= shift.velocity.transpose();
   }
   return shifts;
 }
@@ -54,10 +58,10 @@ Vec3 Capsule::cell_origin(const Net& x) const {
 void Capsule::add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u) {
   const auto clock = phases_.time("wall");
   place_among_solids(x);
-  Solids::Flow flow = around_.solids->respond(f, moves);
-  if (with_empty) flow = flow + around_.solids->empty();
+  Solids::Flow flow = surroundings_.solids->respond(f, moves);
+  if (with_empty) flow = flow + surroundings_.solids->empty();
   Net part = targets_.zero();
-  around_.solids->velocities(flow, part);
+  surroundings_.solids->velocities(flow, part);
   targets_.gather(false, part);
   u += part;
 }
@@ -74,33 +78,26 @@ Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
 /// Creates the object that computes the flow caused by plates and posts, if there are any.
 void Capsule::make_solid_response() {
   if (!parameters_.solids) return;
-  around_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, around_.flow);
-  around_.solids->set_reference(membranes_.unstressed(), measure(), measured_on_present(particles()));
-  if (bodies_.tractions) bodies_.tractions->set_solids(*around_.solids);
-  around_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
+  surroundings_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, surroundings_.flow);
+  surroundings_.solids->particles().set(membranes_.unstressed(), particles());
+  if (bodies_.tractions) bodies_.tractions->set_solids(*surroundings_.solids);
 }
 
 void Capsule::place_among_solids(const Net& x) {
-  around_.solids->place(x, targets_.values() * x, targets_.own());
+  surroundings_.solids->place(x, targets_.values() * x, targets_.own());
 }
 
-/// Evaluates the shape with each particle moved by a lattice vector so that its mean is in the cell. Converts the velocities to those at the original
-/// positions.
+/// Evaluates the shape with each particle replaced by its image in the cell of a lattice. Converts the velocities to those of the particles.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
-  if (!around_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), guess);
-  Net x = e.x();
-  const std::vector<Vec3> shifts = put_into_cell(x);
-  bodies_.rigid.enter(shifts, duct_.tube ? Mat3::Zero() : around_.flow.cell_gradient());
-  Net slower = guess;
-  const auto faster_by = [&](std::size_t p) { return faster_beyond(shifts[p]); };
-  for (std::size_t p = 0; p < shifts.size() && guess.size() > 0; ++p) particles()[p].block.rows(slower).rowwise() -= faster_by(p).transpose();
-  Net v = solve_in_cell(e, std::move(x), slower);
-  for (std::size_t p = 0; p < shifts.size(); ++p) {
-    const Vec3 faster = faster_by(p);
+  if (!surroundings_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), guess);
+  Net x = e.x(), v = guess;
+  const std::vector<CellShift> shifts = move_into_cell(x, &v);
+  bodies_.rigid.move_into_cell(shifts);
+  v = solve_in_cell(e, std::move(x), v);
+  for (std::size_t p = 0; p < shifts.size(); ++p)
     for (Net* net : {&v, &e.fluid_})
-      if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += faster.transpose();
-    bodies_.rigid.carry(p, shifts[p], faster);
-  }
+      if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += shifts[p].velocity.transpose();
+  bodies_.rigid.move_out_of_cell(shifts);
   return v;
 }
 

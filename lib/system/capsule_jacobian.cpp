@@ -32,11 +32,11 @@ Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::Vec
 
 }  // namespace
 
-CapsuleJacobian::CapsuleJacobian(const CapsuleParameters& parameters, const stokes::AmbientFlow& flow, bool by_sites, const Targets& targets,
+CapsuleJacobian::CapsuleJacobian(const CapsuleParameters& parameters, const stokes::AmbientFlow& flow, bool flow_at_sites, const Targets& targets,
                                  Membranes& membranes, const Volumes& volumes, FrozenLayers& frozen, Tube* tube, InterfaceMotion* interface,
                                  OperationCounts& counts)
-    : parameters_(parameters), flow_(flow), by_sites_(by_sites), targets_(targets), membranes_(membranes), volumes_(volumes), frozen_(frozen),
-      tube_(tube), interface_(interface), counts_(counts),
+    : parameters_(parameters), flow_(flow), flow_at_sites_(flow_at_sites), targets_(targets), membranes_(membranes), volumes_(volumes),
+      frozen_(frozen), tube_(tube), interface_(interface), counts_(counts),
       step_solver_(parameters.solvers.of(parameters.solvers.implicit_step)),
       inner_solver_(parameters.solvers.of(parameters.solvers.velocity)) {
   if (std::ranges::none_of(parameters.particles, [](const Particle& one) { return one.material.area_order > 0; })) return;
@@ -52,10 +52,10 @@ void CapsuleJacobian::linearise(const Net& x, const std::vector<Net>& sums) {
   if (interface_) {
     interface_->linearise(x, volumes_.gradient(x));
   } else if (parameters_.constrained() && (flows_by_system() || std::ranges::any_of(parameters_.particles, keeps_area))) {
-    flux_ = volumes_.gradient(x);
-    flux_response_ = parameters_.symmetry.completed(membranes_.solved(flux_));
+    constraint_.gradient = volumes_.gradient(x);
+    constraint_.response = parameters_.symmetry.completed(membranes_.solved(constraint_.gradient));
   }
-  if (by_sites_) gradients_ = gradients_at(targets_.at_sites() * x);
+  if (flow_at_sites_) gradients_ = gradients_at(targets_.at_sites() * x);
 }
 
 /// Returns the velocity gradients of the flow at x. If the scene is symmetric, computes only one gradient per symmetry orbit, at the fundamental
@@ -72,13 +72,14 @@ std::vector<Mat3> CapsuleJacobian::gradients_at(const Net& x) const {
 /// Applies the volume projection P (2.8) of the last linearisation to a rate of change. Without P, the rate would include volume changes, which
 /// incompressible fluids do not allow, and the response of a stiff membrane to these changes would dominate.
 Net CapsuleJacobian::without_flux(Net rate) const {
-  if (flux_.size() > 0) volumes_.constrain(rate, flux_, flux_response_);
+  volumes_.constrain(rate, constraint_);
   return rate;
 }
 
 Net CapsuleJacobian::inflation(const Net& c) {
   constexpr double rough = 0.1;  // relative residual
-  if (latest_shift_ == 0 || interface_ || c.rows() != flux_.rows() || std::ranges::none_of(parameters_.particles, keeps_area)) return c;
+  if (latest_shift_ == 0 || interface_ || c.rows() != constraint_.gradient.rows()) return c;
+  if (std::ranges::none_of(parameters_.particles, keeps_area)) return c;
   const Net along = solve(latest_shift_, c, rough, {});
   return along.allFinite() ? along : c;
 }
@@ -109,12 +110,12 @@ Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Ne
   if (moves && frozen_.has_double()) u = frozen_.double_layer(moving);
   if (load.size() > 0) u -= frozen_.single_layer(load) / parameters_.viscosity;
   if (tube_) u += tube_->frozen_response(load, moving);
-  if (displaced && by_sites_) {
+  if (displaced && flow_at_sites_) {
     const Net at_sites = shift * (targets_.at_sites() * dx);
     for (Eigen::Index i = 0; i < u.rows(); ++i) u.row(i) += at_sites.row(i) * gradients_[static_cast<size_t>(i)].transpose();
   }
   Net change = targets_.collocated(std::move(u));
-  if (displaced && !by_sites_) change += shift * dx * flow_.gradient(Vec3::Zero()).transpose();
+  if (displaced && !flow_at_sites_) change += shift * dx * flow_.gradient(Vec3::Zero()).transpose();
   clear_rigid(parameters_.particles, change);
   change = without_flux(std::move(change));
   return v.size() > 0 ? Net(v - change) : Net(-change);

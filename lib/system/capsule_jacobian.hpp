@@ -26,11 +26,12 @@ class CapsuleJacobian {
     Net rate, slip;
   };
 
-  /// `by_sites`: true if the ambient velocity is evaluated at the collocation sites, false if its uniform gradient acts on the control points.
+  /// `flow_at_sites`: true if the ambient velocity is evaluated at the collocation sites, false if its uniform gradient acts on the control points.
   /// `tube`, `interface`: null if there is no tube or if no control points slide. `work`: counters of operations, which this object increases.
   /// References must outlive this object.
-  CapsuleJacobian(const CapsuleParameters& parameters, const stokes::AmbientFlow& flow, bool by_sites, const Targets& targets, Membranes& membranes,
-                  const Volumes& volumes, FrozenLayers& frozen, Tube* tube, InterfaceMotion* interface, OperationCounts& counts);
+  CapsuleJacobian(const CapsuleParameters& parameters, const stokes::AmbientFlow& flow, bool flow_at_sites, const Targets& targets,
+                  Membranes& membranes, const Volumes& volumes, FrozenLayers& frozen, Tube* tube, InterfaceMotion* interface,
+                  OperationCounts& counts);
 
   /// Linearises at x. `sums`: surface integrals that Membranes::work computed at x.
   void linearise(const Net& x, const std::vector<Net>& sums);
@@ -79,7 +80,7 @@ class CapsuleJacobian {
 
   const CapsuleParameters& parameters_;
   const stokes::AmbientFlow& flow_;
-  const bool by_sites_;
+  const bool flow_at_sites_;
   const Targets& targets_;
   Membranes& membranes_;
   const Volumes& volumes_;
@@ -90,8 +91,8 @@ class CapsuleJacobian {
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
   Krylov step_solver_, inner_solver_;
   double latest_shift_ = 0;      // shift gamma dt of the implicit system solved last
-  Net flux_, flux_response_;     // flux_: b = dV/dx. flux_response_: c = M0^{-1} b of the projection P (2.8). No rows if J does not include P
-  std::vector<Mat3> gradients_;  // velocity gradients of the ambient flow at the collocation sites; set if `by_sites`
+  VolumeConstraint constraint_;  // projection P (2.8); not active if J does not include P
+  std::vector<Mat3> gradients_;  // velocity gradients of the ambient flow at the collocation sites; set if `flow_at_sites`
 };
 
 }  // namespace tanktread::coupling

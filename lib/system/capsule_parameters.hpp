@@ -41,13 +41,11 @@ inline OperationCounts operator+(OperationCounts a, const OperationCounts& b) {
 struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid
   std::vector<Particle> particles{1};                            ///< particles in stacking order; the space of a single particle need not be set
-  bool strong_load = false;                                      ///< true: membrane load -div_s tau from the pointwise equilibrium at the collocation
-                                                                 ///< sites, false: from virtual work (3.5)
+  bool strong_load = false;  ///< true: membrane load from the strong form -div_s tau; false: from virtual work (3.5)
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
-  std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero; not set if the scene is not periodic. The flow deforms the cell,
-                                             ///< except the cell of a duct
+  std::optional<stokes::PeriodicCell> cell;  ///< cell of the lattice at time zero, if any. The flow deforms the cell, except in ducts
   std::shared_ptr<const stokes::Medium> medium;  ///< for example a plane wall; null in unbounded fluid, a lattice or a tube
   std::optional<SolidScene> solids;          ///< plates and posts in the cell
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; Symmetry() if there is none

@@ -31,7 +31,7 @@ std::unique_ptr<InterfaceMotion> interface_motion(const spline::Space& space, co
 
 Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
                  const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
-    : space_(space), rest_(initial), around_{flow, {}, {}}, parameters_(completed(parameters, space)), phases_(phases),
+    : space_(space), initial_(initial), surroundings_{flow, {}, {}}, parameters_(completed(parameters, space)), phases_(phases),
       layout_(space, parameters_.symmetry, phases),
       targets_(space, unstressed, parameters_, layout_),
       membranes_(space, unstressed, parameters_, layout_, phases),
@@ -42,7 +42,8 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       bodies_{RigidParticles(particles(), initial, parameters.viscosity, parameters.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
-      jacobian_(parameters_, around_.flow, by_sites(), targets_, membranes_, volumes_, frozen_, duct_.tube.get(), interface_.get(), counts_) {
+      jacobian_(parameters_, surroundings_.flow, flow_at_targets(), targets_, membranes_, volumes_, frozen_, duct_.tube.get(), interface_.get(),
+                counts_) {
   if (parameters.solvers.rigid_bodies == "first kind" && !bodies_.rigid.empty())
     bodies_.tractions =
         std::make_unique<RigidTractions>(space, membranes_.unstressed(), initial, particles(), parameters.viscosity, parameters.quadrature,
@@ -51,8 +52,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   make_solid_response();
   if (!duct_.tube) return;
   if (!duct_.tube->fixed()) duct_.inner_radius = duct_.tube->wall().outline.distance(duct_.tube->wall().outline.centroid());
-  duct_.tube->set_reference(unstressed, measure(), measured_on_present(particles()));
-  duct_.tube->set_contrasts(viscosity_contrasts_of_points(particles()));
+  duct_.tube->particles().set(unstressed, particles());
 }
 
 Capsule::~Capsule() = default;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <ranges>
 #include <utility>
 
@@ -23,126 +24,145 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v, double t
   if (v.allFinite()) require_convergence(report, system, tolerance);
 }
 
-/// Solves P B P v = rhs for v, with the operator B of (4.2) and P rhs = rhs. The vectors b and c define the projection P (2.8), which removes changes
-/// of the volumes. If b and c are empty, the volumes are free and P = 1. In a tube, B includes the response of the wall to v if the option
-/// Solvers/tube is `schur`. With other values of this option, solve_blocks() solves for v and the wall tractions together. The initial guess is rhs
-/// if `guess` is empty or there are rigid bodies, and otherwise `guess`. `error`: see Evaluation::solve.
-Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess, double error) {
+/// Returns the load that depends on the velocity v: viscous stresses of membranes, and loads of bodies with prescribed motion. No rows if there is no
+/// such load.
+Net Capsule::velocity_load(const Net& x, const Net& v) {
+  Net load = bodies_.rigid.prescribed() ? bodies_.rigid.completing_load(v) : Net();
+  if (viscous()) load = load.size() > 0 ? Net(load + membranes_.viscous_load(x, v)) : membranes_.viscous_load(x, v);
+  return load;
+}
+
+/// Returns B v with the operator B of (4.2), without the response of walls. `load`: velocity_load(x, v).
+Net Capsule::velocity_product(const Net& x, const Net& v, const Net& load) {
+  if (!layers_.has_double() && !viscous()) return v;
+  Net bv = v - targets_.serial_control_values(layers_.apply(x, v, load));
+  bodies_.rigid.complete(v, bv);
+  return bv;
+}
+
+/// Returns the preconditioner of the velocity system at x, from inverses for isolated rigid bodies and for the thin films between bodies. Empty if no
+/// such inverses are stored. Valid until the bodies move.
+Apply Capsule::velocity_preconditioner(const Net& x) {
+  if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, initial_, parameters_.quadrature);
+  if (bodies_.isolated->empty()) return {};
+  const auto films = std::make_shared<FilmInverses>(particles(), *bodies_.isolated, bodies_.rigid, x,
+                                                    [&](std::span<const int> sites) { return layers_.double_rows(sites); });
+  return [this, films, n = x.rows()](const double* in, double* out) {
+    Net y = Eigen::Map<const Net>(in, n, 3);
+    bodies_.isolated->take_to_sites(y);
+    films->add(y);
+    bodies_.isolated->solve(bodies_.rigid, y);
+    Eigen::Map<Net>(out, n, 3) = y;
+  };
+}
+
+/// Solves P B P v = rhs for v, with the operator B of (4.2), the projection P (2.8) of `volume`, and P rhs = rhs. In a tube, B includes the response
+/// of the wall to v if the option Solvers/tube is `schur`. With other values of this option, solve_blocks() solves for v and the wall tractions
+/// together. The initial guess is rhs if `guess` is empty or there are rigid bodies, and otherwise `guess`. `error`: see Evaluation::solve.
+Net Capsule::solve_velocity(const Net& x, const Net& f, const VolumeConstraint& volume, const Net& rhs, const Net& guess, double error) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   layers_.assemble(x, viscous());
-  const auto load_of = [&](const Net& v) {  // returns the velocity-dependent load (viscous membranes, prescribed rigid motions); empty if there is
-                                            // none
-    Net load = bodies_.rigid.prescribed() ? bodies_.rigid.completing_load(v) : Net();
-    if (viscous()) load = load.size() > 0 ? Net(load + membranes_.viscous_load(x, v)) : membranes_.viscous_load(x, v);
-    return load;
-  };
-  const auto without_wall = [&](const Net& v, const Net& load) -> Net {  // B v
-    if (!layers_.has_double() && !viscous()) return v;
-    Net bv = v - targets_.serial_control_values(layers_.apply(x, v, load));
-    bodies_.rigid.complete(v, bv);
-    return bv;
-  };
-  if (!schur()) return solve_blocks(load_of, without_wall, f, b, c, rhs);
-  const auto project = [&](Net& v) {
-    if (b.size() > 0) volumes_.constrain(v, b, c);
-  };
+  if (!eliminates_walls()) return solve_blocks(x, f, volume, rhs);
   const auto apply = [&](const double* in, double* out) {
     Net v = Eigen::Map<const Net>(in, n, 3);
-    project(v);
-    const Net load = load_of(v);
-    Net bv = without_wall(v, load);
+    volumes_.constrain(v, volume);
+    const Net load = velocity_load(x, v);
+    Net bv = velocity_product(x, v, load);
     if (duct_.tube || solids()) bv -= velocity_by_walls(x, load, v);
-    project(bv);
+    volumes_.constrain(bv, volume);
     Eigen::Map<Net>(out, n, 3) = bv;
   };
   const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
   Eigen::VectorXd v = right;
   if (guess.size() > 0 && bodies_.rigid.empty()) v = Eigen::Map<const Eigen::VectorXd>(guess.data(), guess.size());
-  if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, rest_, parameters_.quadrature);
-  const auto rows_of = [&](std::span<const int> sites) { return layers_.double_rows(sites); };
-  const FilmInverses films(particles(), *bodies_.isolated, bodies_.rigid, x, rows_of);
-  const auto precondition = [&](const double* in, double* out) {
-    Net y = Eigen::Map<const Net>(in, n, 3);
-    bodies_.isolated->take_to_sites(y);
-    films.add(y);
-    bodies_.isolated->solve(bodies_.rigid, y);
-    Eigen::Map<Net>(out, n, 3) = y;
-  };
-  const LinearSystem system{velocity_blocks(particles()), apply, bodies_.isolated->empty() ? Apply() : precondition};
+  const LinearSystem system{velocity_blocks(particles()), apply, velocity_preconditioner(x)};
   const auto least = [](const Particle& one) { return one.radius * std::sqrt(static_cast<double>(one.block.n_points)); };
   const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
   const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
   note(velocity_solver_.solve(system, right, v, tolerance), v, tolerance);
   Net solution = Eigen::Map<const Net>(v.data(), n, 3);
-  project(solution);
+  volumes_.constrain(solution, volume);
   return solution;
 }
 
 /// Solves for the velocity v, the wall traction f^D, the pressure drop dp (2.5)-(2.7) and the volume multipliers (2.8) in one system. The right-hand
-/// side rhs = v_inf - (1/mu) R^-1 A f is also the initial guess of v. `load` and `unbounded`: see TubeSystem.
-Net Capsule::solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded,
-                          const Net& f, const Net& b, const Net& c, const Net& rhs) {
+/// side rhs = v_inf - (1/mu) R^-1 A f is also the initial guess of v.
+Net Capsule::solve_blocks(const Net& x, const Net& f, const VolumeConstraint& volume, const Net& rhs) {
+  const auto load = [&](const Net& v) { return velocity_load(x, v); };
+  const auto unbounded = [&](const Net& v, const Net& load_of_v) { return velocity_product(x, v, load_of_v); };
   const auto control_values = [&](const Net& at_sites) { return targets_.collocation().solve(at_sites); };
   std::vector<spline::Block> constrained;
   for (const Particle& one : particles())
-    if (b.size() > 0 && !one.rigid) constrained.push_back(one.block);
-  const TubeSystem system{*duct_.tube, load, unbounded, control_values, b, c, constrained, duct_.tube->wall().radius() / parameters_.viscosity};
+    if (volume.active() && !one.rigid) constrained.push_back(one.block);
+  const double unit = duct_.tube->wall().radius() / parameters_.viscosity;
+  const TubeSystem system{*duct_.tube, load, unbounded, control_values, volume.gradient, volume.response, constrained, unit};
   const Eigen::VectorXd right = system.right_hand_side(rhs, f);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size());
-  x.head(rhs.size()) = right.head(rhs.size());
+  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(right.size());
+  unknowns.head(rhs.size()) = right.head(rhs.size());
   const LinearSystem linear = system.linear_system(velocity_blocks(particles()), parameters_.solvers.tube);
-  note(velocity_solver_.solve(linear, right, x, parameters_.solvers.tolerance), x, parameters_.solvers.tolerance);
-  return Eigen::Map<const Net>(x.data(), rhs.rows(), 3);
+  note(velocity_solver_.solve(linear, right, unknowns, parameters_.solvers.tolerance), unknowns, parameters_.solvers.tolerance);
+  return Eigen::Map<const Net>(unknowns.data(), rhs.rows(), 3);
+}
+
+/// Returns the velocity of deformable particles for the unknowns y of solve_tractions(); 0 in the rows of bodies.
+Net Capsule::deformable_velocity(const VolumeConstraint& volume, const Net& y) const {
+  Net v = y;
+  clear_rigid(particles(), v);
+  volumes_.constrain(v, volume);
+  return v;
+}
+
+/// Returns the load that depends on the unknowns y of solve_tractions(): tractions on bodies, and viscous loads of membranes. `v`:
+/// deformable_velocity() for y.
+Net Capsule::traction_load(const Net& x, const Net& y, const Net& v) {
+  Net load = viscous() ? membranes_.viscous_load(x, v) : Net::Zero(y.rows(), 3);
+  for (const Particle& one : particles())
+    if (one.rigid) one.block.rows(load) = -one.block.rows(y);
+  return load;
+}
+
+/// Returns the product of the operator of solve_tractions() and the unknowns y, see RigidTractions::Surroundings.
+Net Capsule::traction_product(const Net& x, const VolumeConstraint& volume, const Net& y, const Net& caused) {
+  const Net v = deformable_velocity(volume, y), load = traction_load(x, y, v);
+  Net other = viscous() || caused.size() == 0 ? load : Net();  // load whose induced velocity is not contained in `caused`
+  if (viscous() && caused.size() > 0) clear_rigid(particles(), other);
+  layers_.place_double(x);
+  Net u = layers_.apply(x, v, other);
+  if (caused.size() > 0) u += caused;
+  if (duct_.tube) u += duct_.tube->respond(load, v).velocity;
+  if (solids()) add_solids(x, load, v, false, u);
+  if (bodies_.tractions->alone()) return u;
+  Net all = v - targets_.serial_control_values(u);
+  volumes_.constrain(all, volume);
+  for (const Particle& one : particles())
+    if (one.rigid) one.block.rows(all) = one.block.rows(u);
+  return all;
 }
 
 /// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). Returns the velocity of all particles. `flow`:
 /// part of the velocity that does not depend on these unknowns. Adds the loads that depend on the unknowns to e.load_.
-Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Net& c, const Net& flow) {
+Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint& volume, const Net& flow) {
   const auto clock = phases_.time("tractions");
   layers_.assemble(x, viscous());
-  const auto parts = [this, x, b, c](const Net& y) {  // returns the velocity of deformable particles, and the load that depends on the unknowns y
-    std::pair<Net, Net> both{y, Net::Zero(y.rows(), 3)};
-    auto& [v, load] = both;
-    clear_rigid(particles(), v);
-    if (b.size() > 0) volumes_.constrain(v, b, c);
-    if (viscous()) load = membranes_.viscous_load(x, v);
-    for (const Particle& one : particles())
-      if (one.rigid) one.block.rows(load) = -one.block.rows(y);
-    return both;
+  const auto product = [this, x, volume](const Net& y, const Net& caused) { return traction_product(x, volume, y, caused); };
+  const auto load = [this, x, volume, known = e.load_](const Net& y) {
+    return Net(known + traction_load(x, y, deformable_velocity(volume, y)));
   };
-  const auto product = [this, x, b, c, parts](const Net& y, const Net& caused) {
-    const auto [v, load] = parts(y);
-    Net other = viscous() || caused.size() == 0 ? load : Net();  // load whose induced velocity is not contained in `caused`
-    if (viscous() && caused.size() > 0) clear_rigid(particles(), other);
-    layers_.place_double(x);
-    Net u = layers_.apply(x, v, other);
-    if (caused.size() > 0) u += caused;
-    if (duct_.tube) u += duct_.tube->respond(load, v).velocity;
-    if (solids()) add_solids(x, load, v, false, u);
-    if (bodies_.tractions->alone()) return u;
-    Net all = v - targets_.serial_control_values(u);
-    if (b.size() > 0) volumes_.constrain(all, b, c);
-    for (const Particle& one : particles())
-      if (one.rigid) one.block.rows(all) = one.block.rows(u);
-    return all;
-  };
-  const Net known = e.load_;
-  const auto load = [known, parts](const Net& y) { return Net(known + parts(y).second); };
   std::vector<Vec3> centres;
   std::vector<Rigid> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.holds(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
   const bool responds = layers_.repeats() || duct_.tube || solids() || layers_.has_double() || viscous();
-  bodies_.tractions->solve(x, centres, driven, around_.flow, RigidTractions::Surroundings{flow, responds, product, load});
-  Net v = parts(bodies_.tractions->unknowns()).first;
+  bodies_.tractions->solve(x, centres, driven, surroundings_.flow, RigidTractions::Surroundings{flow, responds, product, load});
+  Net v = deformable_velocity(volume, bodies_.tractions->unknowns());
   auto body = bodies_.tractions->bodies().begin();
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.holds(p)) bodies_.rigid.move(p, body->motion, body->force, body->torque, v), ++body;
   e.load_ = load(bodies_.tractions->unknowns());
   for (const SolveReport& report : bodies_.tractions->reports())
     note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()), parameters_.solvers.tolerance);
-  if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, bodies_.tractions->lacking_pressure());
+  if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, bodies_.tractions->pressure_correction());
   return v;
 }
 

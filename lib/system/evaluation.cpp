@@ -11,27 +11,32 @@ Evaluation::Evaluation(Capsule& system, Net x, Net velocity, std::shared_ptr<Eva
     : system_(&system), x_(std::move(x)), known_(std::move(velocity)), near_(std::move(near)) {}
 
 void Evaluation::solve(double error) {
-  if (solved_) return;
-  const std::shared_ptr<Evaluation> found = system_->evaluate(x_, known_, error);
+  if (solved_ && error_ <= error) return;
+  const std::shared_ptr<Evaluation> found = system_->evaluate(x_, solved_ ? velocity_ : known_, error);
   Net known = std::move(known_);
   *this = *found;
   known_ = std::move(known);
 }
 
+void Evaluation::require_solution() {
+  if (!solved_) solve();
+}
+
 const Net& Evaluation::velocity() {
-  if (solved_ || known_.size() == 0) return solve(), velocity_;
-  return known_;
+  if (!solved_ && known_.size() > 0) return known_;
+  require_solution();
+  return velocity_;
 }
 
 const Net& Evaluation::fluid_velocity() {
   if (!system_->slides()) return velocity();
   if (!solved_ && near_) return near_->fluid_velocity();
-  solve();
+  require_solution();
   return fluid_;
 }
 
-const Net& Evaluation::moving() {
-  if (system_->slides()) solve();
+const Net& Evaluation::solved_fluid_velocity() {
+  if (system_->slides()) require_solution();
   return fluid_velocity();
 }
 
@@ -47,31 +52,31 @@ const std::vector<Net>& Evaluation::load_sums() {
 
 const Net& Evaluation::load() {
   if (load_.size() == 0) {
-    if (!system_->bodies_.rigid.empty() || system_->viscous()) solve();  // because the load depends on the solution of the velocity system
-    else load_ = system_->membrane_load(*this, x_, nullptr);
+    if (!system_->bodies_.rigid.empty() || system_->viscous()) require_solution();  // because the load depends on the solution of the velocity system
+    else load_ = system_->membrane_load(*this, x_);
   }
   return load_;
 }
 
 const RigidParticles& Evaluation::rigid() {
   if (!solved_ && near_) return near_->rigid();
-  solve();
+  require_solution();
   return rigid_ ? *rigid_ : system_->bodies_.rigid;
 }
 
 /// Computes the load and the unknowns from the velocity if it is known; otherwise solves for them.
 void Evaluation::find_unknowns() {
-  if (known_.size() == 0 || !system_->unknowns_follow()) solve();
+  if (known_.size() == 0 || !system_->unknowns_are_velocities()) require_solution();
   if (solved_) return;
   unknowns_ = known_;
-  load_ = system_->membrane_load(*this, x_, nullptr);
+  load_ = system_->membrane_load(*this, x_);
   if (system_->viscous()) load_ += system_->membranes_.load(x_, viscous_work());
 }
 
 const Tube::Response& Evaluation::response() {
   if (!response_) find_unknowns();
   Net inside = x_;
-  if (system_->cell()) system_->put_into_cell(inside);
+  system_->move_into_cell(inside);
   system_->place_tube(inside);
   if (!response_) response_ = system_->duct_.tube->respond(load_, unknowns_);
   return *response_;
@@ -80,13 +85,13 @@ const Tube::Response& Evaluation::response() {
 Evaluation::SolidFlow Evaluation::solid_flow() {
   find_unknowns();
   Net inside = x_;
-  system_->put_into_cell(inside);
+  system_->move_into_cell(inside);
   system_->place_among_solids(inside);
   SolidResponse& solids = *system_->solids();
   SolidFlow found{.flow = {}, .caused = solids.respond(load_, unknowns_)};
   found.flow = found.caused + solids.empty();
-  found.caused_carried = solids.carried(found.caused, load_, unknowns_);
-  found.carried = found.caused_carried + carried(solids.scene(), solids.empty());
+  found.caused_integral = solids.velocity_integral(found.caused, load_, unknowns_);
+  found.velocity_integral = found.caused_integral + velocity_integral(solids.scene(), solids.empty());
   return found;
 }
 
@@ -98,7 +103,7 @@ Tube::Checks Evaluation::checks() {
 const Net& Evaluation::viscous_work() {
   if (viscous_work_.size() == 0) {
     system_->membranes_.place_viscous(x_);
-    viscous_work_ = system_->membranes_.viscous_work(moving());
+    viscous_work_ = system_->membranes_.viscous_work(solved_fluid_velocity());
   }
   return viscous_work_;
 }
@@ -114,11 +119,11 @@ Mat3 Evaluation::stresslet(std::size_t p) {
     Net of_particle = own(work());
     if (system.viscous()) of_particle += own(viscous_work());
     moment = of_particle.transpose() * own(x_);  // first moment int df x dG of the load, with x = sum N_A x_A
-    if (!particle.loads.empty() || system.pressed())  // refers the moment to the centroid, because the load has a net force
+    if (!particle.loads.empty() || system.has_forces())  // refers the moment to the centroid, because the load has a net force
       moment -= of_particle.colwise().sum().transpose() * surface::measures(*particle.space, own(x_)).centroid.transpose();
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0) {
-    const Net v = particle.rigid ? rigid().density(p) : Net(own(moving()));
+    const Net v = particle.rigid ? rigid().density(p) : Net(own(solved_fluid_velocity()));
     Net flux;
     system.geometry().volume_gradient(x_, indices(particle.block.n_elements, particle.block.first_element), flux);
     moment -= 2 * contrast * system.parameters_.viscosity * v.transpose() * own(flux);
@@ -129,7 +134,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
 double Evaluation::membrane_dissipation(std::size_t p) {
   if (!system_->viscous()) return 0;
   const spline::Block& block = system_->particles()[p].block;
-  return block.rows(moving()).cwiseProduct(block.rows(viscous_work())).sum();
+  return block.rows(solved_fluid_velocity()).cwiseProduct(block.rows(viscous_work())).sum();
 }
 
 double Evaluation::load_energy(std::size_t p) { return system_->membranes_.loads().energy(x_, load_sums(), p); }

@@ -28,8 +28,7 @@ class Evaluation {
   const Net& x() const { return x_; }                    ///< shape, (N, 3)
   const Net& velocity();                                 ///< velocity of the control points, length/time
   const Net& fluid_velocity();                           ///< velocity of the fluids on the surface; equals `velocity` unless control points slide
-  const Net& work();                                     ///< virtual work dE/dx of all loads, minus the work of forces (Capsule::set_forces); 0 for
-                                                         ///< rigid bodies
+  const Net& work();  ///< virtual work dE/dx of the loads minus the work of Capsule::set_forces(); 0 for rigid bodies
   const std::vector<Net>& load_sums();                   ///< surface integrals on which the loads depend (see Loads), summed over all ranks
 
   /// Returns the control values of the load of the fluids on the membranes, per unstressed or per current area, depending on the particle. For a
@@ -40,19 +39,19 @@ class Evaluation {
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
   const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
 
-  /// `flow`: force density of the solids, and the uniform velocity U (2.46) that is added to the flow. `carried`: integral over the cell of the
-  /// velocity that solids and particles add to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_carried`: the parts of `flow` and
-  /// `carried` that are due to the particles.
+  /// `flow`: force density of the solids, and the uniform velocity U (2.46) that is added to the flow. `velocity_integral`: integral over the cell of
+  /// the velocity that solids and particles add to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_integral`: the parts of
+  /// `flow` and `velocity_integral` that are due to the particles.
   struct SolidFlow {
     Solids::Flow flow, caused;
-    Vec3 carried = Vec3::Zero(), caused_carried = Vec3::Zero();
+    Vec3 velocity_integral = Vec3::Zero(), caused_integral = Vec3::Zero();
   };
   SolidFlow solid_flow();  ///< returns the flow caused by the solids. First sets SolidResponse to the shape of this evaluation
 
   Tube::Checks checks();                                 ///< returns the errors of the tube's response in the conditions (2.14)
 
-  /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess. `error`: allowed error of the velocity
-  /// (Capsule::norm per unit of time), if it is larger than the error due to Solvers/tolerance.
+  /// Solves for the unknowns, unless they are known with this error already. Uses the known velocity as initial guess. `error`: allowed error of the
+  /// velocity (Capsule::norm per unit of time), if it is larger than the error due to Solvers/tolerance.
   void solve(double error = 0);
 
   /// Returns the stresslet of particle p (6.7), force x length, with the velocity v of the fluids,
@@ -67,8 +66,9 @@ class Evaluation {
 
  private:
   friend class Capsule;
+  void require_solution();  // solves for the unknowns if they are not known; a solution with any allowed error is kept
   void find_unknowns();
-  const Net& moving();  // fluid velocity from a solve at this shape. It is never a copy of the velocity of `near_`
+  const Net& solved_fluid_velocity();  // fluid velocity from a solve at this shape. It is never a copy of the velocity of `near_`
   const Net& viscous_work();
 
   Capsule* system_;

@@ -62,8 +62,7 @@ class InterfaceMotion {
     double speed;
     std::vector<int> points;      // rank-owned control points
     std::vector<int> places;      // indices of this drop's sites among the sites of VelocityProjection
-    stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`. Double precision is needed for a mesh motion that is
-                                  // independent of the units and of the axes
+    stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`, in double precision so that units and axes do not matter
   };
   void slide(const Net& x, const Net& f, Net& w) const;
   Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const;

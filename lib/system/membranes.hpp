@@ -42,14 +42,12 @@ class Membranes {
   /// replaces it by M0^-1 times `other`. Where possible, the two systems with M0 are solved in one call, because six columns of right-hand sides are
   /// divided among the ranks more evenly than three.
   Net load(const Net& x, Net work, Net* other = nullptr);
-  Net strong_load(const Net& x) const;                                            ///< values of the strong form -div_s tau of the load at the
-                                                                                  ///< collocation sites
+  Net strong_load(const Net& x) const;                                            ///< strong form -div_s tau of the load at the collocation sites
   Net solved(Net work) const { return layout_.solved(mass(), std::move(work)); }  ///< M0^-1 times a net
 
   bool viscous() const { return viscous_.has_value(); }  ///< true if a membrane or interface is viscous
   void place_viscous(const Net& x);                      ///< sets the surface of viscous_work() and viscous_load()
-  Net viscous_work(const Net& v) const;                  ///< returns C v, the virtual work of the viscous stresses (3.10) at the velocity v on the
-                                                         ///< surface passed to place_viscous()
+  Net viscous_work(const Net& v) const;                  ///< virtual work C v of the viscous stresses (3.10) on the surface of place_viscous()
   Net viscous_load(const Net& x, const Net& v) { return load(x, viscous_work(v)); }
 
   /// Sets the shape x for work_change() and viscous_work_change(). `sums`: surface integrals that work() computed at x.

@@ -46,6 +46,12 @@ struct Particle {
   bool slides() const { return interface_motion != "material"; }
 };
 
+/// Difference between a particle on a lattice and its image in the cell.
+struct CellShift {
+  Vec3 position = Vec3::Zero();  ///< lattice vector: position of the particle minus position of the image
+  Vec3 velocity = Vec3::Zero();  ///< ambient velocity at the particle minus ambient velocity at the image; 0 in a duct, whose flow is periodic
+};
+
 /// Sets the block of each particle: its rows in nets that stack all particles in this order.
 void place(std::span<Particle> particles);
 

@@ -16,7 +16,7 @@ namespace {
 const quadrature::TensorRule& rule() { return quadrature::tensor_gauss(2); }
 
 /// Returns the 2 x 2 Gauss points of all elements, in the order of the elements.
-stokes::Sites places(const spline::Space& space) {
+stokes::Sites gauss_points(const spline::Space& space) {
   stokes::Sites sites;
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e)
     for (int q = 0; q < rule().size(); ++q) sites.push_back({{e, rule().s[q], rule().t[q]}});
@@ -40,14 +40,14 @@ void Powers::add_columns(Columns& to) const {
   to.add(fluids,
          {"fluid_dissipation", "force length/time",
           "viscous dissipation in the fluids due to the particles, in addition to the dissipation without particles (6.12)"});
-  to.add(all > 0 ? left_over / all : 0,
+  to.add(all > 0 ? residual / all : 0,
          {"power_residual", "1", "residual of the power balance (6.13), divided by half the sum of the magnitudes of its terms"});
 }
 
 PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,
                            const quadrature::Options& quadrature, const stokes::Medium* medium, const Ranks& ranks)
-    : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), places_(places(space)), values_(value_matrix(space, places_)),
-      mass_(space), layers_(space, places_, unstressed, capsule.particles(), quadrature, medium) {}
+    : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), gauss_points_(gauss_points(space)),
+      values_(value_matrix(space, gauss_points_)), mass_(space), layers_(space, gauss_points_, unstressed, capsule.particles(), quadrature, medium) {}
 
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const std::shared_ptr<Evaluation> e = capsule_.evaluation(x, slope, 0);
@@ -71,7 +71,7 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const double done = product(work, v);  // power that the fluids transfer to all surfaces; the fluids dissipate the power `flow` minus this power
   powers.fluids = powers.flow - done;
   powers.forces = powers.storing + powers.membranes - done;
-  powers.left_over = left_over(load, missed(*e, v, inside, load), x, measured);
+  powers.residual = residual_power(load, residual_velocity(*e, v, rigid, load), x, measured);
   return powers;
 }
 
@@ -89,7 +89,7 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
   if (SolidResponse* const solids = capsule_.solids(); solids && solids->scene().planes.size() != 1) {
     const Evaluation::SolidFlow found = e.solid_flow();
     const Mat3 change = flow.change();
-    return solids->scene().solids->power(found.caused.force * change) + (change * solids->scene().driving_gradient).dot(found.caused_carried);
+    return solids->scene().solids->power(found.caused.force * change) + (change * solids->scene().driving_gradient).dot(found.caused_integral);
   }
   const Net& x = e.x();
   const Targets& targets = capsule_.targets();
@@ -108,21 +108,21 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
   return power;
 }
 
-/// Returns int (Df - p n).r over all particles by Gauss quadrature, where Df is the load, r the residual velocity `left`, and p the mean of Df.n over
-/// each particle. p is subtracted because a uniform pressure does no work; the quadrature error of its single layer then has no effect.
-double PowerBalance::left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const {
+/// Returns int (Df - p n).r over all particles by Gauss quadrature, where Df is the load, r the residual velocity, and p the mean of Df.n over each
+/// particle. p is subtracted because a uniform pressure does no work; the quadrature error of its single layer then has no effect.
+double PowerBalance::residual_power(const Net& load, const Net& residual_velocity, const Net& x, const Net& measured) const {
   const Net loads = values_ * load;
   double sum = 0;
   for (const Particle& particle : capsule_.particles()) {
     double area = 0, pressure = 0, flux = 0;
     const int first = particle.block.first_element * rule().size(), n = particle.block.n_elements * rule().size();
     for (int i = first; i < first + n; ++i) {
-      const spline::Site& place = places_[static_cast<std::size_t>(i)].front();
+      const spline::Site& place = gauss_points_[static_cast<std::size_t>(i)].front();
       const double weight = rule().weights[i % rule().size()];
       const surface::Point at = surface::point(space_, x, place);
-      const Vec3 force = weight * surface::point(space_, measured, place).jacobian * loads.row(i).transpose(), lacks = left.row(i);
-      sum += force.dot(lacks);
-      area += weight * at.jacobian, pressure += force.dot(at.n), flux += weight * at.jacobian * at.n.dot(lacks);
+      const Vec3 force = weight * surface::point(space_, measured, place).jacobian * loads.row(i).transpose(), residual = residual_velocity.row(i);
+      sum += force.dot(residual);
+      area += weight * at.jacobian, pressure += force.dot(at.n), flux += weight * at.jacobian * at.n.dot(residual);
     }
     sum -= pressure / area * flux;
   }
@@ -137,26 +137,19 @@ Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
   return all;
 }
 
-/// Returns the residual of the boundary integral equation (2.22), the velocity v minus the right-hand side, at the Gauss points `places_`.
-Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
+/// Returns the residual of the boundary integral equation (2.22), the velocity v minus the right-hand side, at the Gauss points.
+Net PowerBalance::residual_velocity(Evaluation& e, Net v, const RigidParticles& rigid, const Net& load) {
   Net x = e.x();
   const stokes::AmbientFlow& flow = capsule_.flow();
-  if (const auto& cell = capsule_.cell()) {
-    if (!capsule_.tube()) layers_.repeat(*cell);
-    const std::vector<Vec3> shifts = capsule_.put_into_cell(x);
-    for (std::size_t p = 0; p < shifts.size(); ++p) {
-      const Particle& particle = capsule_.particles()[p];
-      const Vec3 slower = capsule_.faster_beyond(shifts[p]);
-      particle.block.rows(v).rowwise() -= slower.transpose();
-      if (!particle.rigid) particle.block.rows(density).rowwise() -= slower.transpose();
-    }
-  }
+  if (const auto& cell = capsule_.cell(); cell && !capsule_.tube()) layers_.repeat(*cell);
+  capsule_.move_into_cell(x, &v);
+  const Net inside = density(v, rigid);
   const Solids::Flow by_solids = capsule_.solids() ? e.solid_flow().flow : Solids::Flow();
   const Net at = values_ * x;
   layers_.place(x);
   return values_ * v - flow.velocities(at) - ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
     Net part = u;
-    layers_.apply(load, density, viscosity_, own, u);
+    layers_.apply(load, inside, viscosity_, own, u);
     if (SolidResponse* solids = capsule_.solids()) solids->velocity_at(at, own, by_solids, part), u(own, Eigen::all) += part(own, Eigen::all);
     if (Tube* tube = capsule_.tube()) tube->velocity_at(at, e.response(), own, part), u(own, Eigen::all) += part(own, Eigen::all);
   });

@@ -22,7 +22,7 @@ struct Powers {
   double storing = 0;      ///< rate of change of the energy stored in the membranes
   double membranes = 0;    ///< dissipation in the membranes
   double fluids = 0;       ///< dissipation in the fluids minus dissipation in the ambient flow, computed as the remainder of the balance (6.12)
-  double left_over = 0;    ///< power of the residual velocity of the boundary integral equation at 2 x 2 Gauss points per element (6.13)
+  double residual = 0;    ///< power of the residual velocity of the boundary integral equation at 2 x 2 Gauss points per element (6.13)
 
   void add_columns(Columns& to) const;
 };
@@ -44,8 +44,8 @@ class PowerBalance {
   Powers operator()(const Net& x, const Net& slope);
 
  private:
-  double left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const;
-  Net missed(Evaluation& e, Net v, Net density, const Net& load);
+  double residual_power(const Net& load, const Net& residual_velocity, const Net& x, const Net& measured) const;
+  Net residual_velocity(Evaluation& e, Net v, const RigidParticles& rigid, const Net& load);
   Net density(const Net& v, const RigidParticles& rigid) const;
   double of_flow(Evaluation& e, const Net& work, const Net& inside);
 
@@ -53,8 +53,8 @@ class PowerBalance {
   const spline::Space& space_;
   double viscosity_;
   const Ranks& ranks_;
-  stokes::Sites places_;
-  Eigen::SparseMatrix<double> values_;  // N_A at `places_`
+  stokes::Sites gauss_points_;
+  Eigen::SparseMatrix<double> values_;  // N_A at `gauss_points_`
   membrane::MassMatrix mass_;
   LayerPair layers_;
 };

@@ -53,8 +53,7 @@ class Ranks {
 
   /// Divides the control points of a space among the ranks, and returns the points whose rows this rank computes. Collective.
   std::vector<int> divide_points(const spline::Space& space, const surface::Symmetry& symmetry);
-  std::vector<int> divide_in_order(const surface::Symmetry& symmetry);  ///< divides the fundamental points into equal parts in their order,
-                                                                        ///< regardless of neighbourhood; returns the part of this rank
+  std::vector<int> divide_in_order(const surface::Symmetry& symmetry);  ///< divides fundamental points in their order; returns the part of this rank
 
   /// Copies the rows that other ranks own from these ranks, and sets the rows of symmetry images. Collective.
   void replicate(Net& net) const;

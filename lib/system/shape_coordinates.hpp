@@ -60,14 +60,10 @@ class ShapeCoordinates {
 
   Eigen::Index size() const { return shape_size() + fields_.cols(); }
   Eigen::Index n_points() const { return sites_.rows(); }
-  Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the displacement with the coordinates y; after add_fields(), the change
-                                                        ///< of the whole state (control points and fields)
-  Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates y of a displacement (control values); after add_fields(), of a change of the
-                                                        ///< whole state (control points and fields)
-  bool admits(const Net& field) const;                  ///< true if the displacement `field` has the symmetry and parity that y represents, up to a
-                                                        ///< relative error of 1e-3
-  Net admitted(Net field) const;                        ///< the part of a change of state that y can represent: equal to `field` at fundamental
-                                                        ///< points and completed by symmetry
+  Net displacement(const Eigen::VectorXd& y) const;     ///< change of the state (control points and fields) with the coordinates y
+  Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates y of a change of the state (control points and fields)
+  bool admits(const Net& field) const;                  ///< true if `field` has the symmetry and parity that y represents, up to 1e-3
+  Net admitted(Net field) const;                        ///< part of a change that y represents: `field` at fundamental points, completed by symmetry
 
  private:
   struct Coordinate {
@@ -104,8 +100,7 @@ class ShapeCoordinates {
   Net normals_;  // unit normals of drops at the sites of `projection_`
   CoupledMotion* motion_ = nullptr;     // set if the state has fields
   Net state_;                           // state passed to add_fields(); the coordinates of fields are changes relative to this state
-  Eigen::SparseMatrix<double> fields_;  // orthonormal basis of the changes of the field coefficients that symmetry and parity allow, one column per
-                                        // basis vector
+  Eigen::SparseMatrix<double> fields_;  // columns: orthonormal basis of the field coefficients that symmetry and parity allow
 };
 
 }  // namespace tanktread::coupling

@@ -31,20 +31,16 @@ class VelocityProjection {
 
   const stokes::Sites& sites() const { return sites_; }
   const std::vector<int>& own() const { return own_; }                         ///< sites of this rank, ascending; each site belongs to one rank
-  const Eigen::SparseMatrix<double>& values() const { return values_; }        ///< matrix of the basis functions N_A at the sites, shape
-                                                                               ///< (sites, N)
+  const Eigen::SparseMatrix<double>& values() const { return values_; }        ///< basis functions N_A at the sites, shape (sites, N)
   Net normals(const Net& x) const;                                             ///< unit normals of the surface x at the sites
-  Net control_values(const Net& at_sites) const;                               ///< returns the control values v (4.21) of the field with the values u
-                                                                               ///< = `at_sites` at the sites; v is symmetric if the scene is
-                                                                               ///< symmetric
+  Net control_values(const Net& at_sites) const;                               ///< control values v (4.21) of the field u = `at_sites`
   Eigen::VectorXd scalar_values(const Eigen::VectorXd& at_sites) const;  ///< returns the control values of a scalar field with the values `at_sites`
                                                                          ///< at the sites. The field must be equal at all symmetry images, such as a
                                                                          ///< normal component
 
  private:
   surface::Symmetry symmetry_;
-  bool folded_ = false;  // true if only one element of each symmetry orbit has sites; sums at image points are then added to the sums at fundamental
-                         // points
+  bool folded_ = false;  // true if one element of each symmetry orbit has sites; sums at images are then added at fundamental points
   stokes::Sites sites_;
   std::vector<int> own_;
   Eigen::SparseMatrix<double> values_, along_s_, along_t_, weighted_;  // values_, along_s_, along_t_: N_A and its derivatives with respect to s and

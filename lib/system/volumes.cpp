@@ -20,10 +20,12 @@ Net Volumes::gradient(const Net& x) const {
   return b;
 }
 
-void Volumes::constrain(Net& v, const Net& b, const Net& c) const {
+void Volumes::constrain(Net& v, const VolumeConstraint& constraint) const {
+  if (!constraint.active()) return;
+  const auto& [b, c] = constraint;
   for (const Particle& particle : particles_) {
     if (particle.rigid) continue;
-    const auto rows = [&](const Net& net) { return particle.block.rows(net).array(); };
+    const auto rows = [&particle](const Net& net) { return particle.block.rows(net).array(); };
     particle.block.rows(v) -= (rows(b) * rows(v)).sum() / (rows(b) * rows(c)).sum() * particle.block.rows(c);
   }
 }

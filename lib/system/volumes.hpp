@@ -10,6 +10,14 @@
 
 namespace tanktread::coupling {
 
+/// The constraint (2.8) that conserves the volumes at one shape. No rows if the volumes are free.
+struct VolumeConstraint {
+  Net gradient;  ///< b = dV/dx: the rows of each particle contain the gradient of the volume of this particle
+  Net response;  ///< c, for example M0^-1 b: field along which velocities are corrected
+
+  bool active() const { return gradient.size() > 0; }
+};
+
 /// The volumes V of all particles and their prescribed volumes V0. Rigid bodies are excluded from all corrections. Calls with a shape are collective.
 class Volumes {
  public:
@@ -20,12 +28,12 @@ class Volumes {
   const surface::Geometry& geometry() const { return geometry_; }
   double error(double volume, std::size_t p) const { return volume / kept_[p] - 1; }  ///< V/V0 - 1 of particle p
 
-  /// Returns b = dV/dx: the rows of each particle contain the gradient of the volume of this particle.
+  /// Returns b = dV/dx, see VolumeConstraint.
   Net gradient(const Net& x) const;
 
-  /// Applies the projection P of (2.8) to v for each particle, so that its volume does not change: subtracts c (b.v)/(b.c). `b`: dV/dx. `c`: field
-  /// along which v is corrected.
-  void constrain(Net& v, const Net& b, const Net& c) const;
+  /// Applies the projection P of (2.8) to v for each particle, so that its volume does not change: subtracts c (b.v)/(b.c). Does nothing if the
+  /// constraint is not active.
+  void constrain(Net& v, const VolumeConstraint& constraint) const;
 
   /// Moves x so that the volumes become V0, by Newton's method. V is a cubic form in x, so V = x.(dV/dx)/3. Sets x to NaN if the iteration fails.
   /// `along(b)`: returns the direction in which each particle is displaced to change its volume, for b = dV/dx.

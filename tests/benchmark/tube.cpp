@@ -87,11 +87,11 @@ void velocity_evaluation_in_a_tube(benchmark::State& state) {
                                             std::make_unique<coupling::Tube>(wall, *duct, capsule.space, parameters, phases), with);
     state.counters["tube ms"] = 1e3 * confined;
     coupling::Tube tube(wall, *duct, capsule.space, parameters, phases);
-    tube.set_reference(capsule.unstressed);
-    const Net f = capsule.x, on_wall = (tube.place(capsule.x), tube.load_on_wall(f));
+    tube.particles().set_reference(capsule.unstressed);
+    const Net f = capsule.x, on_wall = (tube.place(capsule.x), tube.particle_on_wall(f));
     state.counters["place ms"] = milliseconds([&] { tube.place(capsule.x); });
-    state.counters["load on wall ms"] = milliseconds([&] { tube.load_on_wall(f); });
-    state.counters["velocity on wall ms"] = milliseconds([&] { tube.velocity_on_wall(f); });
+    state.counters["load on wall ms"] = milliseconds([&] { tube.particle_on_wall(f); });
+    state.counters["velocity on wall ms"] = milliseconds([&] { tube.particle_on_wall({}, f); });
     state.counters["wall solve ms"] = milliseconds([&] { tube.solve_wall(on_wall); });
     state.counters["wall on particle ms"] = milliseconds([&] { tube.wall_on_particle(on_wall); });
     state.counters["tube / free"] = confined / free;

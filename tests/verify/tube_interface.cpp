@@ -28,7 +28,7 @@ Interface interface(const Sphere& sphere, const Duct& duct, double ratio) {
   parameters.viscosity_ratio = ratio;
   parameters.quadrature.tolerance = 1e-7;
   coupling::Tube tube(duct.wall, *duct.flow, sphere.space, parameters, phases);
-  tube.set_reference(sphere.net);
+  tube.particles().set_reference(sphere.net);
   tube.place(sphere.net);
 
   const Eigen::Index n = sphere.net.rows();

@@ -111,7 +111,7 @@ struct RigidSphere {
     tube->place(sphere.net);
     tractions->solve(sphere.net, {&sphere.centre, 1}, {&driven, 1}, in);
     return {tractions->bodies().front().force[0] / (6 * std::numbers::pi * radius),
-            tractions->lacking_pressure() - tube->pressure_of(tractions->unknowns())};
+            tractions->pressure_correction() - tube->pressure_of(tractions->unknowns())};
   }
 };
 

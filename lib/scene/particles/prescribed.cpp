@@ -69,7 +69,7 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Rig
   s.force = -corrected.force, s.torque = -corrected.torque;
   s.stresslet = -integrals.stresslet();
   if (tube) {
-    s.pressure_drop = (scene.reciprocal_forces() ? tractions.lacking_pressure() : 0) - tube->pressure_of(s.density);
+    s.pressure_drop = (scene.reciprocal_forces() ? tractions.pressure_correction() : 0) - tube->pressure_of(s.density);
     return s;
   }
   if (const auto exact = exact_body(scene)) {

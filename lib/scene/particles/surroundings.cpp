@@ -36,7 +36,7 @@ void add_surroundings(const Scene& scene, const std::vector<Member>& members, co
     if (coupling::SolidResponse* solids = capsule.solids()) {
       const coupling::Evaluation::SolidFlow flow = here.solid_flow();
       now.pressure_gradient = capsule.flow().change() * solids->scene().driving_gradient;
-      solids_row(scene, solids->scene(), capsule.flow(), flow.flow, force, flow.carried).add_columns(scene, row);
+      solids_row(scene, solids->scene(), capsule.flow(), flow.flow, force, flow.velocity_integral).add_columns(scene, row);
     }
     now.add_columns(scene, row);
   }

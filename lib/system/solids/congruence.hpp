@@ -12,8 +12,7 @@ namespace tanktread::coupling {
 /// both.
 struct Congruence {
   Mat3 q;
-  std::vector<int> image, source;  ///< image[k]: Q maps control point k of every cross-section (ring) to control point image[k] of this
-                                   ///< cross-section. source: inverse of image
+  std::vector<int> image, source;  ///< Q maps control point k of each cross-section (ring) to image[k]. source: inverse of image
 };
 
 /// Returns the maps of the wall onto itself, the identity first: 2 n maps for a circle with n points around, 4 for a rectangle, 2 for the section of

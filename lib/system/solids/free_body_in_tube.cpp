@@ -37,7 +37,7 @@ double FreeBodyInTube::pressure_drop(const Net& place) const {
   if (!flow_.duct()) return pressure;
   const Net x = surface(place);
   const bool free = driven_.force.isZero(0) && driven_.torque.isZero(0);
-  return pressure + body_.lacking_pressure(x, f, rigid_velocity(x, motion, centre_of(place)), flow_, free);
+  return pressure + body_.pressure_correction(x, f, rigid_velocity(x, motion, centre_of(place)), flow_, free);
 }
 
 /// Solves for the force density f and the motion U, Omega. The unknowns are scaled to velocities: f R_C/mu, U and Omega R_C. The force balance is

@@ -43,7 +43,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
     Net field = rigid_velocity(own, unit_motion(k), centre), at_sites = factors->sites * field;
     if (factors->prescribed) {
       layer.apply(field / particle.radius, all, at_sites);
-      at_sites += factors->sites * bodies.lacking(p, k) / particle.radius;
+      at_sites += factors->sites * bodies.self_correction(p, k) / particle.radius;
     }
     matrix += Eigen::Map<const Eigen::VectorXd>(at_sites.data(), at_sites.size()) * bodies.mean_functional(p, k).transpose();
   }

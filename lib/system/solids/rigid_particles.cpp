@@ -55,7 +55,7 @@ Eigen::MatrixXd weighted_double_layer(const stokes::Sites& sites, const Eigen::S
 
 }  // namespace
 
-OwnLacking::OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature) {
+SelfCorrection::SelfCorrection(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature) {
   const auto [places, at_places, weights] = between_sites(space, surface);
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> mass(weights * at_places);
   membrane::DirectSolver interpolation;
@@ -75,8 +75,8 @@ OwnLacking::OwnLacking(const spline::Space& space, const Net& surface, const qua
   density.resize(3 * n, 3 * n);
   for (int column = 0; column < 3 * n; ++column) {
     const auto field = [&](const Eigen::MatrixXd& of) { return Eigen::Map<const Net>(of.col(column).data(), n, 3); };
-    const Net lacks = mass.solve(field(projected)) - interpolation.solve(Net(field(collocated)));
-    density.col(column) = Eigen::Map<const Eigen::VectorXd>(lacks.data(), lacks.size());
+    const Net correction = mass.solve(field(projected)) - interpolation.solve(Net(field(collocated)));
+    density.col(column) = Eigen::Map<const Eigen::VectorXd>(correction.data(), correction.size());
   }
 }
 
@@ -105,10 +105,10 @@ RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& r
     body.rest = x.rowwise() - body.centre.transpose();
     if (particle.by_traction) continue;
     const auto alike = std::ranges::find_if(bodies_, [&](const Body& other) {
-      return other.lacking && other.rest.rows() == body.rest.rows() && (other.rest - body.rest).norm() <= 1e-12 * body.rest.norm();
+      return other.self_correction && other.rest.rows() == body.rest.rows() && (other.rest - body.rest).norm() <= 1e-12 * body.rest.norm();
     });
-    body.lacking = alike == bodies_.end() ? std::make_shared<const OwnLacking>(*particle.space, x, quadrature)
-                                          : alike->lacking;
+    body.self_correction = alike == bodies_.end() ? std::make_shared<const SelfCorrection>(*particle.space, x, quadrature)
+                                                  : alike->self_correction;
     const Eigen::SparseMatrix<double> mass = membrane::MassMatrix(*particle.space, 8).update(x);
     body.weight = mass * Eigen::VectorXd::Ones(x.rows());
     body.moment = mass * body.rest;
@@ -155,7 +155,7 @@ void RigidParticles::push(const Net& work) {
 
 Rigid RigidParticles::Body::given() const {
   Rigid all = rigid;
-  all.motion.velocity -= faster;
+  all.motion.velocity -= cell_velocity;
   for (Eigen::Index a = 0; a < pushed.rows(); ++a) {
     const Vec3 here = pushed.row(a).transpose();
     all.force += here;
@@ -169,24 +169,27 @@ void RigidParticles::add_load(Net& load) const {
     if (const Rigid given = body.given(); !given.prescribed) body.block.rows(load) -= body.field(body.carrying(given.force, given.torque));
 }
 
-Net RigidParticles::Body::lacking_of(const RigidMotion& load) const {
+Net RigidParticles::Body::single_layer_correction(const RigidMotion& load) const {
   const Vec3 a = turn.transpose() * load.velocity, b = turn.transpose() * load.angular_velocity;
   Net sum = Net::Zero(rest.rows(), 3);
-  for (int k = 0; k < 3; ++k) sum += a[k] * lacking->loads[static_cast<std::size_t>(k)] + b[k] * lacking->loads[static_cast<std::size_t>(3 + k)];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    sum += a[i] * self_correction->loads[k] + b[i] * self_correction->loads[3 + k];
+  }
   return sum * turn.transpose();
 }
 
-Net RigidParticles::Body::lacking_of(const Net& w) const {
-  if (lacking->density.size() == 0) return Net::Zero(rest.rows(), 3);
+Net RigidParticles::Body::double_layer_correction(const Net& w) const {
+  if (self_correction->density.size() == 0) return Net::Zero(rest.rows(), 3);
   const Net own = block.rows(w) * turn;
-  const Eigen::VectorXd sum = lacking->density * Eigen::Map<const Eigen::VectorXd>(own.data(), own.size());
+  const Eigen::VectorXd sum = self_correction->density * Eigen::Map<const Eigen::VectorXd>(own.data(), own.size());
   return Eigen::Map<const Net>(sum.data(), rest.rows(), 3) * turn.transpose();
 }
 
-void RigidParticles::add_lacking(Net& v) const {
+void RigidParticles::add_load_correction(Net& v) const {
   for (const Body& body : bodies_)
     if (const Rigid given = body.given(); !given.prescribed)
-      body.block.rows(v) += body.lacking_of(body.carrying(given.force, given.torque)) / body.viscosity;
+      body.block.rows(v) += body.single_layer_correction(body.carrying(given.force, given.torque)) / body.viscosity;
 }
 
 void RigidParticles::subtract_prescribed(Net& v) const {
@@ -196,9 +199,9 @@ void RigidParticles::subtract_prescribed(Net& v) const {
 
 void RigidParticles::complete(const Net& w, Net& v) const {
   for (const Body& body : bodies_) {
-    body.block.rows(v) += body.lacking_of(w) - Net(body.block.rows(w));
+    body.block.rows(v) += body.double_layer_correction(w) - Net(body.block.rows(w));
     const RigidMotion mean = body.mean(w);
-    body.block.rows(v) += body.rigid.prescribed ? Net(body.lacking_of(mean) / body.radius) : body.field(mean);
+    body.block.rows(v) += body.rigid.prescribed ? Net(body.single_layer_correction(mean) / body.radius) : body.field(mean);
   }
 }
 
@@ -209,16 +212,18 @@ Net RigidParticles::completing_load(const Net& w) const {
   return load;
 }
 
-void RigidParticles::enter(std::span<const Vec3> shifts, const Mat3& gradient) {
+void RigidParticles::move_into_cell(std::span<const CellShift> shifts) {
   for (std::size_t p = 0; p < shifts.size(); ++p)
-    if (holds(p)) bodies_[static_cast<std::size_t>(of_particle_[p])].faster = gradient * shifts[p];
+    if (holds(p)) bodies_[static_cast<std::size_t>(of_particle_[p])].cell_velocity = shifts[p].velocity;
 }
 
-void RigidParticles::carry(std::size_t p, const Vec3& along, const Vec3& faster) {
-  if (!holds(p)) return;
-  Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
-  body.centre += along;
-  body.motion.velocity += faster;
+void RigidParticles::move_out_of_cell(std::span<const CellShift> shifts) {
+  for (std::size_t p = 0; p < shifts.size(); ++p) {
+    if (!holds(p)) continue;
+    Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
+    body.centre += shifts[p].position;
+    body.motion.velocity += shifts[p].velocity;
+  }
 }
 
 void RigidParticles::move(Net& v) {

@@ -22,16 +22,15 @@ namespace tanktread::coupling {
 /// The velocity of a double layer and the velocity gradient of a single layer jump across a surface. Therefore the velocity at the sites has a
 /// systematic error. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4, and
 /// its stresslet in a straining flow has a similar error.
-struct OwnLacking {
-  std::array<Net, 6> loads;  ///< corrections of the single-layer velocity A f for the six loads f = e_k and f = e_k x r, k = 0, 1, 2 (r: position
-                             ///< from the centre of volume)
+struct SelfCorrection {
+  std::array<Net, 6> loads;  ///< corrections of A f for the loads f = e_k and f = e_k x r, k = 0, 1, 2 (r: from the centre of volume)
   Eigen::MatrixXd density;   ///< matrix, shape (3 N, 3 N): maps the density w to the correction of the double layer of w; empty if N > `most_points`
 
   /// Largest number of control points for which the matrix `density` is stored, which takes 72 bytes per pair of control points. The matrix is stored
   /// in double precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
   static constexpr int most_points = 2000;
 
-  OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
+  SelfCorrection(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
 };
 
 /// The limit lambda -> infinity (rigid bodies) of equation (2.22) for particles of viscosity ratio lambda. In this limit v = V + w/(lambda - 1) on
@@ -64,26 +63,23 @@ class RigidParticles {
 
   // The next six functions apply only to bodies whose unknown is the double-layer density w (2.23), not to bodies whose unknown is the traction.
   void add_load(Net& load) const;            ///< adds the load df (2.23) of the bodies whose force and torque are given, in the rows of these bodies
-  void add_lacking(Net& v) const;            ///< adds the collocation-error correction (OwnLacking) of the velocity -(1/mu) R^-1 A df that the load
-                                             ///< df of a body induces on the body
+  void add_load_correction(Net& v) const;    ///< adds the correction (SelfCorrection) of the velocity -(1/mu) R^-1 A df of each body on itself
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
   void complete(const Net& w, Net& v) const;  ///< completes the left-hand side v of (2.23), in the rows of bodies. First subtracts the density w and
-                                              ///< adds the collocation-error correction (OwnLacking) of its double layer. If force and torque of the
-                                              ///< body are given, then adds the rigid motion <w>; otherwise adds the collocation-error correction of
-                                              ///< the single layer of the load completing_load()
+                                              ///< adds the correction (SelfCorrection) of its double layer. If force and torque of the body are
+                                              ///< given, then adds the rigid motion <w>; otherwise adds the correction of the single layer of the
+                                              ///< load completing_load()
   Net completing_load(const Net& w) const;   ///< returns the load (mu/R_C) <w> of bodies with prescribed motion, with <w> the rigid motion nearest to
                                              ///< w (2.23); 0 in the rows of other particles
   void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
   /// Sets the motion, force and torque of body p to values that were not computed from (2.23). Sets the rows of the body in v to the control values
   /// of this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
-  /// On a lattice, the solve for the velocities uses the image of each body in the cell. enter() must be called before the solve. For each body, it
-  /// computes the ambient velocity at the body minus the ambient velocity at its image; the solve subtracts this difference from a prescribed
-  /// velocity. shifts[p]: position of particle p minus the position of its image. `gradient`: velocity gradient of the flow.
-  void enter(std::span<const Vec3> shifts, const Mat3& gradient);
-  /// Moves particle p, if it is a body, from its image back to its own position after the solve: adds `along` to its centre and `faster` to its
-  /// velocity.
-  void carry(std::size_t p, const Vec3& along, const Vec3& faster);
+  /// On a lattice, the solve for the velocities uses the image of each body in the cell. move_into_cell() must be called before the solve, so that
+  /// prescribed velocities become the velocities of the images. move_out_of_cell() must be called after the solve. It moves the centres and
+  /// velocities of the images back to those of the bodies. `shifts`: one per particle.
+  void move_into_cell(std::span<const CellShift> shifts);
+  void move_out_of_cell(std::span<const CellShift> shifts);
 
   /// Returns whether particle p is a rigid body. The members below refer to the latest evaluated velocities.
   bool holds(std::size_t p) const { return of_particle_[p] >= 0; }
@@ -94,16 +90,15 @@ class RigidParticles {
   const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< centre of its volume
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
-  Rigid given(std::size_t p) const { return body(p).given(); }         ///< prescribed motion; or prescribed force and torque plus the forces set by
-                                                                       ///< push()
+  Rigid given(std::size_t p) const { return body(p).given(); }         ///< prescribed motion, or prescribed force and torque plus push()
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
   /// Returns whether the bodies p and q have equal shapes and orientations at rest.
-  bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
+  bool alike(std::size_t p, std::size_t q) const { return body(p).self_correction == body(q).self_correction; }
 
-  /// Returns the collocation-error correction (OwnLacking) of the velocity that the unit load k of body p induces on the body itself, in the axes of
-  /// the body at rest.
-  const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
+  /// Returns the correction (SelfCorrection) of the velocity that the unit load k of body p induces on the body itself, in the axes of the body at
+  /// rest.
+  const Net& self_correction(std::size_t p, int k) const { return body(p).self_correction->loads[static_cast<std::size_t>(k)]; }
 
   /// Component k of the mean rigid motion <w> (velocity, then angular velocity) is a linear function of the body's rows of w. Returns its
   /// coefficients, three per row, for the body in its position at rest.
@@ -117,29 +112,26 @@ class RigidParticles {
     Net pushed;  // rows of this body in the argument of push(); no rows if there are no such forces
     double radius = 0, viscosity = 0;
     Net rest;             // control net in the reference orientation, relative to the centre of volume
-    std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies
+    std::shared_ptr<const SelfCorrection> self_correction;  // shared by equal bodies
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
     Eigen::Matrix<double, 6, 6> inertia;  // entry (j, k): integral of u_j.u_k over the surface, with the velocity field u_k of unit motion k
     Mat3 second;                          // int r r dG
     Vec3 first;                           // int r dG
     Vec3 rest_centre, centre;
-    Vec3 faster = Vec3::Zero();  // velocity of the body minus the velocity of its image in the cell
+    Vec3 cell_velocity = Vec3::Zero();  // velocity of the body minus the velocity of its image in the cell
     Mat3 turn = Mat3::Identity();
     Net density;
     RigidMotion motion;
     Vec3 force, torque;
 
     Rigid given() const;
-    RigidMotion mean(const Net& w) const;      // rigid motion <w> that fits w best on the body (least squares over its surface) (2.23); `w`: net of
-                                               // all particles
-    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // load a + b x r whose integral over the surface is `force` and whose moment
-                                                                        // is `torque`
+    RigidMotion mean(const Net& w) const;      // rigid motion <w> of (2.23): least-squares fit over the body. `w`: net of all particles
+    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // load a + b x r with the given force and torque
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
-    Net lacking_of(const RigidMotion& load) const;                      // collocation-error correction (OwnLacking) of the single layer R^-1 A f of
-                                                                        // the load f = a + b x r
-    Net lacking_of(const Net& w) const;                                 // collocation-error correction (OwnLacking) of R^-1 H w, the double layer of
-                                                                        // the body with density w; `w`: net of all particles
+    Net single_layer_correction(const RigidMotion& load) const;         // SelfCorrection of the single layer R^-1 A f of the load f = a + b x r
+    Net double_layer_correction(const Net& w) const;                    // SelfCorrection of the double layer R^-1 H w with density w; `w`: net of
+                                                                        // all particles
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 

@@ -96,7 +96,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed
       walls_{tube, nullptr, std::move(medium)},
       layer_(particles_, viscosity, quadrature, walls_.medium.get(), own, ranks),
       residual_(space, unstressed, rest, particles, viscosity, quadrature, walls_.medium.get(), ranks),
-      sites_(collocation_matrix(space)),
+      collocation_(collocation_matrix(space)),
       mass_(space, 8),  // mass matrix by eight Gauss points per direction, because the area element is not a polynomial
       krylov_(solvers.of(solvers.velocity)),
       tolerance_(solvers.tolerance),
@@ -106,7 +106,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& surface, d
                                const SolverOptions& solvers, Ranks& ranks, Tube* tube, std::shared_ptr<const stokes::Medium> medium)
     : RigidTractions(space, surface, surface, std::vector{single(space, radius)}, viscosity, quadrature, for_single(solvers), std::move(medium), tube,
                      {}, ranks) {
-  if (tube) tube->set_reference(surface);
+  if (tube) tube->particles().set_reference(surface);
 }
 
 void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
@@ -156,22 +156,22 @@ Net RigidTractions::force_densities(const Net& y) const {
 Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
   Net y = as_net(unknowns);
   if (responds() || alone_) return y;
-  Net lacking = product(force_densities(y));
-  for (const Particle& body : particles_) body.block.rows(lacking).setZero();
-  return y - lacking;
+  Net minus_velocity = product(force_densities(y));
+  for (const Particle& body : particles_) body.block.rows(minus_velocity).setZero();
+  return y - minus_velocity;
 }
 
 void RigidTractions::place(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around) {
   around_ = std::move(around);
-  x_ = x, at_ = sites_ * x;
+  x_ = x, sites_ = collocation_ * x;
   centres_.assign(centres.begin(), centres.end());
-  layer_.place(x, at_, responds() && !repeats_);
+  layer_.place(x, sites_, responds() && !repeats_);
 }
 
 /// Returns the collocation-error corrections (2.11) for the unknowns y. Each column of z is a force density; its correction is its work in the
-/// residual velocity, computed from the weighted residual `left_`. In a channel the residual on the wall is included (2.42).
-Eigen::VectorXd RigidTractions::lacks(const Net& y, const Eigen::MatrixXd& z) {
-  Eigen::VectorXd work = z.transpose() * left_;
+/// residual velocity, computed from the weighted residual `weighted_residual_`. In a channel the residual on the wall is included (2.42).
+Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z) {
+  Eigen::VectorXd work = z.transpose() * weighted_residual_;
   if (!walls_.tube || !walls_.tube->fixed() || !alone_) return work;
   const Tube::Leak leak = walls_.tube->leak(load(y));
   for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(leak, walls_.tube->respond(load(as_net(z.col(k)))));
@@ -183,12 +183,12 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   place(x, centres, std::move(around));
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
-  const Net at_sites = around_ ? Net(sites_ * around_->flow) : flow.velocities(at_);
+  const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);
   Net empty = around_ ? Net(-around_->flow) : at_sites;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
     const spline::Block& block = particles_[p].block;
-    set_unit_motions(at_, block, centres[p], velocities.middleCols<6>(column));
+    set_unit_motions(sites_, block, centres[p], velocities.middleCols<6>(column));
     set_unit_motions(x, block, centres[p], fields.middleCols<6>(column));
     block.rows(empty) = block.rows(at_sites);
   }
@@ -207,30 +207,30 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::VectorXd moving = fields * motion;
   for (const Particle& body : particles_) body.block.rows(v) = body.block.rows(as_net(moving));
   const Net between = flow.velocities(residual_.points().values * x);
-  left_ = flat(residual_.integrated(x, load(unknowns), v, between, walls_));
-  const Eigen::VectorXd lacking = lacks(unknowns, of_all), change = freed(free, resistance, -lacking.head(m));
+  weighted_residual_ = flat(residual_.integrated(x, load(unknowns), v, between, walls_));
+  const Eigen::VectorXd correction = corrections(unknowns, of_all), change = freed(free, resistance, -correction.head(m));
   motion += change;
   y += z * change;
   unknowns_ = completed(y);
   const Net f = force_densities(unknowns_);
   if (walls_.tube && flow.duct() && alone_)
-    lacking_pressure_ = walls_.tube->lacking_pressure(residual_.points(), between, flow.amplitude(), f, lacking[m]);
+    pressure_correction_ = walls_.tube->pressure_correction(residual_.points(), between, flow.amplitude(), f, correction[m]);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);
     bodies_[p] = integrals(p, f);
     bodies_[p].motion = {motion.segment<3>(first), motion.segment<3>(first + 3)};
-    bodies_[p].force += lacking.segment<3>(first), bodies_[p].torque += lacking.segment<3>(first + 3);
+    bodies_[p].force += correction.segment<3>(first), bodies_[p].torque += correction.segment<3>(first + 3);
   }
 }
 
-double RigidTractions::lacking_pressure(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, bool by_work) {
+double RigidTractions::pressure_correction(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, bool by_work) {
   const Net between = flow.velocities(residual_.points().values * x);
   double work = 0;
   if (by_work) {
-    left_ = flat(residual_.integrated(x, load(f), v, between, walls_));
-    work = lacks(f, -flat(f))[0];  // `lacks` with -f in place of the force density due to the ambient flow v_inf, as on free bodies
+    weighted_residual_ = flat(residual_.integrated(x, load(f), v, between, walls_));
+    work = corrections(f, -flat(f))[0];  // `corrections` with -f in place of the force density due to the ambient flow v_inf, as on free bodies
   }
-  return walls_.tube->lacking_pressure(residual_.points(), between, flow.amplitude(), f, work);
+  return walls_.tube->pressure_correction(residual_.points(), between, flow.amplitude(), f, work);
 }
 
 Net RigidTractions::density(const Net& velocities) { return as_net(densities(flat(velocities))); }
@@ -246,14 +246,14 @@ SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {
 }
 
 bool RigidTractions::inside(const Net& x) const {
-  return (!walls_.tube || walls_.tube->gap() > 0) && stokes::contains(walls_.medium.get(), sites_ * x);
+  return (!walls_.tube || walls_.tube->gap() > 0) && stokes::contains(walls_.medium.get(), collocation_ * x);
 }
 
 Mat3 RigidTractions::moment(std::size_t p) {
   if (walls_.tube) return bodies_[p].moment;
-  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(left_.size(), strains);
-  set_unit_strains(at_, particles_[p].block, centres_[p], velocities);
-  return bodies_[p].moment + strain_of_products(densities(velocities).transpose() * left_);
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(weighted_residual_.size(), strains);
+  set_unit_strains(sites_, particles_[p].block, centres_[p], velocities);
+  return bodies_[p].moment + strain_of_products(densities(velocities).transpose() * weighted_residual_);
 }
 
 int RigidTractions::solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns) {

@@ -95,13 +95,13 @@ class RigidTractions {
   /// Returns the correction of the pressure drop (2.7) for the collocation error. `f`: force density on freely moving bodies at the net x. `v`:
   /// control values of the bodies' velocity. `flow`: a duct flow. `by_work`: false if forces or torques act on the bodies; then only the
   /// interpolation error of v_inf is corrected. All particles must be bodies. Collective.
-  double lacking_pressure(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, bool by_work);
+  double pressure_correction(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, bool by_work);
 
   /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
   SolvedBody integrals(std::size_t p, const Net& f);
 
   /// Returns the positions of the collocation sites of all particles on the net passed to place() last.
-  const Net& sites() const { return at_; }
+  const Net& sites() const { return sites_; }
 
   BodyLayer& layer() { return layer_; }  ///< returns the single layer on the net passed to place() last
 
@@ -117,8 +117,7 @@ class RigidTractions {
 
   bool alone() const { return alone_; }              ///< returns whether all particles are rigid bodies
   const Net& unknowns() const { return unknowns_; }  ///< control values of f on bodies, and of v on deformable particles
-  double lacking_pressure() const { return lacking_pressure_; }         ///< collocation-error correction of the pressure drop (2.7) due to all bodies
-                                                                        ///< together
+  double pressure_correction() const { return pressure_correction_; }   ///< collocation-error correction of the pressure drop (2.7)
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
   /// Throws RunFailure if an iterative solve in `reports()` did not converge. Otherwise returns the number of iterations of all these solves.
   int converged_iterations() const;
@@ -136,26 +135,25 @@ class RigidTractions {
   Net force_densities(const Net& y) const;
   Net completed(const Eigen::VectorXd& y);
   Net load(const Net& y) const { return around_ ? around_->load(y) : Net(-y); }
-  Eigen::VectorXd lacks(const Net& y, const Eigen::MatrixXd& z);
+  Eigen::VectorXd corrections(const Net& y, const Eigen::MatrixXd& z);
 
   bool alone_;
   std::vector<Particle> particles_;  // the bodies
   FluidWalls walls_;
   BodyLayer layer_;
   RigidResidual residual_;
-  Eigen::SparseMatrix<double> sites_;  // collocation matrix R
+  Eigen::SparseMatrix<double> collocation_;  // collocation matrix R
   membrane::MassMatrix mass_;
   bool repeats_ = false;
   Krylov krylov_;
   double tolerance_;
   std::optional<Surroundings> around_;  // surroundings passed to place() last
-  Net x_, at_;                          // x_: net passed to place() last. at_: positions of the collocation sites on this net
-  Eigen::VectorXd left_;   // int N_A (v - v_inf - (1/mu) A f) dG for the latest density f: weighted residual of (2.40), from which (2.11) computes
-                           // corrections
+  Net x_, sites_;                       // x_: net passed to place() last. sites_: positions of the collocation sites on this net
+  Eigen::VectorXd weighted_residual_;   // int N_A (v - v_inf - (1/mu) A f) dG for the latest f: residual of (2.40), used by (2.11)
   std::vector<Vec3> centres_;
   std::vector<SolvedBody> bodies_;
   Net unknowns_;
-  double lacking_pressure_ = 0;
+  double pressure_correction_ = 0;
   std::vector<SolveReport> reports_;
 };
 

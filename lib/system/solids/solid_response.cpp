@@ -1,13 +1,6 @@
 #include "system/solids/solid_response.hpp"
 
-#include <algorithm>
-
-#include "system/collocation.hpp"
-#include "system/solids/nearest_sites.hpp"
-
 namespace tanktread::coupling {
-
-using stokes::Layer;
 
 namespace {
 
@@ -27,7 +20,7 @@ Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlo
   return solids.solve(solids.velocities() * flow.change().transpose() - flow.velocities(solids.sites()), force);
 }
 
-Vec3 carried(const SolidScene& scene, const Solids::Flow& flow) {
+Vec3 velocity_integral(const SolidScene& scene, const Solids::Flow& flow) {
   if (scene.planes.empty()) return scene.solids->cell().volume() * flow.drift;
   if (scene.planes.size() == 1) return Vec3::Zero();
   const stokes::PlaneWall& wall = scene.planes.front();
@@ -37,39 +30,19 @@ Vec3 carried(const SolidScene& scene, const Solids::Flow& flow) {
 
 SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow)
     : scene_(scene),
-      space_(space),
       flow_(flow),
-      collocation_(collocation_matrix(space)),
-      single_(Layer::Kernel::single_layer, space, {}, scene.quadrature) {
-  single_.repeat(scene_.solids->cell(), {.across = scene_.solids->across()});
-}
-
-void SolidResponse::set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present) {
-  single_.set_reference(unstressed, std::move(present));
-  measure_ = measure;
-}
-
-void SolidResponse::set_contrasts(const Eigen::VectorXd& contrasts) {
-  contrasts_ = contrasts;
-  double_.reset();
-  if (contrasts.isZero(0)) return;
-  double_.emplace(Layer::Kernel::double_layer, space_, stokes::Sites(), scene_.quadrature);
-  double_->repeat(scene_.solids->cell(), {.across = scene_.solids->across()});
-}
+      particles_(space, scene.solids->viscosity(), scene.quadrature, &scene.solids->cell(), {.across = scene.solids->across()}) {}
 
 void SolidResponse::place(const Net& x, const Net& at, std::span<const int> own) {
   if (shape_.rows() == x.rows() && shape_ == x && at_.rows() == at.rows() && at_ == at) return;
   shape_ = x, at_ = at;
   own_.assign(own.begin(), own.end());
-  single_.place(x, measure_);
-  areas_ = single_.moments(single_.weights());
+  particles_.place(x);
+  areas_ = particles_.single_layer.moments(particles_.single_layer.weights());
   Solids& solids = *scene_.solids;
   solids.reach(x);
   solids_on_particles_ = solids.layer().near(at_, own_);
-  if (!double_) return;
-  double_->place(x);
-  nearest_ = nearest_sites(collocation_ * x, solids.sites(), solids.own(), &solids.cell());
-  double_on_solids_ = double_->near(solids.sites(), solids.own());
+  on_solids_ = particles_.prepared(solids.sites(), solids.own());
 }
 
 const Solids::Flow& SolidResponse::empty() {
@@ -82,57 +55,38 @@ Solids::Flow SolidResponse::respond(const Net& f, const Net& v) {
   Vec3 force = Vec3::Zero();
   if (f.size() > 0) force = f.transpose() * areas_;
   const Net u = solids.ranks().filled(solids.sites().rows(), [&](Net& all) {
-    Net part(all.rows(), 3);
-    if (f.size() > 0) {
-      single_.apply(f, solids.sites(), solids.own(), part);
-      for (const int i : solids.own()) all.row(i) += part.row(i) / solids.viscosity();
-    }
-    if (v.size() > 0 && double_) {
-      const Net strength = contrasts_.asDiagonal() * v;
-      double_->apply(strength, nearest_values(strength), solids.sites(), solids.own(), part, &*double_on_solids_);
-      for (const int i : solids.own()) all.row(i) -= part.row(i);
-    }
+    particles_.add_velocity(f, v, solids.sites(), solids.own(), all, on_solids_);
   });
-  return solids.solve(u, force);
+  return solids.solve(-u, force);
 }
 
 void SolidResponse::velocities(const Solids::Flow& flow, Net& u) { scene_.solids->velocity_at(at_, own_, flow, u, &*solids_on_particles_); }
 
-Vec3 SolidResponse::carried(const Solids::Flow& flow, const Net& f, const Net& v) {
-  if (scene_.planes.size() != 2) return coupling::carried(scene_, flow);
+Vec3 SolidResponse::velocity_integral(const Solids::Flow& flow, const Net& f, const Net& v) {
+  if (scene_.planes.size() != 2) return coupling::velocity_integral(scene_, flow);
   const stokes::PlaneWall& wall = scene_.planes.front();
   const Vec3& n = wall.normal();
   const auto height = [&](const std::vector<double> (&x)[3], std::size_t k) { return wall.height(Vec3(x[0][k], x[1][k], x[2][k])); };
-  Vec3 sum = coupling::carried(scene_, flow);
-  std::vector<double> weighted = single_.weights();
-  for (std::size_t k = 0; k < weighted.size(); ++k) weighted[k] *= profile(scene_, height(single_.nodes(), k)) / scene_.solids->viscosity();
-  if (f.size() > 0) sum -= f.transpose() * single_.moments(weighted);
-  if (v.size() > 0 && double_) {  // stress of (2.49): sigma_i n = x_i n + slope (e_i (m.n) + m (e_i.n)), m: normal of the plates
-    const Net strength = contrasts_.asDiagonal() * v;
+  Vec3 sum = coupling::velocity_integral(scene_, flow);
+  const stokes::Layer& single = particles_.single_layer;
+  std::vector<double> weighted = single.weights();
+  for (std::size_t k = 0; k < weighted.size(); ++k) weighted[k] *= profile(scene_, height(single.nodes(), k)) / scene_.solids->viscosity();
+  if (f.size() > 0) sum -= f.transpose() * single.moments(weighted);
+  if (v.size() > 0 && particles_.has_double()) {  // stress of (2.49): sigma_i n = x_i n + slope (e_i (m.n) + m (e_i.n)), m: normal of the plates
+    const Net strength = particles_.strength(v);
+    const stokes::Layer& dual = *particles_.double_layer;
     for (int i = 0; i < 3; ++i)
       for (int c = 0; c < 3; ++c) {
-        std::vector<double> stress(double_->nodes()[0].size());
+        std::vector<double> stress(dual.nodes()[0].size());
         for (std::size_t k = 0; k < stress.size(); ++k) {
-          const Vec3 normal(double_->normals()[0][k], double_->normals()[1][k], double_->normals()[2][k]);
-          const double slope = distance(scene_) / 2 - height(double_->nodes(), k);
-          stress[k] = double_->nodes()[i][k] * normal[c] + slope * ((i == c ? n.dot(normal) : 0.) + n[c] * normal[i]);
+          const Vec3 normal(dual.normals()[0][k], dual.normals()[1][k], dual.normals()[2][k]);
+          const double slope = distance(scene_) / 2 - height(dual.nodes(), k);
+          stress[k] = dual.nodes()[i][k] * normal[c] + slope * ((i == c ? n.dot(normal) : 0.) + n[c] * normal[i]);
         }
-        sum[i] += double_->moments(stress).dot(strength.col(c));
+        sum[i] += dual.moments(stress).dot(strength.col(c));
       }
   }
   return along(wall, sum);
-}
-
-/// Returns, for each collocation point of the solids, the value of the field v at the nearest collocation point of the particles. Only the rank-owned
-/// rows of the result are valid.
-Net SolidResponse::nearest_values(const Net& v) const {
-  const Net at_sites = collocation_ * v;
-  return at_sites(nearest_, Eigen::all);
-}
-
-stokes::Evaluations SolidResponse::evaluations() const {
-  const stokes::Evaluations sum = single_.evaluations();
-  return double_ ? sum + double_->evaluations() : sum;
 }
 
 }  // namespace tanktread::coupling

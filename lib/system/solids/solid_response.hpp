@@ -7,8 +7,8 @@
 
 #include "base/types.hpp"
 #include "stokes/flow/ambient_flow.hpp"
-#include "stokes/layer.hpp"
 #include "stokes/medium/plane_wall.hpp"
+#include "system/solids/particle_sources.hpp"
 #include "system/solids/solids.hpp"
 
 namespace tanktread::coupling {
@@ -26,7 +26,7 @@ struct SolidScene {
 Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow);
 
 /// Returns the integral over the cell (2.49) of the velocity due to the solids only. `flow`: solution of (2.46).
-Vec3 carried(const SolidScene& scene, const Solids::Flow& flow);
+Vec3 velocity_integral(const SolidScene& scene, const Solids::Flow& flow);
 
 /// Velocity u that solids (with the surface S) add to the ambient flow v_inf and to the layers of the particles (with the surface C):
 ///
@@ -42,12 +42,7 @@ class SolidResponse {
   /// `space`: common space of all particles. `flow`: ambient flow. References must outlive this object.
   SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow);
 
-  /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
-  void set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present);
-
-  /// Sets the contrasts of the double layer, one per control point: 1 - lambda of a deformable particle. The contrast of a rigid body is -1 if its
-  /// unknown is w (2.23), and 0 if its unknown is the traction (2.40).
-  void set_contrasts(const Eigen::VectorXd& contrasts);
+  ParticleSources& particles() { return particles_; }  ///< contrasts and unstressed net must be set before place()
 
   /// Sets the particles' control net; later calls use this shape. `at`: points on the particles at which `velocities` are needed. `own`: the rows
   /// that this rank computes.
@@ -74,7 +69,7 @@ class SolidResponse {
   /// In this formula, f_i is the force density of the solids (`flow`) and df_i the load of the particles (the argument f). S are the surfaces of the
   /// solids, C those of the particles. With z the distance from one plate and phi = z (D - z)/2, a pressure that decreases along e_i with unit
   /// gradient drives the flow phi e_i/mu, which has the stress sigma_i.
-  Vec3 carried(const Solids::Flow& flow, const Net& f, const Net& v);
+  Vec3 velocity_integral(const Solids::Flow& flow, const Net& f, const Net& v);
 
   /// Returns the force of the particles on the fluid for a load f.
   Vec3 force(const Net& f) const { return -f.transpose() * areas_; }
@@ -83,23 +78,16 @@ class SolidResponse {
   bool inside(const Net& at) const { return stokes::in_front(scene_.planes, at) && scene_.solids->outside(at); }
 
   const SolidScene& scene() const { return scene_; }
-  stokes::Evaluations evaluations() const;
+  stokes::Evaluations evaluations() const { return particles_.evaluations(); }
 
  private:
-  Net nearest_values(const Net& v) const;
-
   SolidScene scene_;
-  const spline::Space& space_;
   const stokes::AmbientFlow& flow_;
-  Eigen::SparseMatrix<double> collocation_;
-  stokes::Layer single_;
-  std::optional<stokes::Layer> double_;  // double layer of the particles; set if at least one contrast is not 0
-  stokes::Measure measure_ = stokes::Measure::reference;
-  Eigen::VectorXd contrasts_;
+  ParticleSources particles_;
   Net shape_, at_;
   std::vector<int> own_;
-  std::vector<int> nearest_;  // nearest collocation point of the particles, for each collocation point of the solids
-  std::optional<stokes::Layer::Near> double_on_solids_, solids_on_particles_;
+  SourceTargets on_solids_;                                 // collocation points of the solids
+  std::optional<stokes::Layer::Near> solids_on_particles_;  // corrections of the layer of the solids at the points `at`, by near-singular quadrature
   Eigen::VectorXd areas_;  // integral of each basis function N_A over the area to which loads refer (current or unstressed)
   std::optional<Solids::Flow> empty_;
   Mat3 change_;  // value of AmbientFlow::change() for which empty_, the flow without particles, was computed

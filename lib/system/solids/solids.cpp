@@ -51,23 +51,24 @@ Solids::Solids(const std::vector<Solid>& solids, const Parameters& parameters, P
   stokes::Layer on_itself(stokes::Layer::Kernel::single_layer, surface_.space, surface_.sites, parameters.quadrature.for_matrix());
   on_itself.repeat(cell(), {.assembled = true, .across = across_});
   on_itself.place(surface_.net);
-  const bool only_plates = std::ranges::all_of(solids, [&](const Solid& one) {
-    return one.surface.grid[0] > 0 && one.surface.grid == solids.front().surface.grid;
-  });
-  if (only_plates) {
-    const auto [n1, n2] = solids.front().surface.grid;
-    std::vector<int> middle;  // one point of each plate, far from the plate's edges
-    for (std::size_t s = 0; s + 1 < first_.size(); ++s) middle.push_back(first_[s] + n1 / 2 * n2 + n2 / 2);
-    Eigen::MatrixXd regular = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(middle.size()), 3 * static_cast<Eigen::Index>(middle.size()));
-    for (std::size_t s = 0; s < middle.size(); ++s) {
-      const Vec3 n = normals_.row(middle[s]).transpose();
-      const auto at = 3 * static_cast<Eigen::Index>(s);
-      regular.block<3, 3>(at, at) = std::sqrt(std::abs(cell().volume())) * n * n.transpose();
-    }
-    plates_.emplace(rows(on_itself, middle), solids.front().surface.grid, std::array{n1 / 2, n2 / 2}, regular);
-  }
+  const auto& grid = solids.front().surface.grid;
+  if (grid[0] > 0 && std::ranges::all_of(solids, [&](const Solid& one) { return one.surface.grid == grid; })) factor_plates(on_itself, grid);
   factor(on_itself);
   evaluations_ += on_itself.evaluations();
+}
+
+/// Computes the inverse of the operator by Fourier series. All solids must be plates with the same grid of points.
+void Solids::factor_plates(stokes::Layer& on_itself, const std::array<int, 2>& grid) {
+  const auto [n1, n2] = grid;
+  std::vector<int> middle;  // one point of each plate, far from the plate's edges
+  for (std::size_t s = 0; s + 1 < first_.size(); ++s) middle.push_back(first_[s] + n1 / 2 * n2 + n2 / 2);
+  Eigen::MatrixXd regular = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(middle.size()), 3 * static_cast<Eigen::Index>(middle.size()));
+  for (std::size_t s = 0; s < middle.size(); ++s) {
+    const Vec3 n = normals_.row(middle[s]).transpose();
+    const auto at = 3 * static_cast<Eigen::Index>(s);
+    regular.block<3, 3>(at, at) = std::sqrt(std::abs(cell().volume())) * n * n.transpose();
+  }
+  plates_.emplace(rows(on_itself, middle), grid, std::array{n1 / 2, n2 / 2}, regular);
 }
 
 void Solids::make_layer() {

@@ -99,6 +99,7 @@ class Solids {
   stokes::Evaluations evaluations() const { return evaluations_ + layer_->evaluations(); }
 
  private:
+  void factor_plates(stokes::Layer& on_itself, const std::array<int, 2>& grid);
   void factor(stokes::Layer& on_itself);
   Eigen::MatrixXd rows(stokes::Layer& on_itself, std::span<const int> sites) const;
   void make_layer();

@@ -32,20 +32,14 @@ Tube::Tube(const Tube& tube, const spline::Space& particle) : flow_(tube.flow_),
 Tube::~Tube() = default;
 
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
+ParticleSources& Tube::particles() { return particle_->sources; }
 const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
 const Net& Tube::ambient() const { return particle_->ambient; }
 const std::optional<stokes::PeriodicCell>& Tube::cell() const { return wall_->cell(); }
 
 stokes::Evaluations Tube::kernel_evaluations() const {
-  stokes::Evaluations all = wall_->evaluations() + particle_->evaluations();
+  stokes::Evaluations all = wall_->evaluations() + particle_->sources.evaluations();
   return between_ ? all + between_->layer.evaluations() : all;
-}
-
-void Tube::set_contrasts(const Eigen::VectorXd& contrasts) { particle_->set_contrasts(contrasts); }
-
-void Tube::set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present) {
-  particle_->single.set_reference(unstressed, std::move(present));
-  particle_->measure = measure;
 }
 
 Net Tube::in_wall_frame(Net x) const {
@@ -61,49 +55,32 @@ void Tube::place(const Net& x, std::optional<double> centroid) {
 }
 
 double Tube::pressure_of(const Net& f, const Net& v) {
-  const bool by_flow = fixed() && particle_->dual && v.size() > 0;
-  return dot(particle_->pressure_of_load, f) + (by_flow ? pressure_of_velocity(v, velocity_on_wall(v)) : dot(particle_->pressure_of_velocity, v));
+  const bool by_flow = fixed() && particle_->sources.has_double() && v.size() > 0;
+  return dot(particle_->pressure_of_load, f) + (by_flow ? pressure_of_velocity(v, particle_on_wall({}, v)) : dot(particle_->pressure_of_velocity, v));
 }
 
 /// Returns the pressure drop for which the disturbance caused by v has zero net flow rate. `on_wall`: velocity of this disturbance at the wall.
 double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
   weigh_flow();
   const double taken_away = wall_->iterates() ? dot(flow_weights_, wall_->solve(on_wall)) : dot(flow_of_wall_, on_wall);
-  return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->strength(v))) / flow_of_pressure_;
+  return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->sources.strength(v))) / flow_of_pressure_;
 }
 
-double Tube::lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work) {
+double Tube::pressure_correction(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work) {
   if (fixed()) work += dot(between.weights * (at_places - amplitude * (between.values * particle_->interpolated_ambient)), f);
   return amplitude == 0 ? 0 : -work / (amplitude * flow_->flow_rate());
 }
 
-Net Tube::load_on_wall(const Net& f) {
-  if (cell()) return wall_->points().collocated(particle_->cause(f, {}, *wall_).at_wall);
-  Net u(wall_->points().targets().rows(), 3);
-  particle_->single.apply(f, wall_->points().targets(), wall_->points().own_targets(), u);
-  return wall_->points().collocated(u) / -viscosity();
-}
-
-Net Tube::velocity_on_wall(const Net& v) {
-  if (!particle_->dual) return Net::Zero(wall_->points().sites().rows(), 3);
-  if (cell()) return wall_->points().collocated(particle_->cause({}, v, *wall_).at_wall);
-  const Net strength = particle_->strength(v), &targets = wall_->points().targets();
-  Net u(targets.rows(), 3);
-  const std::vector<int>& own = wall_->points().own_targets();
-  particle_->dual->apply(strength, particle_->nearest_values(strength), targets, own, u, particle_->kept(particle_->dual_on_wall));
-  return wall_->points().collocated(u);
-}
+Net Tube::particle_on_wall(const Net& f, const Net& v) { return wall_->points().collocated(particle_->cause(f, v).at_wall); }
 
 Net Tube::wall_on_particle(const Net& traction) {
-  const auto& [sites, own] = std::tie(particle_->sites, particle_->own);
-  return particle_->ranks.filled(sites.rows(), [&](Net& u) {
-    wall_->layer().apply(wall_->on_space(traction), sites, own, u, particle_->kept(particle_->wall_on_sites));
+  const auto& near = particle_->wall_on_sites;
+  return particle_->ranks.filled(particle_->sites().rows(), [&](Net& u) {
+    wall_->layer().apply(wall_->on_space(traction), particle_->sites(), particle_->own, u, near ? &*near : nullptr);
   }) / -viscosity();
 }
 
-Net Tube::images_on_particle(const Net& f, const Net& v) {
-  return on_particle(particle_->cause(f, v, *wall_).at_sites);
-}
+Net Tube::images_on_particle(const Net& f, const Net& v) { return on_particle(particle_->cause(f, v).at_sites); }
 
 /// Returns, on all ranks, a net with one row per collocation point of the particle, gathered from the rank-owned rows of `own`.
 Net Tube::on_particle(const Net& own) const {
@@ -120,26 +97,27 @@ Net Tube::solve_wall(const Net& rhs) { return viscosity() * wall_->solve(rhs); }
 
 double Tube::viscosity() const { return particle_->parameters.viscosity; }
 
-Tube::Response Tube::respond(const Net& f, const Net& v, double lacking) {
+Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correction) {
   const auto clock = phases_.time("wall");
   Response response;
-  response.pressure_drop = pressure_of(f) + lacking;
-  const bool moves = v.size() > 0 && particle_->dual, by_flow = moves && fixed();
+  response.pressure_drop = pressure_of(f) + pressure_correction;
+  const bool moves = v.size() > 0 && particle_->sources.has_double(), by_flow = moves && fixed();
   if (moves && !fixed()) response.pressure_drop += dot(particle_->pressure_of_velocity, v);
   if (cell()) {
-    Particle::Cause cause = particle_->cause(f, v, *wall_);
-    if (by_flow) response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? velocity_on_wall(v) : wall_->points().collocated(cause.at_wall));
-    response.wall_traction = solve_wall(wall_->points().collocated(cause.at_wall));
+    Particle::Cause cause = particle_->cause(f, v);
+    const Net on_wall = wall_->points().collocated(cause.at_wall);
+    if (by_flow) response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? particle_on_wall({}, v) : on_wall);
+    response.wall_traction = solve_wall(on_wall);
     response.velocity = on_particle(std::move(cause.at_sites));
     response.load = f, response.moves = v;
   } else {
     Net on_wall = Net::Zero(wall_->points().sites().rows(), 3);
-    if (moves) on_wall += velocity_on_wall(v);
+    if (moves) on_wall += particle_on_wall({}, v);
     if (by_flow) response.pressure_drop += pressure_of_velocity(v, on_wall);
-    if (f.size() > 0) on_wall += load_on_wall(f);
+    if (f.size() > 0) on_wall += particle_on_wall(f);
     response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->pumped();
   }
-  response.velocity = (response.velocity.size() > 0 ? response.velocity : Net(Net::Zero(particle_->sites.rows(), 3))) +
+  response.velocity = (response.velocity.size() > 0 ? response.velocity : Net(Net::Zero(particle_->sites().rows(), 3))) +
                       wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
   if (const double slower = slowed(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
   return response;
@@ -170,7 +148,7 @@ void Tube::velocity_at(const Net& x, const Response& response, std::span<const i
   const Net by_pressure = cell() ? Net(driven(at)(rows, Eigen::all)) : driven(at(rows, Eigen::all));
   for (std::size_t k = 0; k < rows.size(); ++k)
     u.row(rows[k]) = (response.pressure_drop * by_pressure.row(static_cast<Eigen::Index>(k)) - u.row(rows[k])) / viscosity();
-  if (cell()) particle_->add_images(response.load, response.moves, at, rows, u);
+  if (cell()) particle_->sources.add_velocity(response.load, response.moves, at, rows, u, {.first_image_row = 0});
   if (const double slower = slowed(response.pressure_drop); slower != 0) {
     const Net ambient = flow_->velocities(x);
     for (const int i : rows) u.row(i) -= slower * ambient.row(i);
@@ -180,16 +158,16 @@ void Tube::velocity_at(const Net& x, const Response& response, std::span<const i
 void Tube::freeze() {
   const auto clock = phases_.time("assembly");
   if (wall_->iterates()) return;
-  const bool by_flow = fixed() && particle_->dual;
+  const bool by_flow = fixed() && particle_->sources.has_double();
   if (by_flow) weigh_flow();
   particle_->freeze(*wall_, by_flow ? Net(flow_of_wall_ / flow_of_pressure_) : Net());
   if (!by_flow) return;
   const Net& through_inlet = particle_->flow_of_strength(*wall_);
-  particle_->frozen.pressure_of_velocity -= particle_->contrasts.asDiagonal() * through_inlet / flow_of_pressure_;
+  particle_->frozen.pressure_of_velocity -= particle_->sources.strength(through_inlet) / flow_of_pressure_;
 }
 
 Net Tube::frozen_response(const Net& f, const Net& v) {
-  if (wall_->iterates()) return Net::Zero(particle_->sites.rows(), 3);
+  if (wall_->iterates()) return Net::Zero(particle_->sites().rows(), 3);
   const Particle::Frozen& frozen = particle_->frozen;
   const double pressure = dot(frozen.pressure_of_load, f) + dot(frozen.pressure_of_velocity, v);
   const auto add = [](double factor, const FrozenOperator& of, const Net& strength, Net& to) {
@@ -197,13 +175,13 @@ Net Tube::frozen_response(const Net& f, const Net& v) {
     of.apply(strength, part);
     to += factor * part;
   };
-  const bool loads = f.size() > 0, moves = v.size() > 0 && particle_->dual;
+  const bool loads = f.size() > 0, moves = v.size() > 0 && particle_->sources.has_double();
   const Net on_wall = wall_->points().ranks().filled(wall_->points().sites().rows(), [&](Net& u) {
     if (loads) add(-1 / viscosity(), frozen.single, f, u);
-    if (moves) add(1, frozen.dual, particle_->strength(v), u);
+    if (moves) add(1, frozen.dual, particle_->sources.strength(v), u);
   });
   const Net traction = solve_wall(on_wall) + pressure * wall_->pumped();
-  const Net u = particle_->ranks.filled(particle_->sites.rows(), [&](Net& own) {
+  const Net u = particle_->ranks.filled(particle_->sites().rows(), [&](Net& own) {
     frozen.wall.apply(traction, own);
   });
   return -u / viscosity() + pressure * frozen.inlet - slowed(pressure) * frozen.ambient;

@@ -13,11 +13,11 @@
 #include "spline/space.hpp"
 #include "stokes/flow/duct_flow.hpp"
 #include "stokes/kernels/kernels.hpp"
-#include "stokes/layer.hpp"
 #include "surface/symmetry.hpp"
 #include "surface/tube_wall.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/channel_flow.hpp"
+#include "system/solids/particle_sources.hpp"
 
 namespace tanktread::coupling {
 
@@ -26,7 +26,7 @@ struct BetweenSites;
 
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
-  double viscosity_ratio = 1;        ///< lambda, if equal for all particles; otherwise call set_contrasts()
+  double viscosity_ratio = 1;        ///< lambda, if equal for all particles; otherwise see particles()
   surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; Symmetry() if there is none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
@@ -70,13 +70,8 @@ class Tube {
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
-  /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
-  void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
-
-  /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is 0 if
-  /// its unknown is the traction (2.40). Otherwise the contrast is -1, and in rows of this body the argument `v` of the functions below is w of
-  /// (2.23).
-  void set_contrasts(const Eigen::VectorXd& contrasts);
+  /// Returns the particles as sources of flow. Their unstressed net must be set before place().
+  ParticleSources& particles();
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: x1 coordinate of the origin of the frame of
   /// wall() if the wall is straight; by default the x1 coordinate of the particle's centroid.
@@ -92,8 +87,8 @@ class Tube {
     Net load, moves;  ///< load f and velocity v of the particle; set in a periodic duct only
   };
 
-  /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `lacking`: collocation-error correction of dp.
-  Response respond(const Net& f, const Net& v = {}, double lacking = 0);
+  /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `pressure_correction`: collocation-error correction of dp.
+  Response respond(const Net& f, const Net& v = {}, double pressure_correction = 0);
 
   /// Computes rows `rows` of the velocity u of a response at the points x (laboratory frame), which may be on the particle or anywhere in the fluid.
   /// Not collective, except if the duct repeats or its pressure drop is prescribed: then every rank must call it with the same x.
@@ -106,8 +101,7 @@ class Tube {
   Net frozen_response(const Net& f, const Net& v = {});
 
   /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
-  Net load_on_wall(const Net& f);                           ///< -(1/mu) G_C f
-  Net velocity_on_wall(const Net& v);                       ///< double layer (1 - lambda) (1 / 8 pi) int_C T v n dG (2.6)
+  Net particle_on_wall(const Net& f, const Net& v = {});    ///< -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dG
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity due to the particle's images in a periodic duct
@@ -122,7 +116,7 @@ class Tube {
   /// Returns the correction (2.41) of pressure_of(f) for collocation errors. The ambient flow must be a duct flow, with the amplitude `amplitude`.
   /// `work`: integral (2.11) over the particle of f times the residual of v_inf. In a channel, also corrects for the interpolation error of v_inf.
   /// `between`: Gauss points for this error. `at_places`: exact values of v_inf at these Gauss points.
-  double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
+  double pressure_correction(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
   Net solve_wall(const Net& rhs);  ///< returns the wall traction f^D that solves (1/mu) G_W f^D = rhs
 
   /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
@@ -131,8 +125,7 @@ class Tube {
     double force = 0;         ///< unbalanced axial force of the disturbance: dp times section area, minus axial forces on wall and particle. It is
                               ///< divided by the product of section area, radius and pressure gradient of the empty duct
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
-    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops that would make `flux` zero (pressure_by_flux) or `force` zero
-                                                         ///< (pressure_by_force)
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops that would make `flux` or `force` zero
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
@@ -167,8 +160,7 @@ class Tube {
   const surface::TubeWall& wall() const;
   void forget_recycled() const { wall_->forget_recycled(); }  ///< discards data of earlier solves that the wall's iterative solver keeps
   const stokes::DuctFlow& flow() const { return *flow_; }
-  stokes::Evaluations kernel_evaluations() const;  ///< returns the number of kernel evaluations for the particle and the wall, including the assembly
-                                                   ///< of the wall
+  stokes::Evaluations kernel_evaluations() const;  ///< number of kernel evaluations, including the assembly of the wall
 
  private:
   struct Particle;

@@ -13,8 +13,6 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // argument of Layer::see_images_only that exceeds every row number: the surfaces
-                                                             // themselves, not only their images, then contribute at all targets
 constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // check_sharpness: factor by which leak() multiplies the tolerance of
                                                            // integrals over the wall, because pressures are large. sharpest: upper limit of
                                                            // this product
@@ -69,16 +67,17 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   double force = (cell() ? 0 : area * dp) - dot(force_weights_, response.wall_traction);  // a periodic duct has no caps on which dp acts
   std::vector<double> value[3];
   if (f.size() > 0) {
-    particle.single.values(f, value);
-    const auto& node = particle.single.nodes();
+    stokes::Layer& layer = particle.sources.single_layer;
+    layer.values(f, value);
+    const auto& node = layer.nodes();
     for (std::size_t k = 0; k < value[0].size(); ++k) {
       const Net at = (Net(1, 3) << node[0][k], node[1][k], node[2][k]).finished();
-      const Vec3 strength = particle.single.weights()[k] * Vec3(value[0][k], value[1][k], value[2][k]);
+      const Vec3 strength = layer.weights()[k] * Vec3(value[0][k], value[1][k], value[2][k]);
       flow -= wall_->flow_of_forces(at).row(0).dot(strength) / mu;
       force -= strength[0];
     }
   }
-  if (v.size() > 0 && particle.dual) flow += dot(particle.flow_of_strength(*wall_), particle.strength(v));
+  if (v.size() > 0 && particle.sources.has_double()) flow += dot(particle.flow_of_strength(*wall_), particle.sources.strength(v));
   const double force_of_pressure = area - dot(force_weights_, wall_->pumped());
 
   Checks checks;
@@ -115,11 +114,10 @@ Tube::Leak Tube::leak(const Net& f) {
     between_ = std::make_unique<BetweenSitesOfWall>(wall, cell(), between_sites(wall.space, wall.net), particle_->parameters.quadrature);
   const Net &at = between_->at, by_pressure = response.pressure_drop * driven(at);
   const Net u = wall_->points().ranks().divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& velocity) {
-    Net of_wall(at.rows(), 3), of_load = of_wall;
+    Net of_wall(at.rows(), 3);
     between_->layer.apply(wall_->on_space(response.wall_traction), own, of_wall);
-    particle_->single.see_images_only(everything);
-    particle_->single.apply(f, at, own, of_load);
-    for (const int i : own) velocity.row(i) = (by_pressure.row(i) - of_wall.row(i) - of_load.row(i)) / viscosity();
+    for (const int i : own) velocity.row(i) = (by_pressure.row(i) - of_wall.row(i)) / viscosity();
+    particle_->sources.add_velocity(f, {}, at, own, velocity);
   });
   return {wall_->from_space(Net(between_->weights * u)), checks(f, {}, response).flux * flow_->flow_rate()};
 }
@@ -129,7 +127,6 @@ double Tube::work(const Leak& leak, const Response& of) const {
 }
 
 double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) {
-  Particle& particle = *particle_;
   const double mu = viscosity();
   const std::vector<Vec3> points = points_of_caps(wall_->surface());
   const Net at = Eigen::Map<const Net>(points.front().data(), static_cast<Eigen::Index>(points.size()), 3);
@@ -138,14 +135,7 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
   Net u = response.pressure_drop / mu * wall_->inlet().integral(at);
   wall_->layer().apply(wall_->on_space(response.wall_traction), at, all, part);
   u -= part / mu;
-  if (f.size() > 0) {
-    particle.single.apply(f, at, all, part);
-    u -= part / mu;
-  }
-  if (v.size() > 0 && particle.dual) {
-    particle.dual->apply(particle.strength(v), at, all, part);
-    u += part;
-  }
+  particle_->sources.add_velocity(f, v, at, all, u);
   return u.rowwise().norm().maxCoeff();
 }
 
@@ -167,7 +157,7 @@ double Tube::gap() const {
         nearest =
             std::min(nearest, surface::closest_points(surface::ElementBoxes(seen), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
     }
-    return inside(particle_->sites, indices(particle_->sites.rows())) ? nearest : -nearest;
+    return inside(particle_->sites(), indices(particle_->sites().rows())) ? nearest : -nearest;
   }
   return surface::clearance(patches, wall_->surface().outline).gap;
 }

@@ -125,6 +125,16 @@ void Wall::find_pressure() {
   pressure_ *= surface_.radius() / dot(flux_, pressure_);
 }
 
+/// Assembles the rows of the single layer of the wall at targets on the wall itself. The columns belong to the control values of f.
+void Wall::assemble_rows(std::span<const int> targets, stokes::Rows<double>& rows) {
+  on_itself_->assemble(targets, rows);
+  if (!cell_) return;
+  on_itself_->assemble_rest(targets, rows);
+  const stokes::Rows<double> on_space = std::exchange(rows, stokes::Rows<double>(rows.rows(), 3 * n_sites()));
+  for (Eigen::Index r = 0; r < rows.rows(); ++r)
+    Eigen::Map<Net>(rows.row(r).data(), n_sites(), 3) = from_space(Eigen::Map<const Net>(on_space.row(r).data(), surface_.space.n_points, 3));
+}
+
 /// Returns, on every rank, the matrix of the wall's operator A. Its rows and columns are the components at fundamental points that symmetry does not
 /// make zero (4.12). Many rows are assembled at a time, because each row is a mean over a collocation point and adjacent element midpoints (2.39),
 /// and neighbouring collocation points share these midpoints. If rotations or reflections of the wall map collocation points to each other, only the
@@ -137,20 +147,25 @@ Eigen::MatrixXd Wall::assembled() {
   for (const int a : symmetry_.fundamental())
     for (int c = 0; c < 3; ++c)
       if (signs(a, c) != 0) of_component[3 * a + c] = n++;
-  const auto rows_of = [&](std::span<const int> targets, stokes::Rows<double>& rows) {
-    on_itself_->assemble(targets, rows);
-    if (!cell_) return;
-    on_itself_->assemble_rest(targets, rows);
-    const stokes::Rows<double> on_space = std::exchange(rows, stokes::Rows<double>(rows.rows(), 3 * n_sites()));
-    for (Eigen::Index r = 0; r < rows.rows(); ++r)
-      Eigen::Map<Net>(rows.row(r).data(), n_sites(), 3) = from_space(Eigen::Map<const Net>(on_space.row(r).data(), surface_.space.n_points, 3));
-  };
   const int m = surface_.n_around;
   const std::vector<Congruence> maps = congruences(surface_, points_.sites());
   const std::vector<Original> original = originals(maps, m);
   const auto original_of = [&](int site) { return original[static_cast<std::size_t>(site % m)]; };
   std::vector<int> own = points_.own();  // rank-owned sites, sorted by Original::point (congruence.hpp): equal originals are adjacent
   std::ranges::stable_sort(own, {}, [&](int site) { return site - site % m + original_of(site).point; });
+  // Adds the rows of `site` to the matrix `all`. `rows`: the three rows of the congruent site that `map` moves to `site`.
+  const auto add_rows = [&](int site, const Congruence& map, const auto& rows, Eigen::MatrixXd& all) {
+    for (int p = 0; p < static_cast<int>(signs.rows()); ++p) {
+      const int from = p - p % m + map.source[static_cast<std::size_t>(p % m)];
+      const Mat3 block = map.q * rows.template middleCols<3>(3 * from) * map.q.transpose();
+      for (int d = 0; d < 3; ++d) {
+        if (signs(p, d) == 0) continue;
+        const int column = of_component[3 * symmetry_.source()[static_cast<std::size_t>(p)] + d];
+        for (int c = 0; c < 3; ++c)
+          if (const int to = of_component[3 * site + c]; to >= 0) all(to, column) += signs(p, d) * block(c, d);
+      }
+    }
+  };
   Eigen::MatrixXd complete = points_.ranks().assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
     for (std::size_t first = 0, last = 0; first < own.size(); first = last) {
       std::vector<int> some, row;  // some: sites whose rows are assembled. row: for each site of `own`, index in `some` of the congruent site
@@ -160,21 +175,9 @@ Eigen::MatrixXd Wall::assembled() {
         row.push_back(static_cast<int>(some.size()) - 1);
       }
       stokes::Rows<double> part;
-      points_.collocate<double>(some, rows_of, part);
-      for (std::size_t k = 0; k < row.size(); ++k) {
-        const int site = own[first + k];
-        const Congruence& map = *original_of(site).from;
-        for (int p = 0; p < static_cast<int>(signs.rows()); ++p) {
-          const int from = p - p % m + map.source[static_cast<std::size_t>(p % m)];
-          const Mat3 block = map.q * part.block<3, 3>(3 * row[k], 3 * from) * map.q.transpose();
-          for (int d = 0; d < 3; ++d) {
-            if (signs(p, d) == 0) continue;
-            const int column = of_component[3 * symmetry_.source()[static_cast<std::size_t>(p)] + d];
-            for (int c = 0; c < 3; ++c)
-              if (const int to = of_component[3 * site + c]; to >= 0) all(to, column) += signs(p, d) * block(c, d);
-          }
-        }
-      }
+      points_.collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { assemble_rows(targets, rows); }, part);
+      for (std::size_t k = 0; k < row.size(); ++k)
+        add_rows(own[first + k], *original_of(own[first + k]).from, part.middleRows<3>(3 * row[k]), all);
     }
   });
   if (cell_) complete += Eigen::Map<const Eigen::VectorXd>(pressure_.data(), n) * Eigen::Map<const Eigen::RowVectorXd>(flux_.data(), n);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -106,8 +107,7 @@ class Wall {
   Net solve_transposed(const Net& weights) const;
 
   const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet integral c (2.13); 0 for a periodic wall
-  const Net& pumped() const { return pumped_; }              ///< wall traction in the open, empty tube per unit pressure drop: A^-1 c (2.13), with
-                                                             ///< the operator A
+  const Net& pumped() const { return pumped_; }              ///< wall traction A^-1 c (2.13) in the open, empty tube per unit pressure drop
 
   /// Returns weights int N_A c dG, one row per control point A, with c = flow_of_forces(x). Their inner product with a traction on the wall is mu
   /// times the flow rate that the traction causes.
@@ -134,6 +134,7 @@ class Wall {
  private:
   Eigen::Index n_sites() const { return points_.sites().rows(); }
   Net weights(const std::function<Vec3(const surface::Point&)>& field) const;
+  void assemble_rows(std::span<const int> targets, stokes::Rows<double>& rows);
   Eigen::MatrixXd assembled();
   Net iterated(const Net& rhs) const;
   void find_pressure();

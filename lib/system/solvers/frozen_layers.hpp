@@ -32,8 +32,7 @@ class FrozenLayers {
 
   bool has_double() const { return layers_.has_double(); }
   bool empty() const { return single_.empty() && nodal_.empty(); }  ///< true until the first call of assemble()
-  double bytes() const;                     ///< memory in bytes, summed over all ranks, of the layers whose size grows with the square of the number
-                                            ///< of points
+  double bytes() const;                     ///< memory in bytes, over all ranks, of the layers whose size grows like N^2
   stokes::Evaluations evaluations() const;  ///< kernel evaluations of the layers that this object has created
 
  private:

@@ -53,13 +53,11 @@ struct SolverOptions {
                                       ///< matrix-free if far sums use a treecode, unless there are rigid bodies and the matrix is small
   std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values:
                                                   ///< preconditioner of one system for all unknowns (TubeSystem)
-  std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
-                                                  ///< factors are large, see Wall)
+  std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (see WallSolver)
   std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind (RigidParticles), first kind
                                       ///< (RigidTractions), or auto (Scene::by_tractions)
   std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
-  std::string frozen_operator = "nodal";          ///< frozen single layer of the Jacobian: nodal (NodalOperator) or assembled
-                                                  ///< (FrozenOperator)
+  std::string frozen_operator = "nodal";          ///< single layer of the Jacobian: nodal (NodalOperator) or assembled (FrozenOperator)
   membrane::DirectSolverOptions direct;
 
   /// Returns the options of all kinds of systems.

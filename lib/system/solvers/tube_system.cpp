@@ -46,8 +46,7 @@ void product(const TubeSystem& s, const In& x, Out r) {
   Net answer = tube.wall_on_particle(traction) + drop * tube.inlet_on_particle();
   if (tube.cell()) answer += tube.images_on_particle(load, v);
   r.velocity = s.unbounded(v, load) - s.control_values(answer);
-  r.wall_traction = tube.wall_on_wall(traction) - drop * tube.inlet_on_wall() - tube.velocity_on_wall(v);
-  if (load.size() > 0) r.wall_traction -= tube.load_on_wall(load);
+  r.wall_traction = tube.wall_on_wall(traction) - drop * tube.inlet_on_wall() - tube.particle_on_wall(load, v);
   r.pressure_drop = x.pressure_drop - s.unit * tube.pressure_of(load, v);
   for (std::size_t k = 0; k < s.constrained.size(); ++k) {
     const spline::Block& block = s.constrained[k];
@@ -71,7 +70,7 @@ void precondition(const TubeSystem& s, const In& r, Out x, bool triangular) {
   if (triangular) {
     const Net v = x.velocity;
     x.pressure_drop += s.unit * s.tube.pressure_of({}, v);
-    on_wall += x.pressure_drop / s.unit * s.tube.inlet_on_wall() + s.tube.velocity_on_wall(v);
+    on_wall += x.pressure_drop / s.unit * s.tube.inlet_on_wall() + s.tube.particle_on_wall({}, v);
   }
   x.wall_traction = s.unit * s.tube.solve_wall(on_wall);
 }
@@ -98,7 +97,7 @@ Eigen::VectorXd TubeSystem::right_hand_side(const Net& velocity, const Net& f) c
   Out rows(*this, all.data());
   rows.velocity = velocity;
   if (tube.cell()) rows.velocity += control_values(tube.images_on_particle(f));
-  rows.wall_traction = tube.load_on_wall(f);
+  rows.wall_traction = tube.particle_on_wall(f);
   rows.pressure_drop = unit * tube.pressure_of(f);
   return all;
 }

@@ -52,6 +52,18 @@ TEST(WallRepulsion, TangentIsSymmetricAndAllButTheDerivativeOfTheLoad) {
   EXPECT_LT((hu - (ahead - behind) / (2 * h)).norm(), 0.15 * hu.norm());
 }
 
+TEST(WallRepulsion, OnTheAxisThereIsNoForceAcrossIt) {
+  Sphere of;
+  Net x = of.x, d = Net::Zero(x.rows(), 3), hu = d;
+  x.rightCols(2).setZero();
+  of.repulsion.add_work(x, of.elements, d, {});
+  of.repulsion.linearise(x, of.elements, {});
+  of.repulsion.add_tangent(of.x, hu);
+  EXPECT_TRUE(d.allFinite() && hu.allFinite());
+  EXPECT_TRUE(d.rightCols(2).isZero(0));
+  EXPECT_GT(d.col(0).norm(), 0);
+}
+
 TEST(WallRepulsion, PartsAddUpToTheWhole) {
   const Sphere of;
   const std::span<const int> all(of.elements);

@@ -112,6 +112,21 @@ TEST(Capsule, DefectIsWhatAVelocityIsLacking) {
     }
 }
 
+TEST(Capsule, AnEvaluationIsSolvedAgainToASmallerError) {
+  Fixture f;
+  f.parameters.particles.front().viscosity_ratio = 5;
+  f.parameters.solvers.tolerance = 1e-12;
+  Capsule capsule = f.capsule();
+  const Net v = f.capsule().velocity(f.deformed());
+  const std::shared_ptr<Evaluation> e = capsule.evaluation(f.deformed(), {}, 0);
+  e->solve(1e-2);
+  EXPECT_GT((e->velocity() - v).norm(), 1e-6 * v.norm());
+  e->solve();
+  EXPECT_LT((e->velocity() - v).norm(), 1e-10 * v.norm());
+  e->solve(1e-2);
+  EXPECT_EQ(capsule.counts().evaluations, 2) << "the exact solution also serves as a rough one";
+}
+
 TEST(Capsule, VelocityFollowsAFlowThatChangesInTime) {
   Fixture f;
   f.flow.history.emplace();

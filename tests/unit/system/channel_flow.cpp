@@ -107,7 +107,7 @@ struct InStraightChannel {
     options.channel.reset(), options.axial_elements = around;
     const stokes::DuctFlow flow(options, 1.7, 1.3);
     tube = std::make_unique<Tube>(surface::tube_wall(flow.outline(), options, 2 * pi), flow, space, parameters, phases);
-    for (Tube* one : {tube.get(), channel.get()}) one->set_reference(x), one->place(x);
+    for (Tube* one : {tube.get(), channel.get()}) one->particles().set_reference(x), one->place(x);
   }
 };
 

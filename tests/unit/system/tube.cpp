@@ -49,7 +49,7 @@ struct Fixture {
     parameters.viscosity = viscosity, parameters.viscosity_ratio = ratio;
     parameters.quadrature.tolerance = 1e-6;
     tube = std::make_unique<Tube>(surface::tube_wall(flow->outline(), options, 2 * pi), *flow, space, parameters, phases);
-    tube->set_reference(x);
+    tube->particles().set_reference(x);
     tube->place(x);
   }
 };
@@ -67,7 +67,7 @@ TEST(Tube, SolvesTheBlockSystem) {
   const Tube::Response r = s.tube->respond(s.f, s.v);
   EXPECT_NEAR(r.pressure_drop, s.tube->pressure_of(s.f, s.v), 1e-12 * std::abs(r.pressure_drop));  // round-off
   const Net wall = s.tube->wall_on_wall(r.wall_traction) - r.pressure_drop * s.tube->inlet_on_wall(),
-            particle = s.tube->load_on_wall(s.f) + s.tube->velocity_on_wall(s.v);
+            particle = s.tube->particle_on_wall(s.f, s.v);
   EXPECT_LT((wall - particle).norm() / particle.norm(), 1e-11);
   const Net answer = s.tube->wall_on_particle(r.wall_traction) + r.pressure_drop * s.tube->inlet_on_particle();
   EXPECT_LT((answer - r.velocity).norm() / answer.norm(), 1e-12);
@@ -124,7 +124,7 @@ TEST(Tube, ServesAnotherMeshOfTheParticle) {
   const spline::Space space = spline::space(finer, spline::ExtraordinaryRule::g1);
   const Net x = surface::resting_shape(space, finer, s.shape);
   Tube other(*s.tube, space);
-  other.set_reference(x);
+  other.particles().set_reference(x);
   other.place(x);
   const auto work = [](Tube& tube, const Net& net) {  // for a constant load and a rigid velocity; independent of the mesh
     const Net load = Eigen::RowVector3d(1, 0.5, 0).replicate(net.rows(), 1);
