@@ -38,15 +38,16 @@ using RigidConditions = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 /// shape (N, 3).
 ///
 /// dE/dx and the product (d2E/dx2) dx are evaluated in two phases. In the local phase, each rank adds the contributions of its elements to their
-/// control points (add_work(), add_tangent()). Then the caller sums the result over ranks and, if the scene is symmetric, over images. In the global
-/// phase, every rank adds the same terms to all points (add_global_work(), add_global_tangent()). A load may need further
-/// nets in the global phase, for example the gradient of the total area. The local phase adds to these nets, and the caller sums them in the same
-/// way. Uses no MPI.
+/// control points (add_work(), add_tangent()). Elements of different ranks overlap: row A of the result is complete on the rank that owns control
+/// point A, which evaluates all elements that touch A, and the caller copies complete rows to all ranks and to symmetric images. Row A must therefore
+/// come from elements that touch A only. In the global phase, every rank adds the same terms to all points (add_global_work(), add_global_tangent()).
+/// A number of the whole surface is formed there, from further nets that the local phase fills under the same rule, for example the gradient of the
+/// total area (WholeMembrane). Uses no MPI.
 class Load {
  public:
   virtual ~Load() = default;
 
-  virtual std::size_t n_sums() const { return 0; }  ///< number of further nets that the caller sums over ranks, in addition to `work`
+  virtual std::size_t n_sums() const { return 0; }  ///< number of further nets that the caller completes, in addition to `work`
 
   /// Adds the contributions of these elements to dE/dx (`work`), and to the nets `sums`, which add_global_work() receives summed over all elements.
   /// Each net has the shape (N, 3).

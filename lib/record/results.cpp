@@ -210,8 +210,10 @@ void Results::set_aside(const std::vector<output::Damaged>& damaged, const std::
 
 void Results::record(Columns& row) {
   coupling::take_first(row.values());
-  if (!std::ranges::equal(row.all(), columns_.all(), {}, &Column::name, &Column::name))
-    throw std::logic_error("the columns of a row are not those that were declared");
+  const auto [own, declared] = std::ranges::mismatch(row.all(), columns_.all(), {}, &Column::name, &Column::name);
+  if (own != row.all().end() || declared != columns_.all().end())
+    throw std::logic_error("a row has the column " + (own == row.all().end() ? "none" : own->name) + " where the run declared " +
+                           (declared == columns_.all().end() ? "none" : declared->name));
   write([&] {
     record_->append(row.values());
     if (record_->rows() == 1 || Clock::now() >= due_) write_files();

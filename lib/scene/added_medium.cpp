@@ -43,7 +43,7 @@ void DomainOptions::reject_medium(const Scene& scene, Rejections& to) const {
 }
 
 void check_flow(const stokes::FlowOptions& flow, const stokes::Medium& medium, const std::string& name) {
-  for (const stokes::AmbientFlow& ambient : stokes::AmbientFlow(flow).directions())
+  for (const stokes::AmbientFlow& ambient : stokes::AmbientFlow(flow).rotated_copies())
     if (const std::string reason = medium.refusal(ambient); !reason.empty())
       throw UserError(name + " and Flow/type `" + flow.type + "` contradict each other: " + reason);
 }

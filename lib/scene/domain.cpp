@@ -49,7 +49,7 @@ namespace {
 bool repeats(const stokes::AmbientFlow& flow, const Eigen::Ref<const Eigen::MatrixXd>& vectors) {
   if (flow.affine()) return true;
   const Net places = vectors.norm() * (Net(4, 3) << 0.1, 0.2, -0.3, 0.5, -0.1, 0.2, -0.4, 0.3, 0.6, 0.2, 0.7, 0.1).finished();
-  for (const stokes::AmbientFlow& one : flow.directions())
+  for (const stokes::AmbientFlow& one : flow.rotated_copies())
     for (Eigen::Index d = 0; d < vectors.cols(); ++d) {
       const Net here = one.velocities(places), there = one.velocities(places.rowwise() + vectors.col(d).transpose());
       if ((there - here).norm() > 1e-9 * here.norm()) return false;

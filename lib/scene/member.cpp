@@ -122,6 +122,22 @@ std::unique_ptr<Body> stacked_body(const std::vector<Member>& members) {
   return all;
 }
 
+namespace {
+
+/// Throws UserError if a load changes when its particle is displaced by a period of the lattice.
+void check_periods(const Scene& scene, const coupling::LoadList& loads) {
+  const auto cell = scene.domain.cell();
+  for (const auto& load : loads) {
+    if (!cell) return;
+    const Eigen::MatrixXd change = load->rigid_conditions().leftCols<3>() * cell->vectors().leftCols(cell->n());
+    if (change.size() > 0 && change.norm() > 1e-9 * cell->vectors().norm())
+      throw UserError("Membrane/loads" + (scene.name.empty() ? "" : " of Particles/" + scene.name) +
+                      " and Domain contradict each other: a load that depends on the position of the particle is not the same in all cells.");
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube, const std::optional<coupling::SolidScene>& solids) {
   const Scene& scene = members.front().scene;
@@ -136,6 +152,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.viscosity_ratio = own.particle.viscosity_ratio;
     particle.material = material(own, body);
     particle.loads = loads(own, body, all.wall.get());
+    check_periods(own, particle.loads);
     particle.radius = body.radius;
     if (own.particle.rigid()) particle.rigid = rigid(own, body);
     particle.interface_motion = own.interface_motion();

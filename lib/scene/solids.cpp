@@ -50,7 +50,7 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
   const stokes::AmbientFlow flow(scene.flow);
   std::vector<Solids::Solid> all = plates(scene, cell, flow);
   // Between plates, the pressure gradient is part of the ambient flow: it is mu times the Laplacian of the ambient velocity (2.20).
-  const Vec3 pressure_gradient = scene.wall.solid ? Vec3(2 * scene.flow.viscosity * flow.curvature().trace() * flow.direction())
+  const Vec3 pressure_gradient = scene.wall.solid ? Vec3(2 * scene.flow.viscosity * flow.curvature().trace() * flow.quadratic_direction())
                                                   : scene.flow.pressure_gradient.value_or(Vec3::Zero());
   for (const Post& post : scene.posts) {
     const Vec3 period = period_of(post, cell);

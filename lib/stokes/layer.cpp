@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <typeinfo>
 #include <utility>
 
 #include "base/indices.hpp"
@@ -31,7 +32,9 @@ void Layer::use(std::unique_ptr<LayerMedium> medium) {
 
 void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
   constexpr int least_images = 27;
-  if (const auto* lattice = dynamic_cast<const Lattice*>(medium_.get()); lattice && lattice->is(cell, how)) return;
+  const auto* lattice = dynamic_cast<const Lattice*>(medium_.get());
+  if (lattice && lattice->is(cell, how)) return;
+  assert((lattice || typeid(*medium_) == typeid(LayerMedium)) && "a layer has one medium, or is on a lattice");
   if (!tree_ && sums_by_tree(least_images * n_nodes(), sources_.surface.options)) tree_.emplace(tree_tolerance(), sources_.precision());
   use(std::make_unique<Lattice>(cell, how));
 }

@@ -49,13 +49,14 @@ bool LayerSources::place(const Net& x, Measure measure) {
 }
 
 void LayerSources::values(const Net& field, NodeVectors& value) {
-  surface.panels.bezier(field, bezier_f);
-  node_values(surface.panels, bezier_f, value);
+  surface.panels.bezier(field, bezier_field_);
+  node_values(surface.panels, bezier_field_, value);
 }
 
 void LayerSources::set_density(const Net& f) {
   const auto clock = phases.time("setup");
-  values(f, density);
+  surface.panels.bezier(f, bezier_f);
+  node_values(surface.panels, bezier_f, density);
   if (!single()) return;
   for (auto& component : density)
     for (int k = 0; k < n_nodes(); ++k) component[k] *= weight[k];

@@ -110,6 +110,7 @@ class LayerSources {
   std::vector<double> factor_;
   std::optional<Measure> measure_;  // area of the current `weight`
   Reference reference_;
+  std::vector<double> bezier_field_;
   std::vector<Pack> point_weights_, scratch_;
 };
 

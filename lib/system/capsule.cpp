@@ -110,7 +110,6 @@ std::shared_ptr<Evaluation> Capsule::evaluate(const Net& x, const Net& guess, do
 
 std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocity, double distance) {
   if (!latest_ || !same(x, latest_->x())) return std::make_shared<Evaluation>(*this, x, velocity, evaluated_about(x, distance) ? latest_ : nullptr);
-  if (velocity.size() > 0) latest_->known_ = velocity;
   return latest_;
 }
 

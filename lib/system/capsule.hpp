@@ -68,14 +68,15 @@ class RigidTractions;
 /// Plates and posts: the velocity (2.47) that they cause is added to the right-hand side and to B in the same way.
 class Capsule : public Dynamics {
  public:
-  /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`. The motion conserves `kept_volume` of each particle if it is set, and
-  /// otherwise the volume of the particle in `initial`.
-  Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
+  /// `unstressed` and `rest`: control nets of the unstressed and of the resting surfaces, of shape (N, 3) on `space`. The motion conserves
+  /// `kept_volume` of each particle if it is set, and otherwise the volume of the particle in `rest`.
+  Capsule(const spline::Space& space, const Net& unstressed, const Net& rest, const stokes::AmbientFlow& flow,
           const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;
 
   /// Evaluates the shape x: loads, unknowns and velocities. Returns the cached result if x is the shape evaluated last and forces and flow have not
-  /// changed. `guess`, if given, is the initial guess of the linear solve. `error`: see Evaluation::solve.
+  /// changed. `guess`, if given, is the initial guess of the linear solve for the velocity, where GMRES solves for it alone. `error`: see
+  /// Evaluation::solve.
   std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {}, double error = 0);
 
   /// Returns an evaluation of the shape x that computes each quantity at its first use. `velocity`: velocity of the control points; no rows if
@@ -222,7 +223,7 @@ class Capsule : public Dynamics {
   void note(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
 
   const spline::Space& space_;
-  Net initial_;
+  Net rest_;
   Surroundings surroundings_;
   CapsuleParameters parameters_;
   Phases& phases_;

@@ -29,24 +29,24 @@ std::unique_ptr<InterfaceMotion> interface_motion(const spline::Space& space, co
 
 }  // namespace
 
-Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
+Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& rest, const stokes::AmbientFlow& flow,
                  const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
-    : space_(space), initial_(initial), surroundings_{flow, {}, {}}, parameters_(completed(parameters, space)), phases_(phases),
+    : space_(space), rest_(rest), surroundings_{flow, {}, {}}, parameters_(completed(parameters, space)), phases_(phases),
       layout_(space, parameters_.symmetry, phases),
       targets_(space, unstressed, parameters_, layout_),
       membranes_(space, unstressed, parameters_, layout_, phases),
-      volumes_(space, initial, particles(), layout_, phases),
+      volumes_(space, rest, particles(), layout_, phases),
       layers_(space, unstressed, parameters_, layout_, targets_, phases),
       frozen_(space, membranes_.unstressed(), parameters_, layout_, targets_, membranes_.mass_matrix(), layers_),
       duct_{std::move(tube), {}, {}, {}},
-      bodies_{RigidParticles(particles(), initial, parameters.viscosity, parameters.quadrature), {}, {}},
+      bodies_{RigidParticles(particles(), rest, parameters.viscosity, parameters.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
       jacobian_(parameters_, surroundings_.flow, flow_at_targets(), targets_, membranes_, volumes_, frozen_, duct_.tube.get(), interface_.get(),
                 counts_) {
   if (parameters.solvers.rigid_bodies == "first kind" && !bodies_.rigid.empty())
     bodies_.tractions =
-        std::make_unique<RigidTractions>(space, membranes_.unstressed(), initial, particles(), parameters.viscosity, parameters.quadrature,
+        std::make_unique<RigidTractions>(space, membranes_.unstressed(), rest, particles(), parameters.viscosity, parameters.quadrature,
                                          parameters.solvers, parameters.medium, duct_.tube.get(), layout_.points(), ranks);
   if (parameters_.cell) deform_cell(0);
   make_solid_response();

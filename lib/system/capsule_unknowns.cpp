@@ -43,7 +43,7 @@ Net Capsule::velocity_product(const Net& x, const Net& v, const Net& load) {
 /// Returns the preconditioner of the velocity system at x, from inverses for isolated rigid bodies and for the thin films between bodies. Empty if no
 /// such inverses are stored. Valid until the bodies move.
 Apply Capsule::velocity_preconditioner(const Net& x) {
-  if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, initial_, parameters_.quadrature);
+  if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, rest_, parameters_.quadrature);
   if (bodies_.isolated->empty()) return {};
   const auto films = std::make_shared<FilmInverses>(particles(), *bodies_.isolated, bodies_.rigid, x,
                                                     [&](std::span<const int> sites) { return layers_.double_rows(sites); });

@@ -50,7 +50,7 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
                            const stokes::AmbientFlow& flow, const LoadList& loads, const stokes::Medium* medium,
                            const std::optional<stokes::PeriodicCell>& cell) {
   if (options.use == "none") return surface::Symmetry(space.n_points);
-  const std::vector<stokes::AmbientFlow> flows = flow.directions();
+  const std::vector<stokes::AmbientFlow> flows = flow.rotated_copies();
   return surface::symmetry(space, nets, [&](const surface::Image& image) {
     return (!medium || medium->keeps(image.signs)) && (!cell || keeps(*cell, image)) && admit(loads, image) &&
            std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });

@@ -81,7 +81,7 @@ struct RigidSphere {
   stokes::AmbientFlow flow;
   std::unique_ptr<coupling::Tube> tube;
   std::unique_ptr<coupling::RigidTractions> tractions;
-  std::unique_ptr<coupling::FreeBodyInTube> body;
+  std::unique_ptr<coupling::BoundedFreeBody> body;
   double radius;
 
   RigidSphere(Sphere given, const Duct& duct, double tolerance = 1e-7) : sphere(std::move(given)), flow(duct.ambient()), radius(sphere.radius) {
@@ -90,7 +90,7 @@ struct RigidSphere {
     solvers.tolerance = 1e-9;
     tube = std::make_unique<coupling::Tube>(duct.wall, *duct.flow, sphere.space, parameters, phases);
     tractions = std::make_unique<coupling::RigidTractions>(sphere.space, sphere.net, radius, 1.0, parameters.quadrature, solvers, ranks, tube.get());
-    body = std::make_unique<coupling::FreeBodyInTube>(*tractions, sphere.net, sphere.centre, radius, flow, 1.0);
+    body = std::make_unique<coupling::BoundedFreeBody>(*tractions, sphere.net, sphere.centre, radius, flow, 1.0);
   }
 
   /// Axial force on the fluid divided by 6 pi mu a, and the pressure drop.

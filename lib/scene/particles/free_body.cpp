@@ -42,13 +42,15 @@ class Free : public ParticleSystem {
   void forget_recycled() override { tractions_.forget_recycled(); }
   bool adapt(motion::State&, RunTotals&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
-  stokes::Evaluations kernel_evaluations() const override { return tractions_.kernel_evaluations(); }
+  stokes::Evaluations kernel_evaluations() const override {
+    return tractions_.kernel_evaluations() + (tube_ ? tube_->kernel_evaluations() : stokes::Evaluations());
+  }
 
   coupling::OperationCounts counts() const override {
     coupling::OperationCounts sum = before_;
     sum.evaluations += free_->evaluations();
     sum.assemblies += 1;
-    sum.solves += tube_ || scene_.wall.present ? free_->evaluations() : body_.flow.affine() ? 11 : 29;
+    sum.solves += tube_ || scene_.medium() ? free_->evaluations() : body_.flow.affine() ? 11 : 29;
     sum.solver_iterations += free_->solver_iterations();
     return sum;
   }
@@ -98,7 +100,7 @@ class Free : public ParticleSystem {
   static std::unique_ptr<coupling::LoneRigidBody> driven(const Scene& scene, const Body& body, coupling::RigidTractions& tractions) {
     const Vec3& centre = scene.particle.shape.center;
     if (scene.tube.present || scene.medium())
-      return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
+      return std::make_unique<coupling::BoundedFreeBody>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
                                                         rigid(scene, body));
     return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, rigid(scene, body));
   }

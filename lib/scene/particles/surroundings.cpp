@@ -9,12 +9,15 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the force of all particles on the fluid.
+/// Returns the force of all particles on the fluid. That of a deformable particle is the virtual work of its loads in a translation; elastic loads
+/// do no work.
 Vec3 force_on_fluid(const std::vector<Member>& members, coupling::Evaluation& here) {
   Vec3 force = Vec3::Zero();
   for (std::size_t p = 0; p < members.size(); ++p) {
     const Scene& one = members[p].scene;
-    force += one.particle.rigid() ? here.rigid().force(p) : Vec3(members[p].body->volume * one.body_force() + one.membrane.forces.total());
+    if (one.particle.rigid()) force += here.rigid().force(p);
+    else if (one.loads.empty()) force += members[p].body->volume * one.body_force() + one.membrane.forces.total();
+    else force -= members[p].own(here.work()).colwise().sum().transpose();
   }
   return force;
 }

@@ -20,7 +20,7 @@ struct ProgressRow {
   motion::StepReport step = {};  ///< report of the time step that ended at this row
   double wall_seconds = 0;
   std::optional<long> evaluations = {};  ///< number of velocity evaluations in a search for steady shapes, summed over all systems (one per value of
-                                         ///< the continuation parameters); if not set, the number in `work` is used
+                                         ///< the continuation parameters); if not set, the number in `counts` is used
   double time = 0;
   coupling::OperationCounts counts = {};
   void add_columns(const Scene& scene, Columns& to) const;

@@ -78,7 +78,6 @@ bool AmbientFlow::at(double time, double start) {
   const FlowHistory::Moment moment = history_->at(time, start);
   if (moment.amplitude == moment_.amplitude && moment.turn == moment_.turn) return false;
   moment_ = moment;
-  field_ = steady_;
   field_ = turned(moment.turn, moment.amplitude).field_;
   return true;
 }
@@ -91,20 +90,22 @@ Mat3 AmbientFlow::deformation(double time) const {
   return history_ ? history_->deformation(steady, time) : exponential(time * steady);
 }
 
-/// If the direction changes in time, returns the flow at seven angles. A symmetry at these angles holds at every angle, because the field is a
-/// polynomial of degree three in the sine and cosine of the angle, which seven values determine.
-std::vector<AmbientFlow> AmbientFlow::directions() const {
+/// A symmetry at seven angles holds at every angle, because a polynomial flow is a polynomial of degree three in the sine and cosine of the angle,
+/// which seven values determine. A registered flow, which may be of any form, is compared at 61 angles.
+std::vector<AmbientFlow> AmbientFlow::rotated_copies() const {
   if (!history_ || !history_->angles) return {*this};
   std::vector<AmbientFlow> all;
-  for (int k = 0; k < 7; ++k) all.push_back(turned(history_->turn(360. / 7 * k), 1));
+  const int n = user_ ? 61 : 7;
+  for (int k = 0; k < n; ++k) all.push_back(turned(history_->turn(360. / n * k), 1));
   return all;
 }
 
-/// Returns the flow rotated by Q about the origin and multiplied by the amplitude a.
+/// Returns the flow at amplitude 1 rotated by Q about the origin and multiplied by the amplitude a.
 AmbientFlow AmbientFlow::turned(const Mat3& q, double a) const {
   AmbientFlow flow = *this;
   flow.moment_ = {a, q};
-  flow.field_ = {a * q * field_.velocity, a * q * field_.gradient * q.transpose(), a * q * field_.direction, q * field_.curvature * q.transpose()};
+  flow.field_ = {a * q * steady_.velocity, a * q * steady_.gradient * q.transpose(), a * q * steady_.direction,
+                 q * steady_.curvature * q.transpose()};
   return flow;
 }
 

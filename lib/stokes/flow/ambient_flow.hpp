@@ -40,7 +40,7 @@ class AmbientFlow {
 
   /// Returns this flow. If its direction changes in time, returns copies of it rotated to several directions instead. A symmetry of all these copies
   /// is a symmetry of the flow in every direction.
-  std::vector<AmbientFlow> directions() const;
+  std::vector<AmbientFlow> rotated_copies() const;
 
   /// Returns the velocity at a point, units length/time. In a duct, evaluating many points at once is much faster.
   Vec3 velocity(const Vec3& x) const;
@@ -62,7 +62,7 @@ class AmbientFlow {
 
   /// Returns d (`direction`) and H (`curvature`) of the quadratic part of the flow (2.20). Both are 0 for an affine flow. They do not include a
   /// registered flow, which need not be quadratic.
-  const Vec3& direction() const { return field_.direction; }
+  const Vec3& quadratic_direction() const { return field_.direction; }
   const Mat3& curvature() const { return field_.curvature; }
 
   /// Returns the rate that defines the capillary number, units 1/time: FlowOptions::rate(), or in a duct the mean velocity divided by the radius R_T.

@@ -54,13 +54,6 @@ Mat3 strain_of_products(const Eigen::Matrix<double, 5, 1>& p) {
   return e;
 }
 
-Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre) {
-  Net u(x.rows(), 3);
-  for (Eigen::Index a = 0; a < u.rows(); ++a)
-    u.row(a) = (motion.velocity + motion.angular_velocity.cross(x.row(a).transpose() - centre)).transpose();
-  return u;
-}
-
 RigidModes::RigidModes(RigidTractions& body, const Net& surface, const Vec3& centre, bool quadratic)
     : response(6, affine_modes + (quadratic ? quadratic_modes : 0)) {
   body.place(surface, {&centre, 1});
@@ -109,7 +102,7 @@ Eigen::VectorXd FreeBody::amplitudes(const Net& place) const {
   Eigen::VectorXd a(modes_.response.cols());
   a.segment<5>(6) = -strain_components(0.5 * (l + l.transpose()));
   if (!flow_.affine()) {
-    const Vec3 d = turn.transpose() * flow_.direction();
+    const Vec3 d = turn.transpose() * flow_.quadratic_direction();
     const Mat3 h = turn.transpose() * flow_.curvature() * turn;
     for (int k = 0; k < quadratic_modes; ++k) {
       const auto [i, b, c] = unit_quadratic(k);

@@ -1,5 +1,5 @@
 #pragma once
-// Rigid body, free or driven by a given force and torque, in an unbounded flow, in a tube or near a plane wall.
+// Rigid body, free or driven by a given force and torque, in an unbounded flow, in a tube or in a medium.
 
 #include <optional>
 #include <vector>
@@ -106,18 +106,18 @@ class FreeBody : public LoneRigidBody {
                                                     ///< then unit quadratic flows
 };
 
-/// A free body in a tube or near a plane wall. Equation (2.40) is solved at each position. In a tube the force density f and the motion (U, Omega)
-/// are the unknowns of one system in body-fixed axes,
+/// A free body in a tube or in a medium such as that in front of a plane wall. Equation (2.40) is solved at each position. In a tube the force
+/// density f and the motion (U, Omega) are the unknowns of one system in body-fixed axes,
 ///
 ///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = F,   int r x f dG = T,
 ///
-/// where u(f) is the velocity that wall and pressure drop cause for the load f (Tube::respond), and F, T are the given force and torque. The single
-/// layer A does not depend on the position. The preconditioner is the inverse of the system without the term u(f). The initial guess is the previous
-/// solution. Calls are collective. Repeated calls at one position take one solve. If the body intersects the wall, the motion is NaN.
-class FreeBodyInTube : public LoneRigidBody {
+/// where u(f) is the velocity that wall and pressure drop cause for the load f (Tube::respond), and F, T are the given force and torque. In a tube
+/// the single layer A does not depend on the position. The preconditioner is the inverse of the system without the term u(f). The initial guess is
+/// the previous solution. Calls are collective. Repeated calls at one position take one solve. If the body intersects the wall, the motion is NaN.
+class BoundedFreeBody : public LoneRigidBody {
  public:
-  /// `body`: equation (2.40) of the traction on the body, including the tube or the plane wall. `surface`: net of the body in its initial position.
-  FreeBodyInTube(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
+  /// `body`: equation (2.40) of the traction on the body, including the tube or the medium. `surface`: net of the body in its initial position.
+  BoundedFreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
                  const Rigid& driven = {});
 
   void at(double time, double start) override {
@@ -139,7 +139,7 @@ class FreeBodyInTube : public LoneRigidBody {
   };
   const Solution& solution(const Net& place) const;
   Solution in_tube(const Net& place) const;
-  Solution at_wall(const Net& place) const;
+  Solution in_medium(const Net& place) const;
 
   RigidTractions& body_;
   double viscosity_;

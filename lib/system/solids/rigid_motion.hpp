@@ -29,6 +29,11 @@ inline RigidMotion unit_motion(int k) {
 
 /// Returns U + Omega x (x - centre) at the points x, one row per point. If x is a control net, the result is the exact control net of this velocity,
 /// because the basis functions sum to one.
-Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre);
+inline Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre) {
+  Net u(x.rows(), 3);
+  for (Eigen::Index a = 0; a < u.rows(); ++a)
+    u.row(a) = (motion.velocity + motion.angular_velocity.cross(x.row(a).transpose() - centre)).transpose();
+  return u;
+}
 
 }  // namespace tanktread::coupling

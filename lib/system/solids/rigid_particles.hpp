@@ -94,7 +94,7 @@ class RigidParticles {
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
   /// Returns whether the bodies p and q have equal shapes and orientations at rest.
-  bool alike(std::size_t p, std::size_t q) const { return body(p).self_correction == body(q).self_correction; }
+  bool alike(std::size_t p, std::size_t q) const { return body(p).self_correction && body(p).self_correction == body(q).self_correction; }
 
   /// Returns the correction (SelfCorrection) of the velocity that the unit load k of body p induces on the body itself, in the axes of the body at
   /// rest.
@@ -123,7 +123,7 @@ class RigidParticles {
     Mat3 turn = Mat3::Identity();
     Net density;
     RigidMotion motion;
-    Vec3 force, torque;
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 
     Rigid given() const;
     RigidMotion mean(const Net& w) const;      // rigid motion <w> of (2.23): least-squares fit over the body. `w`: net of all particles

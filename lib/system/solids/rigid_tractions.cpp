@@ -250,6 +250,7 @@ bool RigidTractions::inside(const Net& x) const {
 }
 
 Mat3 RigidTractions::moment(std::size_t p) {
+  reports_.clear();
   if (walls_.tube) return bodies_[p].moment;
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(weighted_residual_.size(), strains);
   set_unit_strains(sites_, particles_[p].block, centres_[p], velocities);

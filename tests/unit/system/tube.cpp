@@ -163,7 +163,7 @@ TEST(Tube, HasChecksThatAgreeForAForceFreeFlow) {
   EXPECT_NEAR(routes.pressure_by_force / pushed.pressure_drop, 1, 0.02);
 }
 
-TEST(FreeBodyInTube, IsTheSameTurnedAndMoved) {
+TEST(BoundedFreeBody, IsTheSameTurnedAndMoved) {
   Fixture s(1);
   SolverOptions solvers;
   solvers.tolerance = 1e-9;
@@ -172,7 +172,7 @@ TEST(FreeBodyInTube, IsTheSameTurnedAndMoved) {
   RigidTractions tractions(s.space, s.x, 0.5, viscosity, quadrature, solvers, s.ranks, s.tube.get());
   stokes::FlowOptions options;
   options.type = "duct", options.mean_velocity = 1.3;
-  const FreeBodyInTube body(tractions, s.x, s.shape.center, 0.5, stokes::AmbientFlow(options, s.flow), viscosity);
+  const BoundedFreeBody body(tractions, s.x, s.shape.center, 0.5, stokes::AmbientFlow(options, s.flow), viscosity);
   const Net here = placed(s.shape.center);
   const RigidMotion motion = body.motion(here);
   const double drop = body.pressure_drop(here);

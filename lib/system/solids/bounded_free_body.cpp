@@ -7,14 +7,14 @@
 
 namespace tanktread::coupling {
 
-FreeBodyInTube::FreeBodyInTube(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
+BoundedFreeBody::BoundedFreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
                                double viscosity, const Rigid& driven)
     : LoneRigidBody(surface, centre, radius, flow, driven), body_(body), viscosity_(viscosity) {
   if (body.tube()) modes_.emplace(body, surface, centre, false);
 }
 
 /// Returns the motion, force density and stresslet of the body at the position `place`.
-const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const {
+const BoundedFreeBody::Solution& BoundedFreeBody::solution(const Net& place) const {
   if (place_.size() > 0 && place == place_) return solution_;
   const Net x = surface(place);
   if (body_.tube()) body_.tube()->place(x);
@@ -22,14 +22,14 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
   if (!body_.inside(x))
     solution_.motion = {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};
   else
-    solution_ = body_.tube() ? in_tube(place) : at_wall(place);
+    solution_ = body_.tube() ? in_tube(place) : in_medium(place);
   place_ = place;
   return solution_;
 }
 
 /// Returns the pressure drop due to the body, corrected for the collocation error (2.41) by the integral of the residual velocity times f. No further
 /// solve is needed.
-double FreeBodyInTube::pressure_drop(const Net& place) const {
+double BoundedFreeBody::pressure_drop(const Net& place) const {
   Tube* const tube = body_.tube();
   if (!tube) return 0;
   const auto& [motion, f, stresslet] = solution(place);
@@ -42,7 +42,7 @@ double FreeBodyInTube::pressure_drop(const Net& place) const {
 
 /// Solves for the force density f and the motion U, Omega. The unknowns are scaled to velocities: f R_C/mu, U and Omega R_C. The force balance is
 /// divided by 6 pi mu R_C and the torque balance by 6 pi mu R_C^2, so that their residuals are velocities too.
-FreeBodyInTube::Solution FreeBodyInTube::in_tube(const Net& place) const {
+BoundedFreeBody::Solution BoundedFreeBody::in_tube(const Net& place) const {
   using Six = Eigen::Matrix<double, 6, 1>;
   const Mat3 turn = rotation_of(place);
   const Eigen::Index n = surface_.rows();
@@ -82,7 +82,7 @@ FreeBodyInTube::Solution FreeBodyInTube::in_tube(const Net& place) const {
           -turn * body_.integrals(0, f).stresslet() * turn.transpose()};
 }
 
-FreeBodyInTube::Solution FreeBodyInTube::at_wall(const Net& place) const {
+BoundedFreeBody::Solution BoundedFreeBody::in_medium(const Net& place) const {
   const Vec3 centre = centre_of(place);
   body_.solve(surface(place), {&centre, 1}, {&driven_, 1}, flow_);
   const SolvedBody& found = body_.bodies().front();
