@@ -3,7 +3,7 @@
 # Ducts that repeat: several particles in as many periods do what one does; the seam of the wall is nowhere; mistakes are told.
 import math
 
-from harness import check, deck, main, refused, run, series
+from harness import check, deck, main, refused, run, series, summary
 
 HEAD = """
 Tanktread:
@@ -65,6 +65,9 @@ Tanktread:
         for name, exact in (("velocity_x1", velocity), ("disturbed_pressure_drop", pressure_drop)):
             off = series("spheres", name)[-1] / exact - 1
             check(abs(off) < 1e-5, f"radius {radius}, {name}: {off}")
+        counts = summary("spheres")["counts"]
+        # one solve for the velocity of the flow, and one for each unit force and torque; a recorded row needs none
+        check(counts["velocity_solves"] == 7 * counts["evaluations"], f"solves are counted again: {counts}")
 
 
 def a_particle_that_has_overtaken_another_by_a_period_does_the_same():
