@@ -181,12 +181,11 @@ class Layer {
   std::unique_ptr<LayerMedium> medium_ = std::make_unique<LayerMedium>();
   std::optional<TreeSum> tree_;                        // clusters for far sums; not set if direct sums are used
   int images_only_ = std::numeric_limits<int>::max();  // first row to which only displaced images contribute, see see_images_only()
-  std::vector<int> fundamental_sites_,
-      everybody_;               // fundamental_sites_: targets in the tree. everybody_: rows whose far sums share() divides
-                                // into parts
-  std::vector<Vec3> tree_at_;   // targets of the tree
-  std::vector<int> tree_rows_;  // rows that the tree computes; empty if the tree must be built anew
-  std::vector<double> stress_;  // sum of T_ijk n_k over the far nodes at the targets, six components each
+  std::vector<int> fundamental_sites_;                 // targets in the tree
+  std::vector<int> everybody_;                         // rows whose far sums share() divides into parts
+  std::vector<Vec3> tree_at_;                          // targets of the tree
+  std::vector<int> tree_rows_;                         // rows that the tree computes; empty if the tree must be built anew
+  std::vector<double> stress_;                         // sum of T_ijk n_k over the far nodes at the targets, six components each
 };
 
 }  // namespace tanktread::stokes
