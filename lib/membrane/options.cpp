@@ -203,13 +203,13 @@ std::shared_ptr<const StrainEnergy> Options::strain_energy() const {
   return std::make_shared<const StrainEnergy>("Membrane/energy", *energy, constants);
 }
 
-double Options::modulus(double viscosity, double rate, double radius) const {
+double Options::modulus(double fluid_viscosity, double rate, double radius) const {
   if (shear_modulus) return *shear_modulus;
   if (surface_tension) return *surface_tension;
   if (rate == 0.0)
     throw UserError("Membrane/capillary number needs a flow with a gradient: give Membrane/" +
                     std::string(law == "surface tension" ? "surface tension" : "shear modulus") + " instead.");
-  return viscosity * rate * radius / capillary_number.value();
+  return fluid_viscosity * rate * radius / capillary_number.value();
 }
 
 double Options::bending(double modulus, double radius) const {

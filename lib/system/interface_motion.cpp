@@ -36,11 +36,11 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
     if (!drop.relaxed) continue;
     relaxed_ = true;
     std::ranges::copy_if(layout.touching(), std::back_inserter(own_elements_), holds);
-    std::vector<int> targets;
-    for (const int i : drop.points) targets.push_back(i - block.first_point);
+    std::vector<int> own;
+    for (const int i : drop.points) own.push_back(i - block.first_point);
     stokes::Layer layer(stokes::Layer::Kernel::single_layer, *particle.space, particle.space->collocation, parameters.quadrature);
     layer.place(block.rows(initial));
-    layer.assemble(targets, drop.layer);
+    layer.assemble(own, drop.layer);
   }
 }
 

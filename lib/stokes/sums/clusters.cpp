@@ -72,7 +72,7 @@ void Clusters::place(const std::vector<double> (&x)[3], std::span<const int> sta
     extent = std::max(extent, high.centre[c] - low.centre[c]);
   }
   step_ = extent > 0 ? std::exp2(std::ceil(std::log2(extent)) - compared_bits) : 1;
-  for (Group& group : groups_) group.centre = group.centre.unaryExpr([this](double x) { return rounded(x); });
+  for (Group& group : groups_) group.centre = group.centre.unaryExpr([this](double coordinate) { return rounded(coordinate); });
   clusters_.clear(), order_.clear();
   const auto lower = [](const Group& one, const Group& other) { return std::ranges::lexicographical_compare(one.centre, other.centre); };
   std::ranges::sort(groups_, lower);  // sorted so that clusters do not depend on the order of the groups of points in the input

@@ -1,5 +1,6 @@
 #include "system/solids/tube.hpp"
 
+#include "system/collocation.hpp"
 #include "system/solids/tube_particle.hpp"
 
 namespace tanktread::coupling {
