@@ -137,10 +137,10 @@ std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
        "length",
        "points of the wall at s: on both sides along x2 (direction before a bend), then on both sides along x3",
        [&] {
-         std::vector<double> all;
+         std::vector<double> sides;
          for (const auto& line : lines)
-           for (const double x : flat(line)) all.push_back(x);
-         return all;
+           for (const double x : flat(line)) sides.push_back(x);
+         return sides;
        }(),
        {4, n, 3}},
       {"velocity", "length/time", "velocity in the empty channel on the centre line", velocity, {n, 3}},
