@@ -8,26 +8,27 @@
 
 namespace tanktread::deck {
 
-/// The name of the root list of every deck.
+/// Name of the root section of every deck.
 inline constexpr const char* root_name = "Tanktread";
 
-/// Returns the root list of the deck in a file (XML if its name ends with .xml, otherwise YAML). Throws UserError if the file cannot be read, is
+/// Returns the root section of the deck in a file (XML if its name ends with .xml, otherwise YAML). Throws UserError if the file cannot be read, is
 /// longer than 1 MB, or holds no deck.
 std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file);
 
-/// Returns the root list of a deck in the XML format of Teuchos. `origin` is the name of the deck in messages.
+/// Returns the root section of a deck in the XML format of Teuchos. `origin` is the name of the deck in messages.
 std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const std::string& origin);
 
-/// Returns the list `Tanktread` inside `whole`, which was read from a deck. Throws UserError if it is missing or not the only list there. `origin` is
-/// the name of the deck in messages.
+/// Returns the section `Tanktread` inside `whole`, which was read from a deck. Throws UserError if it is missing or if `whole` has other sections.
+/// `origin` is the name of the deck in messages.
 std::shared_ptr<Teuchos::ParameterList> root_list(const Teuchos::ParameterList& whole, const std::string& origin);
 
-/// Returns the root list of a deck in YAML 1.2. `origin` is the name of the deck in messages. A word without quotes is true or false (also yes, no),
-/// a whole number, a number, or text. Brackets hold a row of numbers or words, or rows of equal length. Throws UserError, with the line, if the text
-/// is not valid YAML, a key is given twice, sections are nested deeper than 20, or a value has a type that no key of a deck has.
+/// Returns the root section of a deck in YAML 1.2. `origin` is the name of the deck in messages. A scalar without quotes is true or false (also yes,
+/// no), a whole number, a number, or text. Brackets hold a sequence of scalars, or sequences of equal length (the rows of a matrix). Throws
+/// UserError, with the line, if the text is not valid YAML, a key is given twice, sections are nested deeper than 20, or a value has a type that no
+/// key of a deck has.
 std::shared_ptr<Teuchos::ParameterList> yaml_list(const std::string& text, const std::string& origin);
 
-/// Returns the root list of a deck with the one key of `setting`, which is `Section/key=value`. The value is read as YAML.
+/// Returns the root section of a deck that contains only the key of `setting`, which is `Section/key=value`. The value is read as YAML.
 std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting);
 
 }  // namespace tanktread::deck

@@ -13,8 +13,8 @@ namespace tanktread::deck {
 std::optional<double> as_number(const Teuchos::ParameterEntry& entry);
 std::optional<bool> as_truth(const Teuchos::ParameterEntry& entry);
 std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry);
-std::vector<std::string> as_texts(const Teuchos::ParameterEntry& entry);  ///< one text or a row of texts; empty for any other entry
-std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry);  ///< numbers of a row, or of all rows of a table in sequence
+std::vector<std::string> as_texts(const Teuchos::ParameterEntry& entry);  ///< one text, or a sequence of texts; empty for any other entry
+std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry);  ///< numbers of a sequence, or of a matrix row by row
 
 /// Returns whether both entries have the same value. A whole number equals the same number of type double.
 bool same_value(const Teuchos::ParameterEntry& a, const Teuchos::ParameterEntry& b);

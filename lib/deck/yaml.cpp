@@ -67,7 +67,7 @@ Teuchos::ParameterEntry row(const std::vector<Teuchos::ParameterEntry>& entries)
   return Teuchos::ParameterEntry(values);
 }
 
-/// Converts a row of words to an entry of the first of these types that fits all words: whole numbers, numbers, texts.
+/// Converts a sequence of scalars to an array entry of the first of these types that fits all of them: whole numbers, numbers, texts.
 Teuchos::ParameterEntry typed_row(const std::vector<YAML::Node>& nodes) {
   std::vector<Teuchos::ParameterEntry> entries;
   for (const YAML::Node& node : nodes) entries.push_back(typed(node));
@@ -120,7 +120,7 @@ class Walk {
     if (node.IsScalar() && !is_utf8(node.Scalar())) refuse(node, "a word has bytes that are not UTF-8, but a deck is a text file in UTF-8");
   }
 
-  /// Returns the scalars of a sequence, or of a sequence of rows of equal length, row after row.
+  /// Returns the scalars of a sequence, or of a sequence of sequences of equal length (a matrix, row by row).
   std::vector<YAML::Node> words(const YAML::Node& sequence, const std::string& path) {
     std::vector<YAML::Node> out;
     for (const YAML::Node& item : sequence) {
