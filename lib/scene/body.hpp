@@ -93,7 +93,7 @@ void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);
 /// Returns the common symmetry of the scene, the body and the current shape x, restricted to the symmetries that the deck allows the program to use.
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 
-/// Throws UserError if the body does not start inside the medium that the program has added.
+/// Throws UserError if the body does not start inside the fluid of the medium that Domain/kind chooses (see Scene::medium).
 void check_in_medium(const Scene& scene, const Body& body);
 
 /// Returns the loads of a particle on its current mesh, except elasticity and bending. A rigid particle only has the repulsion from the wall. `wall`:

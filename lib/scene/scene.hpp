@@ -142,7 +142,8 @@ struct Scene : ParticleKind {
                                                                             ///< combinations
   Chosen duct_choice() const { return {tube.list(), "Tube or Channel"}; }  ///< returns the section that describes a duct, for messages about rejected
                                                                            ///< combinations
-  /// Returns the plane wall that acts by images, or the medium that the program has added; null in all other scenes.
+  /// Returns the medium, which replaces the free-space kernels: the plane wall of the section Wall, or a medium chosen by Domain/kind that a program
+  /// built on this library has added. Null in all other scenes.
   std::shared_ptr<const stokes::Medium> medium() const;
   bool load_is_strong() const { return membrane.load == "strong"; }
 

@@ -173,8 +173,8 @@ void Layer::place_tree(const LayerTargets& targets) {
 }
 
 /// Adds the far sums of the single layer by clusters. In a symmetric scene the sources are the nodes of the fundamental panels, and the sums at the
-/// reflections of the targets are added (2.19). In a medium that wraps positions the sources are the nodes of all panels, and targets have no
-/// reflections.
+/// reflections of the targets are added (2.19). If the medium is a lattice, which shifts each node and target into the unit cell, symmetry cannot be
+/// used: the sources are the nodes of all panels, and targets have no reflections.
 void Layer::add_forces_by_clusters(const LayerTargets& targets, Net& u) {
   const auto& [fundamental, weight] = sources_.surface.fundamental();
   const bool all = medium_->wraps();

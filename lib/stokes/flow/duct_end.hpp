@@ -18,8 +18,9 @@ namespace tanktread::stokes {
 /// Gauss points on rays from the centroid, with cells that are halved near a close target.
 class DuctEnd {
  public:
-  /// `flow`: flow of the straight duct with this section. `inward`: 1 if `along` points into the fluid (inlet), -1 otherwise (outlet). Throws
-  /// UserError if a ray from the centroid meets the outline twice.
+  /// `place`: position and axes of the end's cross-section. `flow`: flow of the straight duct with this cross-section. `inward`: 1 if the direction
+  /// `place.along` points into the fluid (inlet), -1 otherwise (outlet). Throws UserError if a ray from the centroid of the cross-section meets its
+  /// outline twice.
   DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inward);
 
   /// Returns the velocity (2.29) that the end causes at each row of x, a point in the fluid or on the wall. Units length/time.

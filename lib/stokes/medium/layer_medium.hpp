@@ -54,7 +54,8 @@ class LayerMedium {
   virtual const std::vector<Vec3>& far_images() const { return itself_; }
   /// Displacements of the surfaces for which panels may be close to a target.
   virtual const std::vector<Vec3>& near_images() const { return itself_; }
-  /// Returns whether positions are wrapped into a cell, each by itself, so that nodes of one panel may be far apart and symmetry is lost.
+  /// Returns true if wrapped() shifts each position into the unit cell of a lattice. Nodes of one panel may then be far apart, and the symmetry of
+  /// the surfaces is lost.
   virtual bool wraps() const { return false; }
   virtual Vec3 wrapped(const Vec3& x) const { return x; }
   virtual const NodeVectors& nodes(const LayerSources& sources) const { return sources.surface.node; }  ///< far nodes, wrapped
