@@ -80,10 +80,11 @@ class Tube {
   /// Returns the lattice of a periodic duct; not set for other ducts.
   const std::optional<stokes::PeriodicCell>& cell() const;
 
+  /// Response (2.5) of the tube to the particle: the disturbance due to the wall and the pressure drop.
   struct Response {
-    Net velocity;       ///< u at the particle's collocation points, shape (N, 3)
+    Net velocity;       ///< velocity u (2.5) that wall and pressure drop cause at the particle's collocation points, shape (N, 3)
     Net wall_traction;  ///< disturbance f^D of the traction on the wall, control values
-    double pressure_drop = 0;
+    double pressure_drop = 0;  ///< disturbance dp of the pressure drop
     Net load, moves;  ///< load f and velocity v of the particle; set in a periodic duct only
   };
 
