@@ -279,7 +279,7 @@ class SteadyRun {
   /// Returns the Floquet exponents: the logarithms of the multipliers of the return map, divided by the period.
   std::vector<coupling::Eigenpair> exponents(motion::ReturnMap& returns, const coupling::ShapeCoordinates& shapes) {
     Eigen::VectorXd start(shapes.size());
-    for (Eigen::Index k = 0; k < start.size(); ++k) start[k] = std::sin(1.0 + static_cast<double>(k * k % 7919));  // equal in every run
+    for (Eigen::Index k = 0; k < start.size(); ++k) start[k] = std::sin(1.0 + static_cast<double>(k * k % 7919));  // irregular but reproducible
     std::vector<coupling::Eigenpair> pairs;
     const auto admitted = [&](const Net& field) { return shapes.admitted(field); };
     for (const motion::Multiplier& one : motion::multipliers(returns, state_.x, shapes.displacement(start), admitted, scene_.spectrum.number)) {

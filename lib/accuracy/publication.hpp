@@ -9,7 +9,7 @@
 
 namespace tanktread::accuracy {
 
-/// Returns one sentence about a request and the estimated error.
+/// Returns one sentence that compares the estimated error of a series with the error that was requested for it.
 std::string sentence(const Answer& answer);
 
 /// Publishes the results of the finest level in the directory of the ladder. The directory then has the files of this level, with `/error/<series>`

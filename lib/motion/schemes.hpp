@@ -137,7 +137,7 @@ class CrankNicolson : public Scheme {
   Iteration iterate(coupling::Dynamics& dynamics, const State& state, double dt, const Net& start) const;
 
   bool by_error_;
-  std::unique_ptr<coupling::FixedPoint> solver_;  // null for the plain sub-iteration
+  std::unique_ptr<coupling::FixedPoint> solver_;  // NOX solver of the step; null for the fixed-point iteration (4.1) without acceleration
 };
 
 /// TR-BDF2 (Hosea & Shampine 1996) with local extrapolation: a one-step method of third order, L-stable with the exact Jacobian J.

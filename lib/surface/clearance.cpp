@@ -151,8 +151,9 @@ class OutlineSearch {
     bound(piece);
   }
 
-  /// Sets the lower bound of the distance of a piece from the outline, the corner of the piece farthest from the centre of its disc, and the
-  /// direction of largest curvature. All three follow from the Bezier coefficients of the squared distance from the centre of the disc.
+  /// Sets three members of a piece: `bound`, the lower bound of its distance from the outline; `corner`, its corner farthest from the centre of the
+  /// disc (see Disc) inside the outline that gives the bound; and `bends_across`, the direction in which the piece is bisected next. All three follow
+  /// from the Bezier coefficients of the squared distance from the centre of the disc.
   void bound(ElementPart& piece) {
     const Eigen::Index m = piece.points[0].rows(), n = 2 * m - 1, last = n - 1;
     if (products_.rows() != m) products_ = products(m - 1);

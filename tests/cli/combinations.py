@@ -225,7 +225,7 @@ class Scene:
         deck["Time"] = {"scheme": c["scheme"], "final time": STEPS * STEP}
         deck["Time"].update({"fixed step": STEP} if c["step"] == "fixed" else {"initial step": STEP, "maximum step": STEP, "tolerance": 1e-3})
         if c["scheme"] == "crank-nicolson":
-            deck["Time"]["nonlinear solver"] = "anderson"  # the plain sub-iteration has a limit of stability
+            deck["Time"]["nonlinear solver"] = "anderson"  # without it, (4.1) diverges for long steps
         if c["symmetry"] == "none":
             deck["Symmetry"] = {"use": "none"}
         deck["Solvers"] = {"tolerance": 1e-12}

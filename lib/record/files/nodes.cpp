@@ -129,7 +129,7 @@ Nodes::Nodes(surface::BezierMap map, LagrangeMesh mesh) : map_(std::move(map)), 
   for (const surface::DegreeGroup& group : map_.groups()) tables_[group.degree] = jet_table(group.degree);
 }
 
-/// Computes the jets (position and derivatives) at the nodes of the element's cell. Returns the element's Bezier points.
+/// Computes the jets (position and derivatives) at the nodes of the Lagrange cell of an element. Returns the element's Bezier points.
 Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>& jets) const {
   const int n = map_.n_bezier(element);
   Points points;
