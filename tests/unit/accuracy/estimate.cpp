@@ -115,7 +115,9 @@ TEST(Average, KnowsTheErrorOfItsQuadrature) {
     const Average smooth = sampled(n, [](double x) { return std::sin(9 * x); });
     const double error = std::abs(smooth.value - (1 - std::cos(9.)) / 9);
     EXPECT_GT(smooth.error, error / 3) << n;
-    EXPECT_LT(smooth.error, 30 * error) << n;  // as of fourth order, but the error falls faster where its signs alternate
+    // Measured ratios: 9.5, 0.6 and 3.3. They differ because the quadrature errors with all points, every second and every fourth point may differ in
+    // sign.
+    EXPECT_LT(smooth.error, 30 * error) << n;
     const Average jump = sampled(n, [](double x) { return x < 0.51 ? 0. : 1.; });
     EXPECT_GT(jump.error, std::abs(jump.value - 0.49) / 3) << n;
   }

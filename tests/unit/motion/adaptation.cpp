@@ -85,7 +85,7 @@ TEST(Adaptation, TheErrorOfFieldsIsComparedWithTheSurfaceToleranceOverTheRadius)
   EXPECT_EQ(marks(with(1.9e-4), o).size(), 0u);
   ASSERT_EQ(marks(with(2.1e-4), o).size(), 1u);
   EXPECT_FALSE(marks(with(2.1e-4), o)[0].t);
-  EXPECT_TRUE(merges(with(1.3e-4), o)[0].s);   // below 0.7 of the tolerance
+  EXPECT_TRUE(merges(with(1.3e-4), o)[0].s);   // below `coarsening margin` (0.7) times the tolerance 1e-3/5
   EXPECT_FALSE(merges(with(1.5e-4), o)[0].s);
 }
 
@@ -99,7 +99,7 @@ TEST(Adaptation, WhatIsMergedByItsErrorIsNotCutAgain) {
       const std::vector<Resolved> then = {{along(0.4, error), along(0.4, 16e-9)}};
       for (const spline::Mark& mark : marks(then, o)) EXPECT_FALSE(merge.s && mark.s) << error;
     }
-  EXPECT_EQ(merged, 2);  // below 0.7 of the tolerance
+  EXPECT_EQ(merged, 2);  // the errors 1e-5 and 5e-4: only they are below `coarsening margin` (0.7) times the tolerance 1e-3
 }
 
 TEST(Adaptation, CoarserLimitsMarkTheWorstElementsOnly) {

@@ -116,7 +116,8 @@ TEST_P(Steady, DoesNotTakeAShapeThatMovesForASteadyOne) {
   EXPECT_GT(report.rest, 1e5);  // half of the velocity, not the correction of 1e-9
 }
 
-/// A model whose velocity cannot be evaluated, and whose relabellings fail for that reason. It counts assemblies.
+/// A model whose velocity is NaN. relabellings() (motions of points along the surface that keep the shape) throws, because it needs a velocity.
+/// `assemblies` counts the assemblies of the Jacobian's operators.
 class Unknown : public Slow {
  public:
   Net velocity(const Net& x) override { return coupling::not_a_number(x); }

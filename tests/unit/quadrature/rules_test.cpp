@@ -133,6 +133,7 @@ TEST(Sight, SeesTheNearestPlaceOfAPatch) {
   const Patch patch{Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 2, 0)};
   EXPECT_DOUBLE_EQ(sight(patch, Vec3(0.3, 1, 0.5)).distance, 0.5);
   EXPECT_DOUBLE_EQ(sight(patch, Vec3(3, 0, 0)).distance, 2);
+  // rho = |z + sqrt(z^2 - 1)|, where z is the singularity of 1/r if the parameter along u is continued into the complex plane; |z| <= 1 on the patch.
   EXPECT_NEAR(sight(patch, Vec3(3, 0, 0)).rho_u, 3 + std::sqrt(8), 1e-14);   // target in the plane of the patch: z = 3
   EXPECT_NEAR(sight(patch, Vec3(0, 0, 1)).rho_u, 1 + std::sqrt(2.), 1e-14);  // target above the centre of the patch: z = i
 }

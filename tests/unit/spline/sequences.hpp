@@ -28,7 +28,8 @@ struct Findings {
   int control_points = 0;
 };
 
-/// Expects the conditions that must hold for every sequence.
+/// Expects the conditions that must hold for every refinement sequence: no crossing or overlapping extensions, 16 functions on every regular element,
+/// a partition of unity, and an exact transfer of fields to the refined space.
 void expect_nested(const Findings& found);
 
 /// Returns the condition number of a square matrix in the 2-norm, by power iteration on C^T C and its inverse.

@@ -83,7 +83,7 @@ TEST(CauchySums, GiveAnAnalyticFunctionAndItsDerivativeUpToTheCurve) {
 }
 
 TEST(BoundaryProfile, OfACircleIsExactOnTheExactCircleOfAnyRadius) {
-  for (const double radius : {0.3, 1.0, 7.0}) {  // for radius 1 the logarithmic kernel without kappa is singular
+  for (const double radius : {0.3, 1.0, 7.0}) {  // radius 1: without the constant kappa in (2.15) the matrix is singular
     const BoundaryProfile p(ellipse(radius, radius), 12);
     EXPECT_NEAR(p.flow_rate() / (pi * std::pow(radius, 4) / 8), 1, 1e-13);
   }

@@ -42,7 +42,7 @@ TEST(DuctFlow, IsPoiseuillesInACircle) {
 TEST(DuctFlow, HasTheKnownFlowRates) {
   EXPECT_NEAR(duct_profile(ellipse(1, 0.5), surface::outline(ellipse(1, 0.5)))->flow_rate(), pi * 0.125 / 5, 1e-15);
   const auto rate = [](double w, double h) { return rectangle_profile({w, h})->flow_rate(); };
-  EXPECT_NEAR(rate(2, 2) / 16, 0.035144253739, 1e-12);  // digits of the reference
+  EXPECT_NEAR(rate(2, 2) / 16, 0.035144253739, 1e-12);  // tolerance: rounding of the known value, here and below
   EXPECT_NEAR(rate(2, 1), 2 * 0.0571704193, 2e-10);
   EXPECT_NEAR(rate(1, 3), 3 * 0.0658292328, 3e-10);
   EXPECT_NEAR(rate(5, 1), 5 * 0.0728291885, 5e-10);
@@ -97,7 +97,7 @@ TEST(DuctFlow, VanishesOnTheWallOfARectangle) {
       const surface::Vec2 p = outline.point(k, s * outline.side_length(k));
       EXPECT_LT(std::abs(flow.velocity(Vec3(0, p[0], p[1]))[0]), 1e-12);
     }
-  EXPECT_NEAR(DuctFlow(rectangle(1, 1), 1, 0.035144253739).maximum().velocity, 0.073671353282, 1e-11);  // digits of the reference
+  EXPECT_NEAR(DuctFlow(rectangle(1, 1), 1, 0.035144253739).maximum().velocity, 0.073671353282, 1e-11);  // rounding of the known values
 }
 
 TEST(DuctFlow, HasTheMeanVelocityThatIsAskedFor) {

@@ -93,7 +93,8 @@ TEST(Deformation, ExtremesOfACrumpledSurfaceBoundWhatDenseSamplingFinds) {
         }
       }
     }
-    // The sampling error is the curvature times the square of the spacing, 1/240 of a face; straight cuts of the grid add the same amount.
+    // `spacing` is an upper bound of the error of the sampled extremes, about the curvature times the square of the distance between samples (1/240
+    // of the side of a face). Points of the plane section are interpolated linearly between samples, with an error of the same order.
     const double spacing = 2e-4;
     for (int c = 0; c < 3; ++c) {
       EXPECT_GE(coordinate[c].largest, high[c]);

@@ -56,8 +56,8 @@ TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
   EXPECT_LT(along, 1e-10);  // round-off of the interpolation
 }
 
-// The flow deforms a sphere under constant tension like a sphere of another viscosity: S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3). Batchelor 1970,
-// section 5.
+// The stresslet of a spherical drop in a straining flow E, S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3) (Batchelor 1970, section 5), does not depend on
+// the constant surface tension. It must not depend on the tangential motion of the control points either.
 TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
   SphereInFlow drop(6, "planar hyperbolic");
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{5};
@@ -94,7 +94,8 @@ TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
   }
 }
 
-// The position of the particle in an affine flow, and the speed of the observer, only add the velocity of the frame.
+// In an affine flow with the gradient L, a drop that is shifted by d moves like the drop at the origin, plus the uniform velocity L d. All motions of
+// the control points must satisfy this.
 TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
@@ -108,7 +109,8 @@ TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
   }
 }
 
-// A rotating observer only adds the velocity of the rotating frame. Only the mesh of an elongated drop follows its shape: see the next test.
+// If the rotation W is added to the gradient of the flow, W x is added to the velocity of the control points, so the mesh rotates with the drop. For
+// the motions `normal` and `relaxed` this holds for elongated drops only: see the next test.
 TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
@@ -129,7 +131,7 @@ TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
   EXPECT_LT((carried - drop.sphere * turns.transpose()).norm(), 1e-12 * carried.norm());  // round-off
 }
 
-// A sphere does not change if it rotates: its mesh stays at rest, so that it does not have to follow a rotation that nobody sees.
+// A sphere does not change if it rotates. Its mesh therefore stays at rest.
 TEST(InterfaceMotion, AFlowThatTurnsASphereDoesNotTurnItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
