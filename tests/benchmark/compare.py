@@ -58,8 +58,8 @@ def all_decks():
 
 
 def study_of(program, role, arguments):
-    """Returns the study for this content of the program. It runs a copy, so that the program may be built anew during
-    the comparison."""
+    """Returns the Study that runs a program. Its directory is named by the checksum of the program file. The study runs
+    a copy of this file, so that the program may be rebuilt during the comparison."""
     digest = hashlib.sha1(pathlib.Path(program).read_bytes()).hexdigest()[:12]
     directory = pathlib.Path(arguments.output).resolve() / f"{role}-{digest}"
     directory.mkdir(parents=True, exist_ok=True)

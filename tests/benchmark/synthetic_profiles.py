@@ -47,7 +47,7 @@ def radii(curve):
 
 
 class Emulator:
-    """In place of fit_model.Runs: outlines of a law by interpolation over the logarithm of the capillary number."""
+    """Replaces fit_model.Runs. Interpolates the outlines of a law over the logarithm of the capillary number."""
 
     messages, count = ["beyond the emulator"], 0
 
@@ -72,10 +72,11 @@ class Emulator:
 
 
 def experiments(outlines):
-    """Returns experiments of a fit with these points (n, 2) and their errors, one a speed."""
+    """Returns the experiments of a fit, one per speed. `outlines`: for each speed, points (n, 2) and their standard
+    error."""
     found = []
     for speed, (points, error) in zip(SPEEDS, outlines):
-        datum = fit_data.OutlineData.__new__(fit_data.OutlineData)  # whose constructor reads a file
+        datum = fit_data.OutlineData.__new__(fit_data.OutlineData)  # not by its constructor, which reads a file
         vars(datum).update(name=f"speed {speed}", at=None, axis=1, scale=1.0, error=error, points=points,
                            count=len(points), places=2, free_scale=False, scale_error=0)
         found.append(types.SimpleNamespace(name=datum.name, settings={"Flow/mean velocity": speed}, unknowns=[],
@@ -99,7 +100,7 @@ def exact(study):
 
 
 def told(law, noise, fits):
-    """Returns one row about many samples: fits of the true law and of the other."""
+    """Returns one row of the table. `fits`: for each sample, the fit of the true law and the fit of the other law."""
     values = numpy.array([true.unknowns[0].value(true.x[0]) for true, _ in fits]) / MODULUS - 1
     stated, spread = numpy.mean([true.number_errors[0] for true, _ in fits]), values.std(ddof=1)
     gaps = numpy.array([other.aic - true.aic for true, other in fits])
@@ -110,7 +111,8 @@ def told(law, noise, fits):
 
 
 def print_rows(study, rows, number, seed):
-    """Makes the emulators, prints how far they are from runs in between, and a table of the rows."""
+    """Constructs the emulators. Prints their largest error at capillary numbers between the interpolation nodes, and
+    then the table of the rows that rows(emulators, generator, number) yields."""
     made = {law: Emulator(study, law) for law in LAWS}
     for law, one in made.items():
         known = {number: profile(study, LAWS[law] | FINE | {"Membrane/shear modulus": 1 / number})
@@ -122,7 +124,8 @@ def print_rows(study, rows, number, seed):
 
 
 def fits_of(law, made, number, measured):
-    """Returns many fits of the true law and of the other; measured(curve): points and their error."""
+    """Returns `number` pairs of fits, of the true law and of the other law. measured(curve) returns noisy points of an
+    outline and their standard error."""
     curves = [made[law].curve(speed / MODULUS) for speed in SPEEDS]
     data = [experiments(map(measured, curves)) for _ in range(number)]
     return [[fitted(name, one, made[name], 1.5 * MODULUS) for name in {law: None} | LAWS] for one in data]
@@ -136,8 +139,10 @@ def samples(made, generator, number):
 
 
 def picture(curve, generator, pixels=256, blur=1.5, noise=0.02, finer=6):
-    """Returns a bright field with a dark particle 0.8 of it wide, blurred (pixels), with noise (of the contrast); the
-    length of a pixel; and the position of the particle."""
+    """Returns an image of a dark particle on a bright background, the length of a pixel, and the position of the
+    particle relative to the image centre in pixels (to the left and down). The particle takes 0.8 of the width. `blur`:
+    standard deviation in pixels. `noise`: standard deviation divided by the contrast. `finer`: samples per pixel and
+    direction."""
     length = numpy.ptp(curve.even(400), axis=0).max() / (0.8 * pixels)
     shift = generator.uniform(-3, 3, 2)
     x = ((numpy.arange(pixels * finer) + 0.5) / finer - pixels / 2) * length
@@ -165,8 +170,8 @@ def pictures(made, generator, number):
 
 
 def write(study, directory):
-    """Writes outlines of a finer mesh than the fit's, in units of 0.01 tube radii, with noise of half a per cent of the
-    radius, each at a place of its own."""
+    """Writes one outline per speed, computed on a finer mesh than the mesh of the fit. Unit: 0.01 tube radii. Each has
+    noise of 0.5 % of the particle radius, and is shifted at random."""
     generator = numpy.random.default_rng(5)
     directory.mkdir(parents=True, exist_ok=True)
     for speed in SPEEDS:

@@ -1,9 +1,9 @@
-"""Waves on a capsule: the load of a snapshot in spherical harmonics of the place on the unstressed sphere."""
+"""Waves on a capsule: expansion of its load in spherical harmonics on the unstressed sphere."""
 
 from package import numpy
 from tanktread.lagrange import by_degree, grid_table
 
-SMOOTH = 8  # the flow and its answer live in degrees up to this one
+SMOOTH = 8  # largest degree of the smooth part of the load, which balances the flow
 
 
 def spectrum(snapshot, largest=40):

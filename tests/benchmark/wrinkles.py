@@ -13,12 +13,12 @@ unstable wave, so the shortest that elements carry grows fastest, about two elem
 from package import SHEAR, SIDE, answer, command_line, expect, footer, interpolation, numpy, plt, studies, style
 import waves
 
-QUIET = 1e-3  # share of the load's power in waves below which there are none
+QUIET = 1e-3  # if the waves have less than this share of the load's power, the membrane counts as free of waves
 
 
 def draw_row(study, axes, modulus, parsed):
-    """Draws spectra, D over time and wavelengths of one modulus, and returns rows of the table. Spectra, and mean and
-    range of D, are of the last two time units."""
+    """Draws the spectra, D against time, and the wavelengths for one modulus, and returns the rows of the table. The
+    spectra and the mean and range of D are taken over the last two time units."""
     left, middle, right = axes
     rows, lengths = [], []
     sizes = (4 * numpy.pi / (6 * numpy.square(parsed.meshes))) ** 0.5  # mean sizes of elements on the unit sphere
@@ -32,7 +32,8 @@ def draw_row(study, axes, modulus, parsed):
         powers, wavelengths = zip(*(waves.spectrum(shot) for shot in one.run.snapshots()
                                     if shot.time >= parsed.time - 2))
         power = sum(each / each.sum() for each in powers) / len(powers)
-        # the wave: largest power beyond the smooth degrees; in odd degrees only, since the capsule is point symmetric
+        # degree of the wave: the degree above SMOOTH with the largest power. It is odd, because the load of a
+        # point-symmetric capsule is an odd function on the sphere
         wave = waves.SMOOTH + 1 + int(power[waves.SMOOTH + 1:].argmax())
         short, length = waves.share_of_waves(power), wavelengths[0][wave - 1]
         time, d = one.series["time"], one.series["taylor_inertia"]

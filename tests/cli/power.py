@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# Output/power balance: what the flow puts in is dissipated or stored, as far as the velocities are solutions.
+# Tests of Output/power balance: up to discretisation errors, the power of the ambient flow equals the dissipation plus
+# the rate of change of the stored energy.
 import numpy
 
 from harness import check, close, deck, main, refused, run, series
@@ -18,7 +19,7 @@ Tanktread:
 def a_sphere_without_tension_takes_the_power_of_its_stresslet():
     deck(CAPSULE)
     run("deck.yaml", "--output", "drop", "--quiet")
-    power = 2 * (4 * numpy.pi / 3) * 0.5 * 5 * (5 - 1) / (2 * 5 + 3)  # Taylor 1932, of a sphere that begins to deform
+    power = 2 * (4 * numpy.pi / 3) * 0.5 * 5 * (5 - 1) / (2 * 5 + 3)  # Taylor 1932, spherical drop
     close(series("drop", "flow_power")[0], power, 2e-4 * power, "the power of the flow")
     close(series("drop", "fluid_dissipation")[0], power, 2e-4 * power, "all of which is dissipated")
 
@@ -37,7 +38,8 @@ def what_is_not_dissipated_is_stored():
 
 
 def a_steady_shape_stores_nothing():
-    """A drop at rest in an extension, and a capsule whose membrane treads: the flow's power is dissipated, to the error of the mesh."""
+    """A drop in a steady extensional flow, and a tank-treading capsule. Up to the discretisation error, all power of
+    the flow is dissipated."""
     extension = CAPSULE.replace("simple shear", "uniaxial extension").replace("capillary number: 0.3", "law: surface tension, capillary number: 0.05")
     for name, text in ("drop", extension), ("capsule", CAPSULE.replace("ratio: 5.0", "ratio: 1.0")):
         deck(text.replace("Time: {final time: 1.0, tolerance: 1.0e-5}", "Steady: {tolerance: 1.0e-8}").replace("interval: 0.5, ", ""))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# A run ends when its shape is steady, though the membrane treads and carries the mesh round the shape.
+# Tests that a run ends when its shape is steady, although the membrane tank-treads and its mesh moves around the shape.
 from harness import check, deck, main, run, series, summary
 
 DECK = """
@@ -17,7 +17,7 @@ def a_capsule_that_treads_is_found_steady_where_its_deformation_is():
     check("steady at time" in said and summary("out")["status"] == "steady", said)
     times, d = series("out", "time"), series("out", "taylor_inertia")
     check(times[-1] < 10, f"found at {times[-1]} only")
-    before = d[times > times[-1] - 1]  # of the last unit of time, in which the smooth part of the shape moved by no more than 2e-3
+    before = d[times > times[-1] - 1]  # values in the last unit of time
     check(abs(before - d[-1]).max() < 2e-3, before)
     check(series("out", "normal_velocity")[-1] > 5e-3, "the largest normal velocity would have told as well")
 

@@ -63,11 +63,12 @@ def two_ranks_find_the_same():
 
 
 def a_drop_in_shear_is_found_however_its_mesh_is_labelled():
-    """The fluid treads around it. In the run, the mesh has turned with the shape: with four elements per side, that alone changes D by 1.3e-3."""
+    """The surface of the drop tank-treads. In the run in time, the mesh has rotated with the shape. On a mesh with four
+    elements per side, this rotation of the mesh changes D by 1.3e-3."""
     shear = ["--set", "Flow/type=simple shear", "--set", "Membrane/capillary number=0.2", "--set", "Surface/elements per side=5"]
     run(deck(DECK), *shear, "--output", "shear", "--quiet")
     run(deck(IN_TIME, "in_time.yaml"), *shear, "--output", "shear_in_time", "--quiet")
-    for name, digits in ("taylor_surface", 1e-3), ("inclination", 0.2):  # what the labels matter on this mesh
+    for name, digits in ("taylor_surface", 1e-3), ("inclination", 0.2):  # effect of the positions of the mesh
         close(series("shear", name)[-1], series("shear_in_time", name)[-1], digits)
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 2
-# A membrane with a viscosity of its own: how a sphere relaxes, what it dissipates, ranks, and what a deck may not ask for.
+# Tests of a membrane with surface viscosity: relaxation of a sphere, dissipation, two ranks, rejected decks.
 import numpy
 
 from harness import check, deck, main, refused, run, series
@@ -19,15 +19,17 @@ Tanktread:
 
 
 def _rate(results):
-    """Of the decay of D between times 8 and 12, where the fast mode (rate 1.9) is gone."""
+    """Returns the decay rate of D between the times 8 and 12, when the fast mode (rate 1.9) has decayed."""
     time, d = series(results, "time"), series(results, "taylor_inertia")
     early, late = numpy.argmin(abs(time - 8)), numpy.argmin(abs(time - 12))
     return -numpy.log(d[late] / d[early]) / (time[late] - time[early])
 
 
 def a_sphere_relaxes_at_the_rate_of_linear_theory():
-    """Of the second harmonic, viscosities 1: 0.22457708 with eta_s = 0.5, 0.24835904 without, by the 2 x 2 system of two displacements.
-    Schemes agree to 3e-6 and the mesh errs by 1.3e-5; with 6 elements a side it errs by 3e-5."""
+    """The harmonic of degree 2 decays at the rate 0.22457708 with the surface shear viscosity eta_s = 0.5, and at
+    0.24835904 without it, if both fluids have viscosity 1. The rates are eigenvalues of the linearised 2 x 2 system for
+    the normal and the tangential displacement. Time integration schemes agree to 3e-6. The discretisation error is
+    1.3e-5 with 8 elements per side, and 3e-5 with 6."""
     for viscosity, expected in (0.5, 0.22457708), (0.0, 0.24835904):
         run(deck(DECK), "--set", f"Membrane/shear viscosity={viscosity}", "--set", "Surface/elements per side=8", "--output", f"at_{viscosity}", "--quiet")
         found = _rate(f"at_{viscosity}")
@@ -35,18 +37,20 @@ def a_sphere_relaxes_at_the_rate_of_linear_theory():
 
 
 def what_the_membrane_dissipates_comes_from_its_energy():
-    """In a fluid at rest the energy falls by what fluid and membrane dissipate: with a membrane a thousand times as viscous, by the membrane's part."""
+    """In a fluid at rest, the energy decreases by the dissipation in the fluids and in the membrane. The surface shear
+    viscosity is 1000, so that the dissipation in the fluids is only a thousandth of the total."""
     words = ["--set", "Membrane/shear viscosity=1000", "--set", "Membrane/dilatational viscosity=3000", "--set", "Time/final time=1500"]
     run(deck(DECK), *words, "--set", "Output/interval=100", "--output", "thick", "--quiet")
     time, energy, power = (series("thick", name) for name in ("time", "energy", "membrane_dissipation"))
     spent = numpy.sum((power[1:] + power[:-1]) / 2 * numpy.diff(time))
     fallen = energy[0] - energy[-1]
-    check(abs(spent / fallen - 1) < 5e-3, f"{spent} dissipated in the membrane of {fallen}")  # trapezoids, and a thousandth in the fluids
+    # tolerance: trapezoidal rule, and the dissipation in the fluids
+    check(abs(spent / fallen - 1) < 5e-3, f"{spent} dissipated in the membrane of {fallen}")
 
 
 def _linear_rates(viscosity, relaxation, dilatational=0.0, harmonic=2):
-    """Rates of a sphere with the springs of a Maxwell element, the slowest first: (4.19) for both displacements, the membrane's and those where its
-    springs have no stress."""
+    """Returns the relaxation rates of a sphere with a Maxwell element, the slowest first. They follow from (4.19) for
+    the displacements of the membrane and of the stress-free state of the springs in the Maxwell element."""
     l, size = harmonic, harmonic * (harmonic + 1)
 
     def pull(shear, area):
