@@ -1,4 +1,5 @@
-"""What the studies share: options, tables, bisection, and reading of study files. What is wrong in one is a Mistake."""
+"""Functions shared by all studies: options, tables, bisection, reading of study files. Errors in a study file raise
+Mistake."""
 
 import contextlib
 import pathlib
@@ -11,8 +12,9 @@ from ..runs import PROGRAM, Study, quoted, shared, text_of
 
 
 def edge(holds, low, high, factor=1.05):
-    """Returns the largest value at which `holds` is true, by bisection of the logarithm to a factor, and how the search
-    ended: `edge`, `holds to here` (high) or `fails from here` (low). It is assumed true below the edge, false above."""
+    """Returns the largest value, up to a factor, for which holds(value) is true, and how the search ended: `edge`,
+    `holds to here` (true up to `high`) or `fails from here` (false from `low` on). The search bisects the logarithm of
+    the value. It assumes that holds(value) is true below the edge and false above it."""
     if not holds(low):
         return low, "fails from here"
     if holds(high):
@@ -24,7 +26,7 @@ def edge(holds, low, high, factor=1.05):
 
 
 def arguments(parser, results, limit=300, jobs=None):
-    """Adds the options that all studies share to a parser; `--jobs` if there is a default for it."""
+    """Adds the options that all studies share to a parser. Adds `--jobs` only if a default is given."""
     parser.add_argument("--program", default=PROGRAM, type=pathlib.Path, help="default: %(default)s")
     parser.add_argument("--output", default=results, type=pathlib.Path, metavar="DIR",
                         help="of pictures, tables and, under runs/, results (default: %(default)s)")
@@ -48,12 +50,12 @@ def write_table(path, head, rows):
 
 
 def command_of(script, *words):
-    """Returns the command line that makes a chart again, which is printed below it."""
+    """Returns the command line that reproduces a chart; it is printed below the chart."""
     return " ".join([f"{pathlib.Path(script).parent.name}/{pathlib.Path(script).name}", *map(quoted, words)])
 
 
 def number(given, name):
-    """Returns a number of a YAML file, in which 1e-2 is a string."""
+    """Returns a value of a YAML file as a float. Accepts strings, because PyYAML reads 1e-2 as a string."""
     with contextlib.suppress(TypeError, ValueError):
         if not numpy.isnan(float(given)):
             return float(given)
@@ -61,32 +63,33 @@ def number(given, name):
 
 
 def positive(given, name):
-    """Returns a number above 0."""
+    """Returns a value as a float. Raises Mistake unless it is above 0 and finite."""
     expect(0 < number(given, name) < numpy.inf, f"{name} must be a number above 0, but is {given}")
     return float(given)
 
 
 def optional(read, section, key, name):
-    """Returns read(value, name of the key) of a key of a section; None if the key is absent."""
+    """Returns read(value, label) for the value of a key in a section; None if the key is absent."""
     return read(section[key], f"{name}: {key}") if section.get(key) is not None else None
 
 
 def whole(given, name):
-    """Returns a whole number above 0."""
+    """Returns an integer. Raises Mistake unless it is above 0."""
     expect(isinstance(given, int) and not isinstance(given, bool) and given > 0,
            f"{name} must be a whole number above 0, but is {given}")
     return given
 
 
 def keys_of(given, name):
-    """Returns a section of a YAML file, {} if it is absent."""
+    """Returns a section of a YAML file; {} if it is absent."""
     expect(given is None or isinstance(given, dict), f"{name} must be a list of keys with values, but is {given}")
     return given or {}
 
 
 def study_of(path, sections, others):
-    """Returns the content of a study file, which has only these keys and `deck`. Sections that are absent are {}. The
-    decks are paths, looked for next to the file, in the present directory and with the program."""
+    """Returns the content of a study file. Raises Mistake if it has other keys than `deck`, `sections` and `others`.
+    Absent sections are {}. `deck` is a list of paths; decks are searched for next to the file, in the current
+    directory, and in the directories of shared()."""
     text, known = content_of(path), sorted({"deck"} | sections | others)
     expect(isinstance(text, dict), f"{path} must be a list of keys: {', '.join(known)}")
     for key in text:
@@ -113,7 +116,7 @@ def values_of(key, given):
 
 
 def spaced(key, given, shares):
-    """Returns the list of values at these shares (n,), from 0 to 1, of a range with from, to and spacing."""
+    """Returns the values at fractions `shares` (n,), from 0 to 1, of the range given by from, to and spacing."""
     low, high = (number(given[end], f"{key}: {end}") for end in ("from", "to"))
     if given.get("spacing", "linear") == "linear":
         return (low + (high - low) * shares).tolist()

@@ -17,15 +17,16 @@ from ..mistakes import Mistake, command_line, expect, log
 from ..runs import settings_of
 from . import common
 
-SLOW = 1e-3  # speed of a particle that stays, over the mean velocity
-NOISE = 0.1  # of SLOW, by which the second half may be faster
-LAST = 10  # channel radii over the mean velocity
-SAMPLES = 401  # of the way in that time
-TIMES = 3  # that an undecided run is made, each for twice the time
+SLOW = 1e-3  # a particle that stays is slower than this fraction of the mean velocity
+NOISE = 0.1  # it may be faster in the second half of the time than in the first by this fraction of SLOW
+LAST = 10  # time at the end of a run that is examined, in channel radii divided by the mean velocity
+SAMPLES = 401  # number of positions in that time
+TIMES = 3  # largest number of runs per value of the key; each takes twice the time of the previous one
 
 
 def stays(time, way, radius, speed):
-    """Returns True if a centroid's way shows that it stays, None if it does not."""
+    """Returns True if the particle stays by the criterion above, otherwise None. `way`: x1 of the centroid at the times
+    `time`. `radius`: radius of the channel. `speed`: mean velocity."""
     last = LAST * radius / speed
     if time[-1] - time[0] < last:
         return None
@@ -33,12 +34,14 @@ def stays(time, way, radius, speed):
     places = numpy.interp(at, time, way)
     wanders = numpy.std(places - numpy.polyval(numpy.polyfit(at - at[-1], places, 2), at - at[-1]))
     first, second = 2 * numpy.diff(places[[0, SAMPLES // 2, -1]]) / last
-    by_chance = 6**0.5 * wanders * 2 / last  # of the end less the middle twice and the beginning
+    # standard error of second - first, a difference of (end - 2 middle + beginning) with errors `wanders`
+    by_chance = 6**0.5 * wanders * 2 / last
     return (abs(first + second) / 2 < SLOW * speed and second - first < NOISE * SLOW * speed + by_chance) or None
 
 
 def stays_at(parsed, study, value):
-    """Returns whether the particle stays at a value of the key, by runs for longer and longer times."""
+    """Returns True if the particle stays at a value of the key, and False if it passes. Doubles the final time of the
+    run until this is decided. Raises Mistake if it is not decided after TIMES runs."""
     settings = {"Time/end when past": parsed.past} | settings_of(parsed.set) | {parsed.key: value}
     for _ in range(TIMES):
         outcome = study.run(parsed.deck, settings)

@@ -1,4 +1,4 @@
-"""Unknowns and data of a fit: outlines and series, with what a run predicts of them."""
+"""Unknowns and data of a fit. Data are outlines or series; each datum computes its prediction from a run."""
 
 import numpy
 
@@ -8,12 +8,15 @@ from ..mistakes import expect
 from . import silhouette
 from .common import keys_of, number, optional, positive
 
-FAR = numpy.log(1000)  # of an unknown's bounds from its start, if none are set; of a linear one in parts of its start
-GAP = 0.1  # of an outline's length, from its last point to the first, at which it does not close
+# distance of the default bounds of an unknown from its start: a factor of 1000 or, with linear spacing, log(1000) times
+# the start value
+FAR = numpy.log(1000)
+GAP = 0.1  # an outline counts as open if the gap from its last to its first point exceeds this fraction of its length
 
 
 class Unknown:
-    """A key whose value is sought, as the number that the fit varies: the logarithm of what is positive."""
+    """A key of the deck whose value is fitted. The fit varies `number(value)`: the logarithm of the value or, with
+    `spacing: linear`, the value divided by its start value."""
 
     def __init__(self, key, given, owner=None):
         given = given if isinstance(given, dict) else {"start": given}
@@ -41,19 +44,20 @@ class Unknown:
         return float(numpy.exp(number) if self.logarithmic else number * self.unit)
 
     def error_of(self, value, error):
-        """Returns the standard error of the value from that of the fitted number."""
+        """Returns the standard error of the value. `error`: standard error of number(value)."""
         return error * (value if self.logarithmic else self.unit)
 
 
 class Datum:
-    """What outlines and series have: a name, a time `at` (None: the end of the run), a standard error or None."""
+    """Base class of outlines and series. `at`: time of the datum; None is the end of the run. `error`: standard error,
+    or None if it is not stated."""
 
     def __init__(self, given, name):
         self.name, self.at = name, optional(number, given, "at", name)
         self.error = optional(positive, given, "error", name)
 
     def columns(self, path):
-        """Returns the first two columns of a table (n, 2). Takes standard errors from a third one if none is stated."""
+        """Returns the first two columns (n, 2) of a table. Sets `error` to its third column if no error is stated."""
         rows = table(path)
         if self.error is None and rows.shape[1] > 2:
             self.error = rows[:, 2]
@@ -63,7 +67,8 @@ class Datum:
 
 
 class OutlineData(Datum):
-    """Points of an edge in a plane. Unknown with it: where it lies, and its scale where that has an error."""
+    """Points of a particle's outline in a coordinate plane. The fit also finds the position of the outline and, if
+    `scale error` is given, its scale."""
 
     def __init__(self, given, name, folder):
         known = {"outline", "plane", "error", "scale", "scale error", "at", "open"}
@@ -86,13 +91,14 @@ class OutlineData(Datum):
         self.scale_error = error = given.get("scale error") or 0
         if error:
             self.scale_error = numpy.inf if error == "free" else positive(error, f"{name}: scale error")
-        self.count, self.places = len(self.points), 2 + bool(error)  # places: of the numbers that say where it lies
+        self.count, self.places = len(self.points), 2 + bool(error)  # places: length of its part of x (shift, scale)
 
     length = property(lambda self: self.count + (0 < self.scale_error < numpy.inf),
                       doc="The number of residuals: one per point, and one of a scale with an error.")
 
     def start(self, prediction):
-        """Returns the start of its position (2 or 3,), from the middles of data and prediction."""
+        """Returns start values (2,) or (3,): the shift that moves the middle of the data's extents to that of the
+        prediction, and 0 for the logarithm of the scale factor."""
         own, middle = ((points.min(0) + points.max(0)) / 2 for points in (self.points, prediction.points))
         return numpy.append(middle - self.scale * own, numpy.zeros(self.places - 2))
 
@@ -100,7 +106,7 @@ class OutlineData(Datum):
         shot = run.snapshot_at(self.at)
         expect(self.at is None or abs(shot.time - self.at) < 1e-6 * max(1, abs(self.at)),
                f"{self.name}: there is no snapshot at {self.at}: set Output/interval")
-        return silhouette.seen(shot, self.axis).centred()  # where a run carries its particle is not in the picture
+        return silhouette.seen(shot, self.axis).centred()  # the position in the deck's frame is not part of the data
 
     def placed(self, place):
         return self.points * self.scale * numpy.exp(place[2] if self.places > 2 else 0) + place[:2]
@@ -111,10 +117,11 @@ class OutlineData(Datum):
 
 
 class SeriesData(Datum):
-    """Values of a series, or of its ratio to another one, at times. The start of a curve of free origin is unknown."""
+    """Values, at given times, of a series or of the ratio of two series. With `origin: free`, the fit also finds the
+    time shift between the data and the run."""
 
-    length = property(lambda self: self.count)  # of its residuals
-    discretisation = None  # error of the runs, if their deck requests an accuracy
+    length = property(lambda self: self.count)  # number of residuals
+    discretisation = None  # estimated error of the series in the first run; 0 if its deck does not request an accuracy
 
     def __init__(self, given, name, folder):
         known = {"series", "over", "value", "curve", "error", "at", "origin"}
@@ -133,7 +140,8 @@ class SeriesData(Datum):
         self.count = len(self.values)
 
     def start(self, prediction):
-        """Returns the last time at which the run passes the first value of the curve, or where it is nearest."""
+        """Returns the start value of the time shift, divided by `span`: the last time at which the series of the run
+        passes the first value of the curve, or is nearest to it. Empty if the origin is not free."""
         if not self.places:
             return numpy.array([])
         times, values = prediction
@@ -146,7 +154,8 @@ class SeriesData(Datum):
         last = 0 if self.times is None or self.places else numpy.max(self.times)
         expect(last <= times[-1] * (1 + 1e-9),
                f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
-        if self.discretisation is None:  # the largest estimated error, of a ratio from both series; 0 if it is unknown
+        # the largest estimated error; for a ratio, the errors of both series combined; 0 if it is unknown
+        if self.discretisation is None:
             sizes = [numpy.nanmax(abs(run.series[name])) for name in self.series]
             errors = [numpy.nanmax(run.errors[name]) if run.band(name) is not None else 0 for name in self.series]
             self.discretisation = (errors[0] if len(self.series) == 1 else
@@ -166,9 +175,9 @@ class SeriesData(Datum):
         return interpolated(times, values, numpy.clip(wanted, times[0], times[-1]))
 
     def residuals(self, prediction, place):
-        """Returns residuals of unit variance. The error of the runs, of size d, is taken as a sum of up to six cosines
-        along the curve with random factors. Residuals z, divided by the errors e of the data, then have the covariance
-        1 + U U^T with rows U of about the length d/e; gives (1 + U U^T)^(-1/2) z."""
+        """Returns residuals of unit variance. The discretisation error d of the runs is modelled as a sum of up to six
+        cosines in time with random coefficients. The residuals z divided by the errors e of the data then have the
+        covariance 1 + U U^T, where the rows of U have a norm of about d/e. The result is (1 + U U^T)^(-1/2) z."""
         found = self.values - self.predicted(prediction, place)
         if self.error is None:
             return found

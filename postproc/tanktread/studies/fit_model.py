@@ -1,4 +1,4 @@
-"""Weighted least squares from runs of the program: one law, its unknowns and their errors."""
+"""Weighted least-squares fit of one membrane law: its unknowns and their standard errors, from runs of the program."""
 
 import itertools
 
@@ -8,32 +8,36 @@ import scipy.stats
 
 from ..mistakes import Mistake, expect, progress
 
-STEP = 0.01     # of a logarithm, for derivatives on the way
-TELLS = 0.02    # and for those that errors follow from, to both sides
-TINY = 1e-6     # of a position, for its derivatives
-FAILED = 1e6    # a residual where a run failed
-MISSED = 1e-3   # probability of a larger chi square, below which the errors of the data do not hold
-SETTLED = 1e-2  # of chi square per degree of freedom, by which a last step, a tenth of the standard errors, lowers it
-FAINT = 1e-4    # an unknown that does not change chi by more, times e, is left where it is
-SERIES = 8      # points of a datum along which the signs of residuals have a meaning
+STEP = 0.01     # step of the one-sided differences by an unknown during the iteration (an unknown is a logarithm, or a
+                # value divided by its start)
+TELLS = 0.02    # step of the central differences at the solution, from which the standard errors follow
+TINY = 1e-6     # step of the differences by a position
+FAILED = 1e6    # every residual if a run failed
+MISSED = 1e-3   # if a chi square as large as that of the fit has a smaller probability, the stated errors of the data
+                # do not explain the residuals
+SETTLED = 1e-2  # the iteration ends if the next step would lower chi square by less than this fraction of chi square
+                # per degree of freedom; such a step changes the unknowns by about a tenth of their standard errors
+FAINT = 1e-4    # an unknown is kept constant in a step if the norm of the derivative of the residuals is at most this
+SERIES = 8      # smallest number of points of a datum for the runs test of the signs of its residuals
 
 
 class Settled(Exception):
-    """A fit has come to numbers, which go with this, that a further step would not change by what the data tell."""
+    """Ends the iteration, because the next step is small compared with the standard errors. Its argument is x."""
 
 
 def parts(sizes):
-    """Returns the slices of consecutive parts of these sizes."""
+    """Returns the slices that divide an array into consecutive parts of the given sizes."""
     return [slice(*ends) for ends in itertools.pairwise(numpy.cumsum([0, *sizes]))]
 
 
 def determined(error):
-    """Returns the standard error of a fitted number; inf from a factor of e, or for a linear one its own start, on."""
+    """Returns the standard error of a component of x, or inf if it is 1 or larger: then the unknown is uncertain by a
+    factor of e or, if it is not logarithmic, by as much as its start value."""
     return numpy.where((error > 0) & (error < 1), error, numpy.inf)
 
 
 class Runs:
-    """Predictions of the data of an experiment from runs of the program, by their settings; None where a run failed."""
+    """Predictions of the data from runs of the program. A run is made once. A prediction is None if its run failed."""
 
     def __init__(self, study, decks, law):
         self.law, self.study, self.decks, self._found, self.messages, self._run = law, study, decks, {}, [], None
@@ -41,7 +45,7 @@ class Runs:
     count = property(lambda self: len(self._found))
 
     def all(self, jobs):
-        """Returns the predictions of many (experiment, settings), in their order."""
+        """Returns the predictions for a list of pairs (experiment, settings), in its order."""
         texts = [experiment.name + str(sorted(settings.items())) for experiment, settings in jobs]
         new = {text: job for text, job in zip(texts, jobs) if text not in self._found}
         outcomes = self.study.all([(self.decks, settings) for _, settings in new.values()])
@@ -53,7 +57,7 @@ class Runs:
             try:
                 expect(outcome.done, outcome.message)
                 self._found[text] = [datum.prediction(outcome.run) for datum in experiment.data]
-            except ValueError as error:  # a shape without an outline is as far from the data as a run that failed
+            except ValueError as error:  # a shape whose outline cannot be found counts as a failed run
                 self.messages.append(str(error))
         return [self._found[text] for text in texts]
 
@@ -63,14 +67,16 @@ class Runs:
 
 
 class Fit:
-    """One law and its unknowns. The numbers x that are varied: unknowns, positions of outlines, starts of curves."""
+    """Fit of one law. The vector x of the fit contains the unknowns, then the positions of the data: the shift (and the
+    logarithm of the scale factor) of each outline, and the time shift of each curve with a free origin."""
 
     def __init__(self, law, settings, unknowns, experiments, runs):
         self.law, self.settings, self.experiments, self.runs = law, settings, experiments, runs
         self.unknowns = [*unknowns, *(one for experiment in experiments for one in experiment.unknowns)]
         self.data = [datum for experiment in experiments for datum in experiment.data]
-        self.rows = parts(datum.length for datum in self.data)  # of the residuals
-        self.positions = parts([len(self.unknowns), *(datum.places for datum in self.data)])[1:]  # of data in x
+        self.rows = parts(datum.length for datum in self.data)  # slice of the residuals of each datum
+        # slice of the position of each datum in x
+        self.positions = parts([len(self.unknowns), *(datum.places for datum in self.data)])[1:]
         self.count = sum(datum.count for datum in self.data)
         self.stated = all(datum.error is not None for datum in self.data)
 
@@ -78,18 +84,19 @@ class Fit:
                       + sum(one.known is not None for one in self.unknowns), doc="The number of residuals.")
 
     def settings_of(self, experiment, x):
-        """Returns the settings of the run of an experiment at x, which may be without positions."""
+        """Returns the settings of the run of an experiment for the unknowns in x. Positions in x are not used."""
         return self.settings | experiment.settings | {
             one.key: one.value(number) for one, number in zip(self.unknowns, x) if one.owner in (None, experiment.name)}
 
     def predictions(self, *points):
-        """Returns the predictions of all data at each of these x, None where a run failed."""
+        """Returns for each vector x the predictions of all data, or None if a run failed."""
         made = self.runs.all([(one, self.settings_of(one, x)) for x in points for one in self.experiments])
         groups = [made[part] for part in parts([len(self.experiments)] * len(points))]
         return [None if None in group else list(itertools.chain.from_iterable(group)) for group in groups]
 
     def residuals(self, predictions, x):
-        """Returns the weighted residuals of all data and of values known beforehand."""
+        """Returns the residuals divided by their standard errors: of all data, then of the unknowns whose value was
+        given with an error (`known`)."""
         if predictions is None:
             return numpy.full(self.length, FAILED)
         each = [datum.residuals(found, x[own]) for datum, found, own in zip(self.data, predictions, self.positions)]
@@ -98,7 +105,8 @@ class Fit:
         return numpy.concatenate([*each, known])
 
     def jacobian(self, x, step, sides=(1,)):
-        """Returns finite differences by the unknowns, a matrix (residuals, unknowns) per side, and by the positions."""
+        """Returns the derivatives of the residuals by finite differences: with respect to the unknowns, shape (sides,
+        residuals, unknowns), and with respect to the positions, shape (residuals, positions)."""
         n = len(self.unknowns)
         shifts = [side * step * unit for side in sides for unit in numpy.eye(len(x))[:n]]
         first, *found = self.predictions(x, *(x + shift for shift in shifts))
@@ -111,7 +119,8 @@ class Fit:
         return numpy.reshape(rows, (len(sides), n, self.length)).transpose(0, 2, 1), by_position[:, n:]
 
     def begin(self):
-        """Returns x at which all runs end: the user's start, or with one unknown multiplied by 3, 1/3, 10 or 1/10."""
+        """Returns a start vector x for which no run fails: the user's start values, or the first that works of those in
+        which one unknown is multiplied by 3, 1/3, 10 or 1/10."""
         start = numpy.array([one.number(one.start_value) for one in self.unknowns])
         units = numpy.diag([float(one.logarithmic) for one in self.unknowns])
         tries = [start, *(start + shift * unit for shift in numpy.log([3, 1 / 3, 10, 1 / 10]) for unit in units)]
@@ -125,7 +134,7 @@ class Fit:
     def solve(self):
         x = self.begin()
         places = len(x) - len(self.unknowns)
-        free = len(x) - (self.length - self.count)  # less what is known beforehand
+        free = len(x) - (self.length - self.count)  # an unknown or scale with a known value does not need data
         expect(free < self.count,
                f"{self.law}: {free} numbers are unknown, positions included, and there are {self.count} data")
         bounds = numpy.array([one.bounds for one in self.unknowns] + [(-numpy.inf, numpy.inf)] * places).T
@@ -154,7 +163,8 @@ class Fit:
         return self
 
     def errors(self):
-        """Computes the covariance of the unknowns, positions eliminated; `told`: which of them the data determine."""
+        """Computes the covariance matrix of the unknowns that the data determine. The positions are eliminated. `told`:
+        one flag per unknown, true if the data determine it."""
         (up, down), self.moved = self.jacobian(self.x, TELLS, (1, -1))
         up, down = (numpy.where(numpy.isfinite(one), one, other) for one, other in ((up, down), (down, up)))
         self.derivative, disagreement = (up + down) / 2, numpy.linalg.norm(up - down, axis=0) / 2

@@ -1,4 +1,4 @@
-"""What a fit found, as text and as a figure, and which further experiment would determine more."""
+"""Report of a fit as text and as a figure, and the information that further experiments would add."""
 
 import copy
 import itertools
@@ -14,8 +14,9 @@ from .fit_model import SERIES, Fit, determined
 
 
 def further(fits, settings):
-    """Returns for each further experiment (name, {unknown: standard error with it}, {other law: expected rise of chi
-    square}). Each has data like the first experiment's, at the prediction of the best law."""
+    """Returns for each possible further experiment (name, {unknown: standard error if the experiment is added}, {other
+    law: expected increase of its chi square}). The experiment has data of the same kind and error as the first
+    experiment, with the values that the best law predicts. `settings`: {key: values}, one experiment per value."""
     best, first, rows = fits[0], fits[0].experiments[0], []
     for key, value in ((key, value) for key, values in settings.items() for value in values):
         candidate = copy.copy(first)
@@ -46,11 +47,12 @@ def further(fits, settings):
 
 
 def _alone(fit, candidate):
-    """Returns a fit of the candidate only, at the values of `fit`; None if its run failed."""
+    """Returns a fit of the experiment `candidate` only. Its unknowns keep their values from `fit`; only positions are
+    fitted. Returns None if the run of the candidate failed."""
     index = [k for k, unknown in enumerate(fit.unknowns) if unknown.owner in (None, candidate.name)]
     unknowns = [copy.copy(fit.unknowns[k]) for k in index]
     for unknown in unknowns:
-        unknown.known = None  # what is known beforehand counts once
+        unknown.known = None  # a value known beforehand is already included in `fit`
     one, numbers = Fit(fit.law, fit.settings, unknowns, [candidate], fit.runs), fit.x[index]
     (found,) = one.predictions(numbers)
     if found is None:
@@ -65,7 +67,7 @@ def _alone(fit, candidate):
 
 
 def stated(value, error):
-    """Returns a value and its error as text, to two digits of the error."""
+    """Returns a value and its error as text. The error has two digits, and the value is rounded accordingly."""
     powers = [int(f"{abs(one):.1e}".partition("e")[2]) for one in (value or error, error)]
     texts = f"{value:#.{numpy.clip(powers[0] - powers[1] + 2, 1, 12)}g}", f"{error:#.2g}"
     return " ± ".join(text.rstrip(".") for text in texts)

@@ -18,27 +18,29 @@ from ..figures import style
 from ..interpolation import mean
 from ..mistakes import Mistake, command_line, expect, log
 
-WINDOW = 8   # pixels along a ray to either side of the edge, over which its step is summed
-FINE = 0.25  # pixels between samples of a ray
+WINDOW = 8   # half the length, in pixels, of the part of a ray around the edge whose brightness is used
+FINE = 0.25  # distance between samples of a ray, in pixels
 
 
 def grey(path):
-    """Returns the picture's brightness on white (rows, columns), rows from above."""
+    """Returns the brightness of a picture, 0 to 1, shape (rows, columns), with the uppermost row first. Transparent
+    pixels are shown on white."""
     try:
         picture = imread(path)
         picture = numpy.atleast_3d(picture.astype(float) / (255 if picture.dtype.kind == "u" else 1))
-    except Exception as error:  # the reader has many kinds
+    except Exception as error:  # imread raises exceptions of many types
         raise Mistake(f"{path} is no picture that can be read: {error}") from None
     return (1 + (picture[..., :3] - 1) * picture[..., 3:].prod(2, keepdims=True)).mean(2)
 
 
 def frame(picture):
-    """Returns the pixels at the edge of a picture."""
+    """Returns the values of the pixels on the four sides of a picture."""
     return numpy.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
 
 
 def body(picture, path):
-    """Returns a mask of the largest thing that differs from the frame by Otsu's threshold, holes filled."""
+    """Returns a mask (rows, columns) of the particle: the largest connected region that Otsu's threshold separates from
+    most pixels of the frame, with holes filled."""
     smooth = scipy.ndimage.gaussian_filter(picture, 2)
     numbers, edges = numpy.histogram(smooth, 256)
     middles = (edges[1:] + edges[:-1]) / 2
@@ -55,8 +57,8 @@ def body(picture, path):
 
 
 def edge(picture, mask, points):
-    """Returns points (n, 2) of the edge as column and row, and the standard error of a point, in pixels. An odd number
-    of rays, about two pixels apart, is averaged for a point, after the bend of the outline between them is removed."""
+    """Returns points (n, 2) of the edge as (column, row), and the standard error of a point, in pixels. Each point is
+    the middle value of a parabola fitted to an odd number of neighbouring rays, about two pixels apart."""
     row, column = scipy.ndimage.center_of_mass(mask)
     each = max(2, int(numpy.sqrt(mask.sum() * numpy.pi) / points)) // 2 * 2 + 1
     angle = 2 * numpy.pi * numpy.arange(points * each) / (points * each)
@@ -68,13 +70,15 @@ def edge(picture, mask, points):
     off = numpy.linspace(-reach, reach, 1 + 2 * int(WINDOW / FINE))
 
     def profiles():
-        """Returns the brightness on the windows, from 1 inside to 0 outside."""
+        """Returns the brightness along the window of each ray, scaled to 1 inside and 0 outside the particle."""
         values = scipy.ndimage.map_coordinates(picture, middle + ray * (found[:, None] + off), order=3, mode="nearest")
         ends = numpy.stack([values[:, :len(off) // 5].mean(1), values[:, -len(off) // 5:].mean(1)])
         ends = scipy.ndimage.gaussian_filter1d(ends, len(angle) / 40, axis=1, mode="wrap")[:, :, None]
         return (values - ends[1]) / (ends[0] - ends[1])
 
-    for _ in range(3):  # blur keeps the area of a disc, not its diameter: rings count by their radius
+    # Blur conserves the area of a disc, so the radius of the edge is the radius of the disc with the same sum of
+    # brightness. Rings are therefore weighted by their radius.
+    for _ in range(3):
         rings = (profiles() * (found[:, None] + off)).mean(1)
         found = numpy.sqrt((found - reach) ** 2 + 4 * reach * rings)
     for _ in range(3):
@@ -82,24 +86,28 @@ def edge(picture, mask, points):
         slope = numpy.gradient(values.mean(0), off)
         found = found - (values - values.mean(0)) @ slope / (slope @ slope)
     variance = -mean(off, off**2 * slope) * (off[-1] - off[0])
-    found -= (variance / (2 * found)).mean()  # what the area of the rings, that of a disc, made of the bend
+    # The loop over rings has removed the shift by blur as for a circle. It is restored here, because unbent() removes
+    # the shift for the actual curvature.
+    found -= (variance / (2 * found)).mean()
     radius, error = averaged(found, each)
     places = numpy.column_stack([column + radius * numpy.cos(angle[::each]), row + radius * numpy.sin(angle[::each])])
     return unbent(places, variance), error
 
 
 def unbent(points, variance):
-    """Returns the points (n, 2) of an outline, in the order of their angle, moved back by what a blur moved them."""
+    """Returns the points (n, 2) of an outline, corrected for the shift by blur of the given variance. The points are in
+    the order of their angle."""
     before, after = points - numpy.roll(points, 1, axis=0), numpy.roll(points, -1, axis=0) - points
     chord, lengths = before + after, [numpy.linalg.norm(one, axis=1) for one in (before, after, before + after)]
-    # of the circle through three points
+    # curvature of the circle through three neighbouring points
     curvature = 2 * (before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]) / numpy.prod(lengths, axis=0)
     outwards = chord[:, ::-1] * [1, -1] / lengths[2][:, None]
     return points + (variance / 2 * curvature)[:, None] * outwards
 
 
 def averaged(radius, each):
-    """Returns the middle values of parabolas (of three rays: lines) through `each` rays per point, and their error."""
+    """Returns for each point the middle value of the parabola (for three rays, the line) fitted to its `each` rays, and
+    the standard error of these values. `radius`: radius of the edge on each ray."""
     rays = numpy.roll(radius, each // 2).reshape(-1, each)
     basis = numpy.vander(numpy.linspace(-1, 1, each), 3 if each > 4 else 2, increasing=True)
     weights = numpy.linalg.pinv(basis)

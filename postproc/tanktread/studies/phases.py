@@ -28,31 +28,36 @@ from ..mistakes import Mistake, command_line, expect, log
 from . import common
 from .common import keys_of, number, study_of, values_of
 
-NEAR = 1.5  # factor about the last border between which the next one is looked for first
-SWING = 0.5  # half turns that a tumbling shape makes at least; one whose membrane treads swings by less
-HALF = 180  # degrees: a shape, or its membrane, looks as before
-ASKEW, STRAIGHT = 0.1, 0.005  # of a cell that has left the axis or turned away from it; what its mesh may leave
-GROWS = 1.5  # a cell that leaves the axis is more than so many times as askew as before
+NEAR = 1.5  # a border is first searched for between the previous border divided and multiplied by this factor
+SWING = 0.5  # a shape that rotates by at least so many half turns tumbles; smaller rotations are oscillations
+HALF = 180  # period of inclination and phase in degrees: the shape looks the same after half a turn
+# Limits of the asymmetry sqrt(d^2 + D^2 sin^2 2i) (see above) in a capillary: above ASKEW the cell slips; an asymmetry
+# below STRAIGHT may be a discretisation error.
+ASKEW, STRAIGHT = 0.1, 0.005
+GROWS = 1.5  # the asymmetry grows if it is more than this factor larger in the last third of the time than in the first
 
-# Two motions, the one below the border first, by the names that `tell` gives, and what it measures.
+# A pair of motions. `below` (one or more names), `above`: names of the motions on the two sides of a border. `tell`:
+# function that returns the name of the motion of a run, then two measures of it. `measures`: names of these measures.
 Kind = collections.namedtuple("Kind", "below above tell measures")
 
 
 def in_shear(series, begin):
-    """Returns `tumbles`, `both`, `treads` or None, and half turns of the shape and the membrane on it after `begin`."""
+    """Returns the motion after the fraction `begin` of the run: `tumbles`, `treads` (tank-treads), `both` or None
+    (neither). Also returns the half turns of the shape, and of the membrane relative to the shape."""
     defined = ~numpy.isnan(series["inclination"])  # a shape with two equal semi-axes has no inclination
     time, phase, inclination = (series[name][defined] for name in ("time", "phase", "inclination"))
     late = time >= series["time"][0] + begin * numpy.ptp(series["time"])
     if not late.any():
         return None, numpy.nan, numpy.nan
-    turned = -numpy.unwrap(inclination, period=HALF)  # in the sense of the phase
+    turned = -numpy.unwrap(inclination, period=HALF)  # rotation of the shape, positive in the same sense as the phase
     over, around = (numpy.ptp(angle[late]) / HALF for angle in (turned, phase - turned))
     once = around >= 1
     return (("both" if once else "tumbles") if over >= SWING else "treads" if once else None), over, around
 
 
 def in_capillary(series, begin):
-    """Returns `slips` or `parachute`, and how askew the cell is in the first and last third of time after `begin`."""
+    """Returns the motion after the fraction `begin` of the run: `slips` or `parachute`. Also returns the largest
+    asymmetry in the first and in the last third of this time."""
     time = series["time"]
     away = numpy.hypot(series["centroid_x2"], series["centroid_x3"]) / numpy.cbrt(3 * series["volume"] / (4 * numpy.pi))
     inclination = numpy.radians(numpy.nan_to_num(series["inclination"]))  # if it is NaN, D is 0
@@ -68,7 +73,8 @@ MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear, ("half turns o
 
 
 class Diagram:
-    """A study file and its `borders`, {curve: rows of the value across, two values about the border, how it ended}."""
+    """Phase diagram of a study file. `borders`: {curve: rows}. A row contains the value of the key across, the values
+    of the key along that are just below and just above the border, and how the search ended."""
 
     def __init__(self, path, runs):
         text = study_of(path, {"set", "along", "across", "curves", "literature"}, {"motion", "begin"})
@@ -76,7 +82,7 @@ class Diagram:
         kind = str(text.get("motion", "shear"))
         expect(kind in MOTIONS, f"{path}: the motion is {' or '.join(MOTIONS)}, not {kind}")
         self.kind = MOTIONS[kind]
-        # how a search ends without a border in the range
+        # texts for a search that finds no border in its range
         self.to_here, self.from_here = f"{self.kind.below[0]} to here", f"{self.kind.above} from here"
         self.along, across, curves = text["along"], text["across"], text["curves"]
         expect(set(self.along) == {"key", "from", "to", "within"}, f"{path}: along has key, from, to and within")
@@ -97,7 +103,7 @@ class Diagram:
         self.borders, self.made = {name: [] for name in curves}, {}  # runs by (curve, value across, value along)
 
     def settings(self, name, keys):
-        """Returns the settings of a curve, one dict for each of its values across."""
+        """Returns the settings of a curve: one dict for each of its values of the key across."""
         at = [number(value, f"{name}: {self.across}") for value in values_of(self.across, keys[self.across])]
         lists = {key: given for key, given in keys.items() if isinstance(given, list)} | {self.across: at}
         for key, one in lists.items():
@@ -105,7 +111,8 @@ class Diagram:
         return [keys | dict(zip(lists, row)) for row in zip(*lists.values())]
 
     def holds(self, name, row, value):
-        """Returns whether the motion is the one below the border. Keeps in `made` what is known about the run."""
+        """Returns True if the run with this value of the key along has the motion below the border. Makes the run if it
+        is not in `made`, and stores its motion, measures, time and directory there."""
         key = name, row[self.across], value
         if key not in self.made:
             outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})
@@ -122,7 +129,8 @@ class Diagram:
         return motion != self.kind.above
 
     def border(self, name, row, last):
-        """Returns the border and how the search ended. Searches about the last border first, then the rest."""
+        """Returns the largest known value of the key along below the border, and how the search ended (see
+        common.edge). `last`: border found for the previous row, near which the search starts; or None."""
         low, high, factor = self.range
         holds = functools.partial(self.holds, name, row)
         if last:
@@ -178,7 +186,7 @@ class Diagram:
             bars(*numpy.reshape(rows, (-1, 3)).T, fmt=mark, color=style.FAINT, markersize=4, linewidth=0.8, label=name)
         axes.set(xscale="log", yscale="log", xlabel=self.across, ylabel=self.along["key"])
         for axis, words in (axes.xaxis, {"xscale": "linear"}), (axes.yaxis, {}):
-            # there is no power of ten to go by
+            # the axis spans less than a factor of ten, or contains 0: the logarithmic locator would set too few ticks
             if axis.get_data_interval()[0] <= 0 or numpy.divide(*axis.get_view_interval()[::-1]) < 10:
                 axes.set(**words)
                 axis.set_major_locator(axis.get_major_locator() if words else LogLocator(subs=(1, 1.5, 2, 3, 4, 6)))
@@ -198,7 +206,7 @@ def main():
     diagram = Diagram(parsed.study, common.study(parsed))
     try:
         diagram.find()
-    finally:  # what is there, when it is stopped
+    finally:  # if the search is interrupted, write what has been found
         diagram.write(parsed.output)
         if diagram.found:
             from ..figures import style

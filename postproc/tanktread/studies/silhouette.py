@@ -1,13 +1,13 @@
-"""The outline of a surface as a camera sees it, and the distances of points from it."""
+"""Outline of a surface in parallel projection, and the distances of points from it."""
 
 import numpy
 import scipy.interpolate
 
-ZERO = 1e-11  # relative to the largest value of what vanishes on the outline: less is 0
+ZERO = 1e-11  # a component of a normal counts as 0 below this fraction of its largest value
 
 
 class Outline:
-    """A closed curve through `points` (n, 2) in counter-clockwise order: a periodic cubic spline over chord length."""
+    """A closed curve: periodic cubic spline in the chord length through `points` (n, 2), in counter-clockwise order."""
 
     def __init__(self, points):
         closed = numpy.vstack([points, points[:1]])
@@ -20,7 +20,7 @@ class Outline:
         return self._curve(numpy.arange(n) / n * self.length)
 
     def centred(self):
-        """Returns the same outline about the centroid of the enclosed area."""
+        """Returns the outline moved so that the centroid of the enclosed area is at the origin."""
         a = self.even(8 * len(self.points))
         b = numpy.roll(a, -1, axis=0)
         area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
@@ -41,9 +41,10 @@ class Outline:
 
 
 def seen(shot, axis=1, k=8):
-    """Returns the Outline of a snapshot's surface as seen along x_{axis+1}: of the points whose normal is across the
-    line of sight, found exactly on k + 1 lines of each parameter in every cell, the outermost in each direction from
-    the middle. Raises ValueError if the outline is met twice in a direction."""
+    """Returns the Outline of a snapshot's surface in the projection along x_{axis+1}. In every cell, bisection finds
+    points whose normal is perpendicular to this axis, on k + 1 lines of constant s and of constant t. The outline
+    passes through the outermost of these points in each direction from the middle. Raises ValueError if a ray from the
+    middle meets the outline more than once."""
 
     def across(cells, s, t):
         tangent_s, tangent_t = (shot.evaluate(shot.points, cells, s, t, *order) for order in ((1, 0), (0, 1)))
@@ -54,7 +55,7 @@ def seen(shot, axis=1, k=8):
     values = across(cell, s / k, t / k).reshape(shape)
     tiny = ZERO * abs(values).max()
     found = [numpy.array([cell, s / k, t / k])[:, abs(values).ravel() <= tiny]]
-    for along in 1, 2:  # sign changes between neighbours on a line, by bisection
+    for along in 1, 2:  # find each sign change between neighbouring samples on a line by bisection
         first, second = numpy.moveaxis(values, along, 0)[:-1], numpy.moveaxis(values, along, 0)[1:]
         step, which, other = numpy.nonzero((first * second < 0) & (abs(first) > tiny) & (abs(second) > tiny))
         sign, low, high = numpy.sign(first[step, which, other]), step / k, (step + 1) / k
@@ -70,7 +71,8 @@ def seen(shot, axis=1, k=8):
 
 
 def _outermost(points):
-    """Returns the Outline of the outermost points by direction from their middle; of close points one is kept."""
+    """Returns the Outline through the points that are outermost in their direction from the middle of all points. Of
+    several points that are close together, one is kept."""
     x, y = (points - (points.min(0) + points.max(0)) / 2).T
     order = numpy.argsort(numpy.arctan2(y, x))
     angle, radius, points = numpy.arctan2(y, x)[order], numpy.hypot(x, y)[order], points[order]
@@ -78,7 +80,7 @@ def _outermost(points):
     wide, far = numpy.concatenate([angle - 2 * numpy.pi, angle, angle + 2 * numpy.pi]), numpy.tile(radius, 3)
     first, last = numpy.searchsorted(wide, angle - window), numpy.searchsorted(wide, angle + window)
     top = numpy.array([far[a:b].max() for a, b in zip(first, last)])
-    # an outline does not fall off faster within the window, but an inner curve does
+    # points of inner curves are removed: within the window, the radius of the outline decreases less than this
     points = points[radius > top * (1 - 3 * window)]
     spacing = numpy.linalg.norm(points - numpy.roll(points, 1, axis=0), axis=1).sum() / len(points)
     kept = [0]
