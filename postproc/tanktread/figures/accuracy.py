@@ -1,4 +1,5 @@
-"""Figures of accuracy: errors against a known curve, work against accuracy, and sharp edges from rounded ones."""
+"""Figures of accuracy: estimated error against computing time, error relative to a reference curve, and extrapolation
+from rounded edges of a channel to sharp edges."""
 
 import pathlib
 import tempfile
@@ -18,12 +19,12 @@ from .register import figure
 PARTS = {"mesh": ("Surface/", "Particles/", "Adaptation/", "Tube/", "Channel/"),
          "time": ("Time/", "Steady/", "Periodic/"), "quadrature": ("Quadrature/", "Solvers/")}
 COSTS = {"n_control_points": "control points", "wall_seconds": "seconds", "evaluations": "velocity evaluations"}
-SAMPLES = 400  # along the way
+SAMPLES = 400  # number of centroid positions at which extents are drawn
 
 
 def changes_by_part(run, settings, request, study):
-    """Returns {part: change of the result of a run if only this part of its settings is refined}. `settings`: those of
-    the run and of the next finer one."""
+    """Returns {part: change of the result of a run if only this part of the discretisation (see PARTS) is refined}.
+    `settings`: settings of the run and of the next finer level."""
     found = {}
     with tempfile.TemporaryDirectory() as folder:
         deck = pathlib.Path(folder) / f"{run.directory.parent.resolve().name}.yaml"
@@ -38,7 +39,8 @@ def changes_by_part(run, settings, request, study):
 
 
 def values(run, request):
-    """Returns times and values of which a request limits the error; of a branch those at folds and at its end."""
+    """Returns the times and values whose error a request limits: the whole series, its last value, or its average. Of a
+    branch of steady shapes, only the folds and the last point are included."""
     times, series = run.series["time"], run.series[request["series"]]
     if "fold" in run.series:
         chosen = numpy.flatnonzero((run.series["fold"] != 0) | (numpy.arange(len(series)) == len(series) - 1))
@@ -49,7 +51,8 @@ def values(run, request):
 
 
 def largest(one, other):
-    """Returns the largest difference of two series at the times that both have; by interpolation if these are few."""
+    """Returns the largest difference of two series (times, values) at their common times. If there are fewer than five
+    common times, interpolates one series at the times of the other."""
     _, mine, theirs = numpy.intersect1d(one[0].round(9), other[0].round(9), return_indices=True)
     if len(mine) >= min(5, len(one[0]), len(other[0])):
         return float(numpy.nanmax(abs(one[1][mine] - other[1][theirs])))
@@ -117,7 +120,7 @@ def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None,
         families.setdefault(family, []).append((points, seconds, evaluations, errors[-1].max()))
         log.info(f"{run.name}: {points:.0f} control points, {family}: largest error {errors[-1].max():.2e}, "
                  f"{evaluations:.0f} evaluations, {seconds:.2f} s")
-    room = 0.1 * min(map(numpy.median, errors)), 30 * errors[0].max()  # for the legend
+    room = 0.1 * min(map(numpy.median, errors)), 30 * errors[0].max()  # limits that leave space for the legend
     over_time.set(xlabel=time_label(runs), ylabel="error", ylim=room)
     over_time.legend(loc="upper left", ncols=2)
     for (family, rows), color in style.coloured(sorted(families.items())):
@@ -128,7 +131,7 @@ def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None,
         if numpy.ptp(costs[0]) > 0:  # fitted in the mesh size, which is control points to the power -1/2
             log.info(f"{family}: order {-2 * numpy.polyfit(numpy.log(costs[0]), numpy.log(worst), 1)[0]:.2f}")
     n = numpy.array([runs[k].series["n_control_points"][-1] for k in (0, -1)])
-    if n[1] > n[0]:  # in the mesh size, from the coarsest mesh on
+    if n[1] > n[0]:  # guide line: an error proportional to the fourth power of the mesh size
         over_costs[0].loglog(n, 0.3 * errors[0].max() * (n / n[0]) ** -2.0, label="fourth order", **style.GUIDE)
     over_costs[0].legend(loc="lower left")
 
@@ -179,17 +182,19 @@ def step(deck, axis, *, radii: tuple[float, float] = (0.1, 0.05), finer: list[st
 
 
 def power():
-    """Returns the power 2 q of the radius of an edge."""
+    """Returns the exponent 2 q with which the effect of a rounded edge grows with its radius (see `step`)."""
     return 2 * scipy.optimize.brentq(lambda q: numpy.sin(1.5 * numpy.pi * q) - q, 0.5, 0.6, xtol=1e-15)
 
 
 def sharp_edges(of_large, of_small, ratio):
-    """Returns the extents beside sharp edges, from those of two radii with this ratio."""
+    """Returns the extents of a particle next to sharp edges, extrapolated from its extents with edges of a large and a
+    small radius. `ratio`: large radius divided by small radius."""
     return of_small - (of_large - of_small) / (ratio**power() - 1)
 
 
 def extents(outcome, x):
-    """Returns the extents (3, x.size) over 2 a with the centroid at x1 = x, by cubic splines."""
+    """Returns the extents (3, x.size) along the axes, divided by 2 a, when the centroid is at x1 = x. They are
+    interpolated by cubic splines."""
     expect(outcome.done, f"{outcome.directory}: {outcome.message}")
     series, way = outcome.series, outcome.series["centroid_x1"]
     expect((numpy.diff(way) > 0).all(),
@@ -201,7 +206,8 @@ def extents(outcome, x):
 
 
 def of_radius(runs, deck, words, finer, radius, x):
-    """Returns the extents (3, x.size) with edges of a radius, with the sum of the changes by each --finer."""
+    """Returns the extents (3, x.size) for one radius of the edges, plus the change that each setting of --finer causes
+    when it is applied separately."""
     settings = {"Channel/corner radius": radius} | settings_of(words)
     first = found = extents(runs.run(deck, settings), x)
     for one in finer:

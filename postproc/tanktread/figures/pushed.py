@@ -1,4 +1,5 @@
-"""Whether a capsule passes a constriction, and an axisymmetric membrane at rest that closes it without friction."""
+"""Figure of a capsule that passes or blocks a constriction, and the model of an axisymmetric membrane at rest that
+touches the wall without friction and closes the channel."""
 
 import numpy
 import scipy.integrate
@@ -7,7 +8,7 @@ from ..mistakes import expect, log
 from . import style
 from .register import figure
 
-BARRIER = 1e-5  # energy by which the membrane keeps off the wall, over G_s and unstressed area
+BARRIER = 1e-5  # B of the energy -B G_s ln(gap) per unstressed area that keeps the membrane away from the wall
 
 
 @figure(2, 1, 5.6, 6, sharex=True)
@@ -45,30 +46,33 @@ def stuck(runs, upper, lower, *, elements: int = 160):
 
 
 def of_flow(run):
-    """Returns viscosity times mean velocity."""
+    """Returns the viscosity times the mean velocity of the flow."""
     return run.value("Flow/viscosity", 1.0) * run.value("Flow/mean velocity", 1.0)
 
 
 def drop_of_velocity(run):
     """Returns the pressure drop of the empty channel divided by viscosity times mean velocity, in 1/length."""
-    return run.series["channel_pressure_drop"].max() / of_flow(run)  # if the flow begins at rest, later
+    return run.series["channel_pressure_drop"].max() / of_flow(run)  # the first value is 0 if the flow starts from rest
 
 
 def highest(way, pressure):
-    """Returns the largest pressure, and the centroid there, of the parabola through the five values around it."""
+    """Returns the largest pressure and the centroid position at which it occurs, by a parabola fitted to the five
+    values around the maximum. `way`: centroid positions of the values `pressure`."""
     top = numpy.argmax(pressure)
     fold = numpy.polyfit(way[top - 2:top + 3] - way[top], pressure[top - 2:top + 3], 2)
     return fold[2] - fold[1]**2 / (4 * fold[0]), way[top] - fold[1] / (2 * fold[0])
 
 
 def derivatives(function, at):
-    """Returns the derivatives (..., k) of a function (...) by the last axis of `at`, to round-off (complex step)."""
+    """Returns the derivatives (..., k) of a function with values (...) with respect to the k components of the last
+    axis of `at`. They are exact up to round-off (complex-step method); the function must accept complex numbers."""
     steps = 1e-30j * numpy.eye(at.shape[-1])
     return numpy.stack([function(at + step).imag / 1e-30 for step in steps], axis=-1)
 
 
 class Pushed:
-    """The membrane as n cones between rings `z` (n + 1, 2) (x, r) from the rear to the front; unit: shear modulus."""
+    """Axisymmetric membrane of n conical elements between n + 1 rings. The state `z` (n + 1, 2) holds x and the radius
+    r of each ring, from the rear pole to the front pole. Tensions are in units of the shear modulus."""
 
     def __init__(self, run, n, radius=None):
         self.mouth, self.depth = run.value("Channel/radius", 1.0), run.value("Channel/depth", 0.5)
@@ -82,9 +86,9 @@ class Pushed:
         self.area = 2 * numpy.pi * self.ring * self.length
         self.share = (numpy.append(self.area, 0) + numpy.append(0, self.area)) / 2
         self.n, self.volume = n, 4 / 3 * numpy.pi * self.radius**3
-        self.rings = numpy.arange(2 * n + 2).reshape(n + 1, 2)  # numbers of the coordinates of each ring
-        self.numbers = numpy.hstack([self.rings[:-1], self.rings[1:]])  # of the four of each cone
-        self.loose = numpy.setdiff1d(self.rings, self.rings[[0, -1], 1])  # the poles stay on the axis
+        self.rings = numpy.arange(2 * n + 2).reshape(n + 1, 2)  # indices of the two coordinates of each ring in z.flat
+        self.numbers = numpy.hstack([self.rings[:-1], self.rings[1:]])  # indices of the four coordinates of each cone
+        self.loose = numpy.setdiff1d(self.rings, self.rings[[0, -1], 1])  # free coordinates: all except r of the poles
 
     def wall(self, x):
         """Returns the radius of the wall at x and its derivative."""
@@ -92,22 +96,23 @@ class Pushed:
         return self.mouth - half * (1 + numpy.cos(k * x)), half * k * numpy.sin(k * x)
 
     def gap(self, z):
-        """Returns the distance from the wall, along r, of each ring (n + 1, 2)."""
+        """Returns the radial distance of each ring from the wall (n + 1,)."""
         return self.wall(z[:, 0])[0] - z[:, 1]
 
     def push(self, z):
-        """Returns the force of the wall on each ring."""
+        """Returns the radial force of the wall on each ring (n + 1,)."""
         return BARRIER * self.share / self.gap(z)
 
     def by_barrier(self, z):
-        """Returns the gradient (n + 1, 2) of the energy by which the membrane keeps off the wall."""
+        """Returns the gradient (n + 1, 2) of the energy that keeps the membrane away from the wall (see BARRIER)."""
         return self.push(z)[:, None] * numpy.column_stack([-self.wall(z[:, 0])[1], numpy.ones(len(z))])
 
     def by_energy(self, ends):
-        """Returns the gradient (cones, 4) of the energy (G_s/2)(l1^2 + l2^2 + 1/(l1 l2)^2 - 3) times the unstressed
-        area of each cone by the coordinates x, r of its two rings (cones, 4)."""
+        """Returns the gradient (cones, 4) of the elastic energy of each cone with respect to the coordinates (x, r, x,
+        r) of its two rings. The energy is (G_s/2) (l1^2 + l2^2 + 1/(l1 l2)^2 - 3) times the unstressed area, with the
+        stretches l1, l2. `ends`: the coordinates (cones, 4)."""
         d = ends[:, 2:] - ends[:, :2]
-        length = numpy.sqrt((d**2).sum(1))  # of complex numbers too
+        length = numpy.sqrt((d**2).sum(1))  # not numpy.linalg.norm: complex steps
         s, t = length / self.length, (ends[:, 1] + ends[:, 3]) / (2 * self.ring)
         by_s = numpy.hstack([-d, d]) / (length * self.length)[:, None]
         by_t = numpy.array([0, 0.5, 0, 0.5]) / self.ring[:, None]
@@ -121,7 +126,7 @@ class Pushed:
 
     @staticmethod
     def by_volumes(ends):
-        """Returns the gradient (cones, 4) of the volume of each cone by the coordinates of its two rings."""
+        """Returns the gradient (cones, 4) of the volume of each cone with respect to the coordinates of its rings."""
         h, a, b = ends[:, 2] - ends[:, 0], ends[:, 1], ends[:, 3]
         square = a * a + a * b + b * b
         return numpy.pi / 3 * numpy.stack([-square, h * (2 * a + b), square, h * (a + 2 * b)], 1)
@@ -131,12 +136,14 @@ class Pushed:
         return numpy.pi * self.wall(x)[0] ** 2
 
     def behind(self, z, closed):
-        """Returns the volume of the fluid in the channel behind the ring that closes it."""
+        """Returns the volume of the fluid in the constriction upstream of the ring that closes the channel. `closed`:
+        index of this ring."""
         whole = scipy.integrate.fixed_quad(self.area_at, -self.width, z[closed, 0], n=20)[0]
         return whole - self.volumes(z)[:closed].sum()
 
     def system(self, z, closed):
-        """Returns gradients (3, n), Hessians (3, n, n) of energy, volume and fluid behind by the free coordinates."""
+        """Returns gradients (3, n) and Hessians (3, n, n) with respect to the free coordinates, of three functions: the
+        energy, the volume of the capsule, and the volume of fluid `behind` the ring `closed`."""
         gradient, matrix = numpy.zeros((3, z.size)), numpy.zeros((3, z.size, z.size))
         ends, behind, ring = numpy.hstack([z[:-1], z[1:]]), slice(closed), slice(closed, closed + 1)
         cones, rings = self.numbers, self.rings
@@ -148,8 +155,9 @@ class Pushed:
         return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose]
 
     def rest(self, z, pressures, closed, behind):
-        """Returns the shape at rest with this volume of fluid behind it and the pressures inside and behind, by
-        Newton's method; None if it is not found."""
+        """Computes by Newton's method the equilibrium shape with the volume `behind` of fluid behind it. `z`,
+        `pressures` (inside the capsule and behind it): start values. Returns the shape and the pressures; None if the
+        iteration does not converge."""
         n = self.loose.size
         for _ in range(60):
             gradient, matrix = self.system(z, closed)
@@ -171,7 +179,8 @@ class Pushed:
         return None
 
     def through(self):
-        """Returns centroids (m,) from the first touch to the throat, and the pressure drops (m,) there."""
+        """Returns the centroid positions (m,) of equilibrium shapes, from the first contact with the wall to the
+        throat, and the pressure drop (m,) across the capsule at each."""
         z = self.radius * self.sphere
         places = numpy.linspace(-self.width - self.radius, 0, 4000)
         near = (self.wall(z[:, 0] + places[:, None])[0] - z[:, 1]).min(axis=1) < 0.005 * self.radius
