@@ -1,4 +1,4 @@
-"""Reading of files that the program or a user wrote. What is wrong with one is a Mistake: one sentence."""
+"""Functions that read files of the program or of a user. If a file is missing or wrong, they raise Mistake."""
 
 import contextlib
 import difflib
@@ -30,7 +30,7 @@ def parsed(path, parse=yaml_text, kind=object):
 
 @contextlib.contextmanager
 def opened(path):
-    """Opens an HDF5 file to read it. What it lacks in the body of the `with` statement is a Mistake too."""
+    """Opens an HDF5 file for reading. A missing dataset in the body of the `with` statement raises Mistake, too."""
     try:
         with h5py.File(path, "r") as file:
             yield file
@@ -51,7 +51,8 @@ def datasets(group):
 
 
 class Named(dict):
-    """A dict of what a file holds. A name that it lacks is a Mistake: "`where` holds no series D; there are: …"."""
+    """A dict of the named contents of a file. An unknown name raises Mistake with the available names. `where`:
+    beginning of the message, such as "run.h5 holds no series"."""
 
     def __init__(self, content, where):
         super().__init__(content)
@@ -69,8 +70,8 @@ def arrays_of(path):
 
 
 def table(path, names=(), columns=2, delimiter=","):
-    """Returns a CSV file's columns of these names as a structured array, or without names its rows of numbers (n, k).
-    Without names, a first row of words is left out, and k is `columns` or more. Anything else is a Mistake."""
+    """Returns the columns of a CSV file. With `names`: a structured array with these columns. Without: all rows as an
+    array (n, k), where k is at least `columns`; a header row is skipped. Raises Mistake if this is not possible."""
     expect(pathlib.Path(path).is_file(), f"there is no file {path}")
     found = numpy.zeros(0)
     with warnings.catch_warnings(), contextlib.suppress(OSError, ValueError, IndexError):

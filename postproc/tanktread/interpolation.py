@@ -4,8 +4,8 @@ import numpy
 
 
 def interpolated(t, values, at, order=6):
-    """Returns values(t) at the times `at`, by polynomials through `order` points. Rows of a repeated time, where a mesh
-    has changed, are left out."""
+    """Returns values(t) at the times `at`, by polynomials through `order` points. Repeated times, which mark a change
+    of the mesh, are left out."""
     result, kept = [], numpy.diff(t, prepend=-numpy.inf) > 0
     t, values = numpy.asarray(t)[kept], numpy.asarray(values)[kept]
     for time in at:
@@ -23,8 +23,8 @@ def averages_between(t, values, ends):
 
 
 def mean(t, values):
-    """Returns the average of values(t) over the times t, of the cubics through the four nearest rows; the value if
-    there is one time. Rows of a repeated time, where a mesh has changed, are left out."""
+    """Returns the time average of values(t), interpolated by cubics through the four nearest rows. Returns the value if
+    there is only one time. Repeated times, which mark a change of the mesh, are left out."""
     kept = numpy.diff(t, prepend=-numpy.inf) > 0
     t, values = numpy.asarray(t)[kept], numpy.asarray(values)[kept]
     if len(t) < 2:
@@ -34,8 +34,9 @@ def mean(t, values):
 
 
 def difference(t, values, curve_t, curve_values):
-    """Returns the largest |values - curve| over the times that both cover, or 0. The one of more times is evaluated at
-    the times of the other. Rows with NaN and rows of a repeated time, where a mesh has changed, are left out."""
+    """Returns the largest |values - curve| over the common range of time; 0 if there is none. The function with more
+    times is interpolated at the times of the function with fewer times. Rows with NaN and repeated times, which mark a
+    change of the mesh, are left out."""
     pairs = numpy.array([t, values], float), numpy.array([curve_t, curve_values], float)
     pairs = [pair[:, ~numpy.isnan(pair[1]) & (numpy.diff(pair[0], prepend=-numpy.inf) > 0)] for pair in pairs]
     (fine_t, fine), (coarse_t, coarse) = sorted(pairs, key=lambda pair: -pair.shape[1])

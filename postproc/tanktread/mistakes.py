@@ -1,4 +1,4 @@
-"""Errors that are reported in one sentence, and the frame that all commands of the package share."""
+"""Errors that are reported in one sentence, and the functions that start all commands of the package."""
 
 import argparse
 import importlib
@@ -7,11 +7,12 @@ import pathlib
 import signal
 import sys
 
-log = logging.getLogger("tanktread")  # results that a figure or study prints as text; a command shows them
+log = logging.getLogger("tanktread")  # numerical results of a figure or study; a command prints them
 
 
 class Mistake(ValueError):
-    """An error in what the user gave: a file, a key, a series that was not recorded. Its text is one sentence."""
+    """An error of the user, for example a missing file, a wrong key, or a series that was not recorded. Its text is one
+    sentence."""
 
 
 def expect(holds, message):
@@ -44,9 +45,10 @@ def command_line(doc):
 
 
 def answer(main):
-    """Runs the main function of a command and ends the process: exit code 2 with one sentence if the input is wrong."""
+    """Runs the main function of a command and ends the process. If it raises Mistake, prints the sentence and exits
+    with code 2."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # a reader such as head may stop early
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # a reader of the output, such as head, may end before this process
     log.setLevel(logging.INFO)
     handler = logging.Handler()
     handler.emit = lambda record: print(record.getMessage(), flush=True)

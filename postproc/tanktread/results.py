@@ -21,13 +21,14 @@ OF_PARTICLE = re.compile(
 
 
 class Run:
-    """The results in a directory, in the units of the deck. `series`: {name: (rows,)}, one row per recorded step; a
-    series of one of several particles is `<particle>/<name>`. A series is NaN where it is undefined, as its description
-    states; a name that is not there is a Mistake. `units`, `descriptions`: by the same names. `errors`: estimated
-    errors of the series, by the same names, if an accuracy was requested; NaN where none can be estimated, as
-    `untrusted` states by the same names. Empty without a request. `deck`: the effective deck as nested dicts;
-    `deck_text`: as text. `provenance`: version, compiler, ranks. `summary`: the content of summary.yaml, or None before
-    the run has ended."""
+    """The results in a directory, in the units of the deck.
+
+    `series`: {name: values (rows,)}, one row per recorded step. If there are several particles, the series of a
+    particle is named `<particle>/<name>`. A value is NaN where the series is undefined (see its description). An
+    unknown name raises Mistake. `units`, `descriptions`: {name: text}. `errors`: {name: estimated error (rows,)} if an
+    accuracy was requested, otherwise empty; NaN where no error can be estimated. `untrusted`: {name: reason why it
+    cannot be estimated}. `deck`: the effective deck as nested dicts; `deck_text`: the same as YAML text. `provenance`:
+    version, compiler, ranks. `summary`: the content of summary.yaml, or None if the run has not ended."""
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)
@@ -64,7 +65,7 @@ class Run:
 
     @property
     def particles(self):
-        """The names of the particles in the order of the deck; ["particle"] of a deck with the section Particle."""
+        """The names of the particles in the order of the deck; ["particle"] if the deck has the section Particle."""
         if not self.several:
             return ["particle"]
         names = sorted({name.split("/")[0] for name in self.series if "/" in name}, key=lambda name: (len(name), name))
@@ -73,7 +74,7 @@ class Run:
         return list(dict.fromkeys(of_kinds))
 
     def of(self, particle, name):
-        """Returns a series (rows,) of one particle by its name in `particles`."""
+        """Returns the series `name` (rows,) of one particle. `particle`: its name in `particles`."""
         return self.series[f"{particle}/{name}" if self.several else name]
 
     def _split(self):
@@ -89,8 +90,8 @@ class Run:
 
     def frame(self, tidy=False):
         """Returns the series as a pandas.DataFrame with the index `time`, a column for each name in `series`, and the
-        units and descriptions in its `attrs`. With tidy=True it has one row per time and particle and the columns
-        `time`, `particle` and the series of particles; of one particle and of several alike. Needs pandas."""
+        units and descriptions in its `attrs`. With tidy=True it has one row per time and particle, and the columns
+        `time`, `particle` and the series of particles, also if there is only one particle. Needs pandas."""
         pandas = optional("pandas", "run.frame()")
         if not tidy:
             found = pandas.DataFrame(dict(self.series)).set_index("time")
@@ -102,9 +103,9 @@ class Run:
         return pandas.concat(parts, ignore_index=True)
 
     def dataset(self):
-        """Returns the series as an xarray.Dataset. Series of particles have the dimensions (particle, time), of one
-        particle and of several alike; series of the scene have (time,). A series of the scene with the name of a
-        particle's is called `scene_<name>`. Variables have the attributes `units` and `long_name`. Needs xarray."""
+        """Returns the series as an xarray.Dataset. Series of particles have the dimensions (particle, time), also if
+        there is only one particle; series of the scene have (time,). A series of the scene is renamed `scene_<name>` if
+        a series of particles has the same name. Variables have the attributes `units` and `long_name`. Needs xarray."""
         xarray = optional("xarray", "run.dataset()")
         own, scene = self._split()
         time, variables = scene.pop("time"), {}
@@ -118,11 +119,13 @@ class Run:
         return xarray.Dataset(variables, coordinates, {"deck": self.deck_text, "name": self.name} | self.provenance)
 
     def in_units(self, dimension):
-        """Returns ", µm/s" for length/time if the deck has the section Units, for labels of figures; otherwise ""."""
+        """Returns the unit of a dimension for labels of figures, such as ", µm/s" for length/time; "" if the deck has
+        no section Units."""
         return self.unit(dimension) if self.deck.get("Units") else ""
 
     def unit(self, dimension):
-        """Returns ", µm/s" for length/time, or without the section Units ", length/time"; "" of a number."""
+        """Returns ", µm/s" for length/time; ", length/time" if the deck has no section Units; "" if there is no
+        dimension."""
         if dimension in ("", "1", "of the key"):
             return ""
         units = (self.deck.get("Units") or {}).items()
@@ -133,14 +136,14 @@ class Run:
         return ", " + re.sub(r"\^(\d)", lambda power: "⁰¹²³⁴"[int(power[1])], words)
 
     def axis(self, name):
-        """Returns the label of an axis of a series: its name and, unless it is a number, its unit."""
+        """Returns the axis label of a series: its name and, unless it is dimensionless, its unit."""
         return name + self.unit(self.units[name])
 
     @property
     def rate(self):
-        """The rate (1/time) by which times are multiplied to have no unit, and its name; (1, None) if there is none. In
-        a parabolic flow it is the maximum velocity over the half width, in a duct the mean velocity over the radius of
-        a circle of the duct's area."""
+        """The rate of the flow (1/time), by which times are multiplied to be dimensionless, and its name; (1, None) if
+        the flow has no rate. In a parabolic flow it is the maximum velocity divided by the half width. In a duct it is
+        the mean velocity divided by the radius of a circle with the area of the duct's cross-section."""
         kind = self.value("Flow/type")
         if kind == "duct":
             duct = arrays_of(self.directory / "duct.h5")
@@ -158,7 +161,7 @@ class Run:
 
     @property
     def time_label(self):
-        """The label of an axis of `time`."""
+        """The axis label of `time`."""
         if "Continuation" in self.deck:
             return "number of the point"
         name = self.rate[1]
@@ -166,7 +169,7 @@ class Run:
 
     @property
     def radius(self):
-        """R_C: radius of the sphere of equal volume, of the first particle."""
+        """R_C: radius of the sphere with the volume of the first particle."""
         numbers = (self.summary or {}).get("numbers") or {}
         if "radius" in numbers and not self.several:
             return float(numbers["radius"])
@@ -174,9 +177,10 @@ class Run:
         return float(3 * volume / (4 * numpy.pi)) ** (1 / 3)
 
     def scale(self, dimension):
-        """Returns what a length, velocity, stress, curvature or tension is divided by to have no unit, and its symbol.
-        Lengths are divided by R_C, stresses by the viscosity times the rate of the flow; if the flow has no rate, by
-        the modulus over R_C; of a rigid body by the viscosity times its speed over R_C. Tensions have no unit."""
+        """Returns the scale by which a length, velocity, stress, curvature or tension is divided to be dimensionless,
+        and its symbol. The scale of lengths is R_C. The scale of stresses is the viscosity times the rate of the flow;
+        if the flow has no rate, the modulus divided by R_C, or for a rigid body the viscosity times its speed divided
+        by R_C. Tensions in snapshots are dimensionless already."""
         radius, viscosity = self.radius, float(self.value("Flow/viscosity", 1))
         rate, words = self.rate
         symbol = "σ" if self.value("Membrane/law") == "surface tension" else "G$_s$"
@@ -193,7 +197,7 @@ class Run:
                 "tension": (1.0, f" / {symbol}")}.get(dimension, (1.0, ""))
 
     def label(self, field, pattern="{}"):
-        """Returns the label of an axis of a field without units; `pattern` such as `|{}|`."""
+        """Returns the axis label of a dimensionless field. `pattern`: format of its name, such as `|{}|`."""
         return pattern.format(field) + self.scale(DIMENSIONS.get(field))[1]
 
     def value(self, path, default=None):
@@ -204,7 +208,7 @@ class Run:
         return found
 
     def cell(self, time):
-        """Returns the vectors of a lattice's periodic cell over R_C at a time as rows (3, 3); None if there is none."""
+        """Returns the vectors of the periodic cell at a time, divided by R_C, as rows (3, 3); None if there is none."""
         if "cell_1_x1" not in self.series:
             return None
         row = numpy.abs(self.series["time"] - time).argmin()
@@ -222,7 +226,7 @@ class Run:
         return (self.series[name] - error, self.series[name] + error) if numpy.isfinite(error).any() else None
 
     def snapshots(self):
-        """Returns the saved steps in order of time. Each is read when it is used."""
+        """Returns the list of Snapshots in order of time. The file of each is read when its data are first used."""
         series = self.directory / "run.hdf.series"
         files = Named(parsed(series, json.loads, dict), f"{series} holds no")["files"] if series.exists() else []
         try:
@@ -231,17 +235,17 @@ class Run:
             raise Mistake(f"{series} is damaged: a snapshot has no name or time") from None
 
     def snapshot_at(self, time):
-        """Returns the saved step nearest to a time (None: the last one). Raises Mistake if there is none."""
+        """Returns the Snapshot nearest to a time (None: the last one). Raises Mistake if there is none."""
         saved = self.snapshots()
         expect(saved, f"{self.directory} holds no snapshots")
         return saved[-1] if time is None else min(saved, key=lambda one: abs(one.time - time))
 
 
 def time_label(runs):
-    """Returns the label of an axis of time of several runs."""
+    """Returns the label of a time axis for several runs."""
     return " or ".join(dict.fromkeys(one.time_label for one in runs))
 
 
 def field_label(runs, field, pattern="{}"):
-    """Returns the label of an axis of a field without units, of several runs."""
+    """Returns the axis label of a dimensionless field for several runs."""
     return " or ".join(dict.fromkeys(one.label(field, pattern) for one in runs))

@@ -1,4 +1,4 @@
-"""Runs of the program: one of a deck, or many of a study, made once and found again."""
+"""Runs of the program: a single run of a deck, or the runs of a study. Completed runs are kept and not repeated."""
 
 import concurrent.futures
 import contextlib
@@ -25,7 +25,8 @@ ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
 
 
 def _program():
-    """Returns the path of the program: TANKTREAD, that of this source directory or installation, or that in PATH."""
+    """Returns the path of the program: the variable TANKTREAD, otherwise the program of this source directory or
+    installation, otherwise the program in PATH."""
     if named := os.environ.get("TANKTREAD"):
         return pathlib.Path(named)
     found = [parent / "bin/tanktread" for parent in pathlib.Path(__file__).resolve().parents[3:6]]
@@ -37,19 +38,21 @@ PROGRAM = _program()
 
 
 def shared():
-    """Returns the folders below which decks and studies are looked for: present, of the source, of the installation."""
+    """Returns the directories in which decks and studies are searched for: the current directory, the source directory,
+    and share/tanktread of the installation."""
     return pathlib.Path(), SOURCE, PROGRAM.resolve().parent.parent / "share/tanktread"
 
 
 def deck_at(name):
-    """Returns the absolute path of a deck, looked for in the `shared` folders. Raises Mistake if there is none."""
+    """Returns the absolute path of a deck, searched for in the directories of shared(). Raises Mistake if none has
+    it."""
     found = next((place / name for place in shared() if (place / name).is_file()), None)
     expect(found, f"{name}: there is no such deck")
     return found.resolve()
 
 
 def text_of(value):
-    """Returns a value as the command line has it."""
+    """Returns a value as text for the command line."""
     text = f"{value:.15g}" if isinstance(value, float) else str(value)
     return text.lower() if isinstance(value, bool) else text
 
@@ -62,9 +65,10 @@ def settings_of(words):
 
 
 def run(where, settings=None):
-    """Returns the Run in a directory, or of a deck (a .yaml file), which is run first if it has no results. With
-    settings {"Section/key": value} the deck is run with these keys changed; the results are below `results`, by a name
-    that follows from both. A Run is returned as it is. Raises Mistake if the run fails."""
+    """Returns the Run of a results directory or of a deck (a .yaml file). A deck is run first if it has no results.
+    With settings {"Section/key": value}, the deck is run with these keys changed; its directory below `results` is
+    named by the deck and a checksum of deck and settings. If `where` is a Run, it is returned. Raises Mistake if the
+    run fails."""
     if isinstance(where, Run):
         return where
     if settings:
@@ -80,8 +84,9 @@ def runs_of(runs):
 
 
 def results_of(deck, name=None, settings=None, accepted=(0, 1)):
-    """Returns the directory results/<name> (by default the deck's name), in which the deck is run if it has no results.
-    `accepted`: exit codes that are no error; 1 is a missed expectation, which a figure shows."""
+    """Returns the directory results/<name> (default: the name of the deck). Runs the deck there first if it has no
+    results. `accepted`: exit codes that do not raise Mistake. Exit code 1 means a missed expectation; figures show
+    it."""
     directory = pathlib.Path("results") / (name or pathlib.Path(deck).stem)
     if not (directory / "run.h5").exists():
         _exists(PROGRAM)
@@ -98,7 +103,8 @@ def _exists(program):
 
 
 def _files_of(value, folders):
-    """Yields the first files with the names in nested dicts and lists; of the folder of an earlier run its run.h5."""
+    """Yields the files that are named in nested dicts and lists. Each name is searched for in `folders`; the first file
+    found is used, or run.h5 if the name is a results directory."""
     for one in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
         yield from _files_of(one, folders)
     if value and isinstance(value, (str, pathlib.Path)):
@@ -107,7 +113,7 @@ def _files_of(value, folders):
 
 
 def _set(settings):
-    """Returns the words of the command line for settings."""
+    """Returns the command-line arguments that set the keys in `settings`."""
     return [word for key, value in settings.items() for word in ("--set", f"{key}={text_of(value)}")]
 
 
@@ -121,9 +127,10 @@ def _signal(code):
 
 
 class Outcome:
-    """The end of one run of a Study: `done` (as far as its deck said), `failed`, `refused` (a mistake in the deck) or
-    `slow` (stopped at the time limit, or by a signal: `stopped`). `message`: its last line on standard error.
-    `seconds`, `processor_seconds` (of all ranks). `series`, `final`, `counts` and `phases`: what it recorded."""
+    """Outcome of one run of a Study. One of these is true: `done` (the run was completed), `failed`, `refused` (the
+    deck has a mistake), or `slow` (stopped at the time limit or by a signal). `stopped`: true if stopped by a signal.
+    `message`: last line on standard error. `seconds`: wall time. `processor_seconds`: processor time of all ranks.
+    `series`: series of the run. `final`, `counts`, `phases`: sections of its summary."""
 
     def __init__(self, directory, note):
         self.directory, self.message, self.seconds = pathlib.Path(directory), note["message"], note["seconds"]
@@ -152,15 +159,16 @@ class Outcome:
 
     @property
     def end(self):
-        """The simulated time that the run came to."""
+        """The simulated time that the run has reached; 0 if it recorded none."""
         with contextlib.suppress(Mistake, IndexError):
             return float(self.series["time"][-1])
         return 0.0
 
 
 class Study:
-    """Runs of decks with keys changed, made once, kept in `directory` and found again by their decks and settings.
-    `limit`: processor seconds of a run at most (None: any). `jobs`: runs at a time. `fresh`: makes every run anew."""
+    """Runs of decks with changed keys. Their results are kept in `directory`; a run with the same decks and settings is
+    not repeated. `limit`: largest processor time of a run in seconds (None: no limit). `jobs`: number of simultaneous
+    runs. `fresh`: if true, existing results are not used."""
 
     def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False):
         self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)
@@ -168,15 +176,15 @@ class Study:
         self._made, self._running = set(), set()
 
     def run(self, decks, settings, ranks=1):
-        """Returns the Outcome of `tanktread decks… --set …`. `decks`: a path (`deck_at`), or several that overlay each
-        other; `settings`: {"Section/key": value}. A run that a signal stopped, or that was killed with its study, is
-        resumed from its checkpoint."""
+        """Returns the Outcome of `tanktread decks… --set …`. `decks`: a path (see deck_at), or several paths; later
+        decks override earlier ones. `settings`: {"Section/key": value}. A run that was stopped by a signal, or killed
+        together with its study, is resumed from its checkpoint."""
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
         note, before = where / "outcome.json", None
-        with contextlib.suppress(Mistake):  # there is none, or it is damaged
+        with contextlib.suppress(Mistake):  # outcome.json is missing or damaged
             before = Outcome(where, parsed(note, json.loads))
-        # a run that never began is made again: another program may know the keys that were refused
+        # A run that was refused or has no results is repeated: another version of the program may accept its keys.
         began = before and not before.refused and (where / "run.h5").exists()
         if before and (where in self._made or (began and not before.stopped and not self.fresh)):
             return before
@@ -184,15 +192,15 @@ class Study:
         # without --bind-to none, runs side by side would all be bound to the first cores
         launcher = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks)] if ranks > 1 else []
         program, made = launcher + [str(self.program), "--quiet"], None
-        # without a note the study was killed during the run
+        # If results exist without outcome.json, the study was killed during the run.
         if (where / "run.h5").exists() and (before.stopped if before else True) and not self.fresh:
             made = self._make(program + ["--resume", str(where)])
-        if made is None or made["code"] == 2:  # there is no checkpoint
+        if made is None or made["code"] == 2:  # not resumed, or there is no checkpoint
             shutil.rmtree(where, ignore_errors=True)
             where.mkdir(parents=True)
             words = [str(deck_at(deck)) for deck in decks] + _set(settings)
             made = self._make(program + words + ["--output", str(where)])
-        partial = note.with_suffix(".part")  # the note appears as a whole
+        partial = note.with_suffix(".part")  # renamed when complete, so that outcome.json is never incomplete
         partial.write_text(json.dumps(made))
         partial.rename(note)
         return Outcome(where, made)
@@ -219,7 +227,8 @@ class Study:
 
     @staticmethod
     def name(decks, settings, ranks=1):
-        """Returns the name of a run's directory, by the settings and the content of the decks and files they name."""
+        """Returns the name of a run's directory: the name of the last deck, and a checksum of the settings, the decks,
+        and the content of all files that they name."""
         texts = [parsed(deck_at(deck), str) for deck in decks]
         named, folders = [dict(sorted(settings.items()))], [pathlib.Path(), *(deck_at(deck).parent for deck in decks)]
         with contextlib.suppress(Mistake):  # the program refuses a deck that is not YAML
@@ -229,8 +238,8 @@ class Study:
         return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]
 
     def all(self, jobs, told=lambda outcome: None):
-        """Returns the Outcomes of many (decks, settings[, ranks]) in their order, `self.jobs` of them at a time. Calls
-        `told` with each Outcome when it ends. An interrupt stops the runs, which leave checkpoints."""
+        """Returns the Outcomes of a list of (decks, settings[, ranks]) in its order. `self.jobs` runs are made at a
+        time. Calls told(outcome) when a run has ended. An interrupt stops all runs; they write checkpoints."""
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             futures = [pool.submit(self.run, *job) for job in jobs]
             try:
@@ -244,7 +253,7 @@ class Study:
             return [future.result() for future in futures]
 
     def map(self, function, items):
-        """Returns function(item) of every item, `self.jobs` of them at a time."""
+        """Returns the list of function(item) for all items. Processes `self.jobs` items at a time."""
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             return list(pool.map(function, items))
 
@@ -253,7 +262,7 @@ class Study:
         return subprocess.run([self.program, "--reference"], capture_output=True, text=True, check=True).stdout
 
     def dimension(self, key):
-        """Returns the dimension of a key, such as force/length; "" of a number and of an unknown key."""
+        """Returns the dimension of a key, such as force/length; "" if the key is dimensionless or unknown."""
         section, _, name = key.rpartition("/")
         body = self._manual.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
         row = next((row for row in body.splitlines() if row.startswith(f"| `{name}`")), "|||| |")

@@ -1,4 +1,4 @@
-"""Saved steps of a run: exact surfaces and the fields on them."""
+"""Snapshots of a run: the surfaces and the fields on them at one time, as exact piecewise polynomials."""
 
 import functools
 import pathlib
@@ -9,26 +9,26 @@ from . import lagrange
 from .files import opened
 from .mistakes import expect, optional
 
-# What a field is divided by to have no unit, by Run.scale.
+# Dimension of each field with a unit. Run.scale returns the scale of a dimension.
 DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress",
               "displacement": "length", "position error": "length", "velocity": "velocity", "into cell": "length",
               "smallest tension": "tension", "largest tension": "tension", "mean curvature": "curvature"}
 
 
 def evenly(items, n):
-    """Returns n of a list of items, or all if there are fewer, evenly from the first to the last one."""
+    """Returns n evenly spaced items of a list, including the first and the last one; all items if there are fewer."""
     return [items[k] for k in sorted(set(numpy.linspace(0, len(items) - 1, min(n, len(items))).round().astype(int)))]
 
 
 class Snapshot:
-    """A saved step, in the units of the deck. `path`, `time`: the file and the simulated time. `cells`: node numbers of
-    each Lagrange quadrilateral, as a list of arrays ((p + 1)^2,). `points`: positions of the nodes (n, 3), in length.
-    `fields`: {name: (n,) or (n, k)} at the nodes; `DIMENSIONS` says what each is measured in. The file is read when one
-    of these is first used."""
+    """Surfaces and fields at one time, in the units of the deck. `path`, `time`: the file and the simulated time.
+    `cells`: list of the node indices ((p + 1)^2,) of each Lagrange quadrilateral. `points`: positions of the nodes
+    (n, 3). `fields`: {name: values at the nodes (n,) or (n, k)}; `DIMENSIONS` holds the dimension of each field. The
+    file is read when `cells`, `points` or `fields` is first used."""
 
     def __init__(self, path, time, particles=("particle",)):
         self.path, self.time, self.particles = pathlib.Path(path), time, list(particles)
-        self.cell = None  # vectors of the periodic cell over R_C, as rows (3, 3), of a lattice in a `scaled` snapshot
+        self.cell = None  # vectors of the periodic cell divided by R_C, as rows (3, 3); set by `scaled` for a lattice
 
     @functools.cached_property
     def _content(self):
@@ -47,11 +47,11 @@ class Snapshot:
 
     @property
     def frame(self):
-        """Points (m, 3) whose extent is that of a picture: `points`, or in a lattice the eight corners of the cell."""
+        """Points (m, 3) that a picture must contain: `points` or, in a lattice, the eight corners of the cell."""
         return self.points if self.cell is None else (numpy.indices((2, 2, 2)).reshape(3, -1).T - 0.5) @ self.cell
 
     def cells_of(self, particle):
-        """Returns the indices of the cells of one particle, by its name in `run.particles`."""
+        """Returns the indices of the cells of one particle. `particle`: its name in `run.particles`."""
         expect(particle in self.particles, f"there is no particle {particle}; there are: {', '.join(self.particles)}")
         if "particle" not in self.fields:
             return numpy.arange(len(self.cells))
@@ -59,7 +59,7 @@ class Snapshot:
         return numpy.flatnonzero(numbers == self.particles.index(particle) + 1)
 
     def scaled(self, run):
-        """Returns a copy without units: lengths over R_C, fields divided as `run.label` says."""
+        """Returns a dimensionless copy: lengths are divided by R_C, and each field by its scale (Run.scale)."""
         copy = Snapshot(self.path, self.time, self.particles)
         copy.cell = run.cell(self.time)
         fields = {name: values / run.scale(DIMENSIONS.get(name))[0] for name, values in self.fields.items()}
@@ -77,8 +77,9 @@ class Snapshot:
         return result
 
     def sampled(self, values, k=8, cells=None):
-        """Returns a field on the uniform grid of (k + 1)^2 parameters of every cell, or of those with given indices.
-        Shape (cells, k + 1, k + 1[, components]), t first, then s. Exact, as `evaluate`."""
+        """Returns a field at (k + 1)^2 uniformly spaced parameters of every cell, or of the cells with the indices
+        `cells`. Shape (cells, k + 1, k + 1[, components]); the second index belongs to t, the third to s. The values
+        are exact, see `evaluate`."""
         values = numpy.asarray(values)
         chosen = self.cells if cells is None else [self.cells[i] for i in cells]
         result = numpy.empty((len(chosen), k + 1, k + 1) + values.shape[1:], values.dtype)
