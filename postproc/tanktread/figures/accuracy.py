@@ -51,8 +51,8 @@ def values(run, request):
 
 
 def largest(one, other):
-    """Returns the largest difference of two series (times, values) at their common times. If there are fewer than five
-    common times, interpolates one series at the times of the other."""
+    """Returns the largest difference of two series (times, values) at their common times. If these are fewer than five
+    and fewer than the rows of the shorter series, interpolates one series at the times of the other."""
     _, mine, theirs = numpy.intersect1d(one[0].round(9), other[0].round(9), return_indices=True)
     if len(mine) >= min(5, len(one[0]), len(other[0])):
         return float(numpy.nanmax(abs(one[1][mine] - other[1][theirs])))

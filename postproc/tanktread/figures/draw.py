@@ -1,4 +1,4 @@
-"""Drawing of surfaces, and of their sections, on axes."""
+"""Functions that draw surfaces and their plane sections on axes."""
 
 import itertools
 
@@ -7,9 +7,9 @@ from matplotlib.collections import LineCollection
 
 from . import render, style
 
-VIEW = (-85, 18)   # azimuth and elevation of the eye, degrees: x1 to the right and x3 up, a little from above
-SECTION_GRID = 24  # facets along a side of a cell where the section is cut
-GRID = 12          # facets along a side of a cell where a field is followed along the section
+VIEW = (-85, 18)   # azimuth and elevation of the observer in degrees: x1 points to the right, x3 up, seen from above
+SECTION_GRID = 24  # intervals along a side of a cell in the grid from which a section is computed
+GRID = 12          # intervals along a side of a cell in the grid from which a field along a section is computed
 
 
 def magnitude(values):
@@ -17,12 +17,12 @@ def magnitude(values):
 
 
 def middle(points):
-    """Returns the middle (3,) of the extents of points (n, 3)."""
+    """Returns the centre (3,) of the bounding box of points (n, 3)."""
     return (points.min(0) + points.max(0)) / 2
 
 
 def view_axes(azimuth, elevation):
-    """Returns the directions right, up and towards the eye as rows (3, 3); x3 points up."""
+    """Returns the directions to the right, up and towards the observer as rows (3, 3). x3 points up in the picture."""
     a, e = numpy.radians([azimuth, elevation])
     eye = numpy.array([numpy.cos(e) * numpy.cos(a), numpy.cos(e) * numpy.sin(a), numpy.sin(e)])
     right = numpy.array([-numpy.sin(a), numpy.cos(a), 0])
@@ -30,13 +30,14 @@ def view_axes(azimuth, elevation):
 
 
 def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=640, triad=True):
-    """Draws the visible part of the surface with the edges of its elements, the cell of a lattice, and the axes."""
+    """Draws the visible part of the surfaces with element edges, the edges of the periodic cell, and the coordinate
+    axes."""
     view, paint = view_axes(azimuth, elevation), style.plt.get_cmap(colours)
     image, extent = render.picture(shot, magnitude(shot.fields[field]), view, lambda seen: paint(norm(seen)), pixels)
     axis.imshow(image, extent=extent, aspect="equal", interpolation="antialiased", zorder=2)
     if shot.cell is not None:
         corners = shot.frame @ view.T
-        front = corners[:, 2].argmax()  # the edges that meet in the foremost corner lie above the particles
+        front = corners[:, 2].argmax()  # edges at the corner nearest to the observer are drawn over the particles
         for edge in itertools.combinations(range(8), 2):
             if edge[0] ^ edge[1] in (1, 2, 4):
                 axis.plot(*corners[[*edge], :2].T, color=style.INK, linewidth=0.8, zorder=3 if front in edge else 1)
@@ -48,24 +49,25 @@ def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=64
 
 
 def draw_triad(axis, view, low, high):
-    """Draws the directions of the axes at the lower left of the window with the corners low (2,) and high (2,)."""
+    """Draws the coordinate directions in the lower left corner of the window between low (2,) and high (2,)."""
     length = 0.13 * (high - low).max()
     foot = low - 0.3 * length
     arrow = {"arrowstyle": "->", "color": style.INK, "lw": 0.9, "shrinkA": 0, "shrinkB": 0}
     for arm, name in zip(view[:2].T * length, style.AXES):
         axis.annotate("", foot + arm, foot, arrowprops=arrow)
         axis.annotate(name, foot + 1.35 * arm, ha="center", va="center", fontsize=8.5)
-    axis.plot(*zip(foot - 0.5 * length, foot + 1.5 * length), alpha=0)  # room for the letters
+    axis.plot(*zip(foot - 0.5 * length, foot + 1.5 * length), alpha=0)  # includes the letters in the limits
 
 
 def cut(grid, across, place):
-    """Returns the ends (pieces, 2, k) of the line pieces in which the plane x_{across+1} = place cuts a surface, from
-    fine grids of position and further values (patches, m, m, k). Values are linear on the triangles of the grids."""
+    """Returns the intersection of a surface with the plane x_{across+1} = place as line segments: the values at their
+    end points, shape (segments, 2, k). `grid` (cells, m, m, k): position (3) and further values on a grid of each cell,
+    interpolated linearly on triangles."""
     a, b, c, d = grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
     triangles = numpy.concatenate([numpy.stack(corners, 3).reshape(-1, 3, grid.shape[-1])
                                    for corners in ((a, b, c), (a, c, d))])
     height = triangles[:, :, across] - place
-    height[height == 0] = 1e-300  # a corner in the plane belongs to its upper side
+    height[height == 0] = 1e-300  # a corner in the plane counts as above it
     through = (height > 0).any(1) & (height < 0).any(1)
     triangles, height = triangles[through], height[through]
     lone = numpy.where((height > 0).sum(1) == 1, (height > 0).argmax(1), (height < 0).argmax(1))
@@ -78,12 +80,13 @@ def cut(grid, across, place):
 
 
 def section(shot, place, across=1):
-    """Returns the ends (pieces, 2, 2) of the pieces in which the plane cuts the surface, in its two coordinates."""
+    """Returns the section of the surfaces with the plane x_{across+1} = place as line segments (segments, 2, 2), in the
+    two coordinates of the plane."""
     return numpy.delete(cut(shot.sampled(shot.positions, SECTION_GRID), across, place), across, axis=2)
 
 
 def draw_pieces(axis, pieces, color, width=1.6, ends="round"):
-    """Draws line pieces (pieces, 2, 2)."""
+    """Draws line segments (segments, 2, 2)."""
     axis.add_collection(LineCollection(pieces, colors=[color], linewidths=width, capstyle=ends))
 
 
@@ -100,7 +103,7 @@ def draw_sections(axis, runs, shots):
             angle, deformation = (numpy.interp(shot.time, run.series["time"], run.series[key])
                                   for key in ("inclination", "taylor_inertia"))
             time += f", D = {deformation:.4f}"
-        if numpy.isnan(angle):  # also of two equal semi-axes
+        if numpy.isnan(angle):  # undefined: rigid particle, or two equal semi-axes
             axis.plot([], [], color=color, linewidth=1.8, label=name + time)
             continue
         along = numpy.array([numpy.cos(numpy.radians(angle)), numpy.sin(numpy.radians(angle))])
@@ -116,7 +119,7 @@ def draw_sections(axis, runs, shots):
 
 
 def share_window(axes):
-    """Sets the limits of all axes so that their surfaces have one scale, each in the middle of its panel."""
+    """Sets the limits of all axes so that all surfaces are drawn to the same scale, each in the middle of its panel."""
     limits = numpy.array([[axis.get_xlim(), axis.get_ylim()] for axis in axes])
     width, height = numpy.ptp(limits, axis=2).max(0) / 2
     for axis, (x, y) in zip(axes, limits.mean(2)):
@@ -124,15 +127,16 @@ def share_window(axes):
 
 
 def field_cut(shot, field):
-    """Returns the ends (pieces, 2, 3 + k) of the pieces at x2 = middle, as position from the middle and field."""
+    """Returns the section through the middle of the surface, normal to x2, as line segments (segments, 2, 3 + k):
+    position relative to the middle (3), and the values of a field (k)."""
     grid = shot.sampled(numpy.column_stack([shot.points, shot.fields[field]]), GRID)
     grid[..., :3] -= middle(shot.points)
     return cut(grid, 1, 0)
 
 
 def near_tip(shot, field):
-    """Returns x1 (n,), x3 (n,) and the magnitude of a field (n,) along the half of the section where x1 is above the
-    middle, by x3; positions from the middle."""
+    """Returns x1 (n,), x3 (n,) and the magnitude of a field (n,) along the half of the section (see field_cut) with
+    x1 > 0, in ascending order of x3. Positions are relative to the middle of the surface."""
     place = field_cut(shot, field).mean(axis=1)
     place = place[numpy.argsort(place[:, 2])]
     x, _, z, *values = place[place[:, 0] > 0].T
@@ -140,12 +144,12 @@ def near_tip(shot, field):
 
 
 def section_variation(shot, field):
-    """Returns angle (n,) and |d field / dl| (n,) along the section x2 = middle. The angle is that of the section's
-    ellipse, stretched to a circle."""
+    """Returns an angle (n,) and |d field / dl| (n,) along the section (see field_cut), with the arc length l. The angle
+    is the polar angle after the section has been scaled along x1 and x3 to equal extents."""
     ends = field_cut(shot, field)
     length, change = (numpy.linalg.norm(ends[:, 1, columns] - ends[:, 0, columns], axis=1)
                       for columns in (slice(3), slice(3, None)))
-    kept = length > 0.2 * numpy.median(length)  # slivers give rounding
+    kept = length > 0.2 * numpy.median(length)  # differences over very short segments are dominated by rounding
     x, _, z = ends[kept, :, :3].mean(axis=1).T
     angle = numpy.arctan2(z / abs(z).max(), x / abs(x).max())
     order = numpy.argsort(angle)

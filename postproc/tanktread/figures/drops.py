@@ -1,4 +1,5 @@
-"""Figures of drops with surfactant, and of vesicles at rest beside axisymmetric ones by Legendre polynomials."""
+"""Figures of drops with surfactant, and of vesicles at rest compared with axisymmetric solutions by Legendre
+polynomials."""
 
 import numpy
 from numpy.polynomial import legendre
@@ -12,8 +13,8 @@ from .draw import draw_pieces, section
 from .pushed import derivatives
 from .register import figure
 
-DEGREES = 16, 30, 40  # of the polynomials; each solution starts from that of the degree before
-ROUND = 1e-2  # by which the extents across the axis may differ
+DEGREES = 16, 30, 40  # polynomial degrees; each solution is the start of the solution of the next higher degree
+ROUND = 1e-2  # an axisymmetric shape may have a relative difference of the extents along x1 and x2 up to this
 COSINE, WEIGHT = legendre.leggauss(400)
 
 
@@ -84,23 +85,26 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
 
 
 def least(run):
-    """Returns section and energy of the axisymmetric shape at rest, and the relative error of the run's energy."""
+    """Returns the meridian and the energy of the axisymmetric equilibrium shape, and the relative error of the energy
+    of the run."""
     outline, energy = at_rest(Energy(run), run.series["length_x3"][-1] / run.series["length_x1"][-1])
     return outline, energy, run.series["energy"][-1] / energy - 1
 
 
 def polynomials(degree):
-    """Returns values, first and second derivatives (400, n) at COSINE of the even Legendre polynomials P_2k."""
+    """Returns the values, first and second derivatives, each (400, n), of the even Legendre polynomials P_2k at COSINE,
+    the Gauss points in the cosine of the polar angle."""
     even = [legendre.Legendre.basis(l) for l in range(0, degree + 1, 2)]
     return [numpy.array([one.deriv(order)(COSINE) for one in even]).T for order in (0, 1, 2)]
 
 
 def measures(bases, c):
-    """Returns area, volume, integral of twice the mean curvature, and half the integral of its square (4,) of the
-    surface r = exp(sum c_k P_2k); of complex numbers too."""
+    """Returns four integrals (4,) over the surface r = exp(sum c_k P_2k): area, volume, integral of twice the mean
+    curvature, and half the integral of the square of twice the mean curvature. `c` may be complex."""
     exponent, first, second = (basis @ c for basis in bases)
     r, sine2 = numpy.exp(exponent), 1 - COSINE**2
-    slope2, bend = sine2 * (r * first) ** 2, sine2 * r * (second + first**2) - COSINE * r * first  # by theta
+    # (dr/dtheta)^2 and d2r/dtheta2, theta the polar angle
+    slope2, bend = sine2 * (r * first) ** 2, sine2 * r * (second + first**2) - COSINE * r * first
     g = numpy.sqrt(r**2 + slope2)
     curvature = (r**2 + 2 * slope2 - r * bend) / g**3 + (1 + COSINE * first) / g
     ring = 2 * numpy.pi * WEIGHT * r * g
@@ -108,7 +112,7 @@ def measures(bases, c):
 
 
 class Energy:
-    """Of a run's membrane, a function of the measures."""
+    """Energy of the membrane of a run, as a function of the result of measures()."""
 
     def __init__(self, run):
         expect((run.value("Membrane/law"), run.value("Membrane/bending reference")) == ("surface tension", "flat"),
@@ -119,7 +123,7 @@ class Energy:
                f"{last[1]:.4g} along x2, not axisymmetric about x3")
         expect(run.value("Flow/type") == "quiescent", f"{run.name}: a vesicle at rest is in a `quiescent` fluid")
         numbers = run.summary["numbers"]
-        self.area, self.volume = numbers["area"], numbers["volume"]  # of the resting shape, whatever the run began with
+        self.area, self.volume = numbers["area"], numbers["volume"]  # of the resting shape, not of the initial shape
         names = ("surface tension", "bending modulus", "spontaneous curvature", "global area dilatation",
                  "area difference modulus", "area difference")
         self.tension, self.bending, self.curvature, dilatation, modulus, leaves = (
@@ -138,8 +142,8 @@ class Energy:
 
 @numpy.errstate(all="ignore")  # trial shapes of the search may overflow
 def at_rest(energy, aspect):
-    """Returns the section (2, 400) (r sin, r cos) and the energy of the shape of least energy near a spheroid of this
-    axis over equator."""
+    """Computes the shape of least energy near the spheroid with the aspect ratio `aspect` (polar axis divided by
+    equatorial diameter). Returns its meridian (2, 400), the distance from the axis and the height, and its energy."""
     first = polynomials(DEGREES[0])
     c = legendre.legfit(COSINE, -numpy.log(1 - COSINE**2 + (COSINE / aspect) ** 2) / 2, DEGREES[0])[::2]
     c[0] += numpy.log(energy.volume / measures(first, c)[1]) / 3

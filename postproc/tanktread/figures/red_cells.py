@@ -1,4 +1,4 @@
-"""Figures of red cells beside experiments."""
+"""Figures that compare red cells with experiments."""
 
 import pathlib
 
@@ -11,10 +11,11 @@ from . import style
 from .register import figure
 
 MEASURED = parsed(pathlib.Path(__file__).with_name("red_cells.yaml"))
-RADIUS, FLUID, INSIDE = 3.91, 1.2e-3, 5  # of the disc in um; Pa s outside; viscosity inside over that outside
-DRAWN = 5.6  # force that draws the cell out, over shear modulus and radius
-MEMBRANES = ((5.3, 0.32), (4, 1.0), (10, 0.1))  # shear modulus in uN/m, viscosity in uN s/m: in use, slowest, fastest
-BAR = {"color": style.INK, "markersize": 4, "linewidth": 0.8, "capsize": 2}  # look of what was measured
+RADIUS, FLUID, INSIDE = 3.91, 1.2e-3, 5  # radius of the disc in um; viscosity of the plasma in Pa s; viscosity ratio
+DRAWN = 5.6  # force of the tweezers before the release, divided by shear modulus and radius
+# (shear modulus in uN/m, surface viscosity in uN s/m): usual values, then values for the slowest and fastest recovery
+MEMBRANES = ((5.3, 0.32), (4, 1.0), (10, 0.1))
+BAR = {"color": style.INK, "markersize": 4, "linewidth": 0.8, "capsize": 2}  # style of measured values
 
 
 @figure(1, 2, 8.2, 3.6, width_ratios=(1.2, 1))
@@ -35,7 +36,7 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", plot=None, outlines=None, *, 
     plot.plot(forces, along, color=style.RUNS[0], label=f"{runs[0].value('Membrane/law')}, along")
     plot.plot(forces, across, color=style.RUNS[0], linestyle=style.DASHES, label="across")
     around = numpy.linspace(0, 2 * numpy.pi, 361)
-    for (pn, *_), (run, color) in zip(MEASURED["stretched"], style.shaded(runs, 0.25)):  # convex, as seen along x3
+    for (pn, *_), (run, color) in zip(MEASURED["stretched"], style.shaded(runs, 0.25)):  # hull, seen along x3
         points = run.snapshots()[-1].points[:, :2] * RADIUS
         outline = points[(points @ [numpy.cos(around), numpy.sin(around)]).argmax(axis=0)]
         outlines.plot(*outline.T, color=color, linewidth=1.1, label=f"{pn} pN")
@@ -47,7 +48,8 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", plot=None, outlines=None, *, 
 
 
 def pulled(deck, force, more):
-    """Returns the run of a deck with the force (over shear modulus and radius of the disc) along x1 at both ends."""
+    """Returns the run of a deck in which forces along x1 pull both ends of the cell apart. `force`: force divided by
+    shear modulus and radius of the disc. `more`: further settings."""
     ends = {"left": -force, "right": force}
     return run_of(deck, {f"Membrane/forces/{name}/force": [pull, 0, 0] for name, pull in ends.items()} | more)
 
@@ -82,7 +84,8 @@ def treading(deck="inputs/red_cell_treading.yaml", plot=None, angles=None, *,
 
 
 def last_turn(deck, rate, viscosity, elements):
-    """Returns the frequency in radians per second, and mean, least and largest inclination, of the last whole turn."""
+    """Returns the tank-treading frequency in radians per second, and the mean, smallest and largest inclination in
+    degrees, over the last full revolution of the membrane."""
     end = 50 / rate
     run = run_of(deck, {"Flow/shear rate": f"{rate} 1/s", "Time/final time": end, "Output/interval": end,
                         "Membrane/shear viscosity": f"{viscosity}e-6 N s/m", "Surface/elements per side": elements})
@@ -112,10 +115,11 @@ def recovery(deck="inputs/red_cell_tweezers.yaml", plot=None, *, elements: int =
 
 
 def let_go(deck, elements, modulus, viscosity):
-    """Returns seconds, and length over width from where it is as in the experiment at first."""
+    """Runs the release of a stretched cell. Returns times in seconds and the ratio of length to width. Time 0 is when
+    the ratio equals the first measured ratio."""
     mesh = {"Surface/elements per side": elements}
     start = pulled(deck, DRAWN, mesh).directory.resolve()
-    unit = FLUID * RADIUS / modulus  # of time, in seconds: the deck's are fluid viscosity x radius / shear modulus
+    unit = FLUID * RADIUS / modulus  # the deck's unit of time (fluid viscosity x radius / shear modulus) in seconds
     run = pulled(deck, 0, mesh | {"Particle/initial shape/run": str(start), "Particle/viscosity ratio": INSIDE,
                                   "Membrane/shear viscosity": viscosity / (FLUID * RADIUS),
                                   "Time/final time": 0.4 / unit, "Output/interval": 0.1 / unit})
@@ -126,7 +130,8 @@ def let_go(deck, elements, modulus, viscosity):
 
 
 def constant(seconds, ratio):
-    """Returns t_c of (ratio - 1) = (first - 1) exp(-t/t_c), by least squares over 0.4 s at even times."""
+    """Returns the time constant t_c of ratio(t) - 1 = (ratio(0) - 1) exp(-t/t_c) in seconds, by a least-squares fit at
+    200 uniformly spaced times in the first 0.4 s."""
     times = numpy.linspace(0, min(0.397, seconds[-1]), 200)
     excess = numpy.interp(times, seconds, ratio) - 1
     return min(numpy.geomspace(0.005, 1, 2000),

@@ -1,27 +1,28 @@
-"""A surface as the eye sees it, orthographic, by a depth buffer: what is hidden stays hidden, element edges too, and
-colours can be read off the bar."""
+"""Renderer of surfaces: orthographic projection with a depth buffer that removes hidden parts. Surfaces have almost no
+shading, so that their colours agree with the colour bar."""
 
 import itertools
 
 import numpy
 
-STEP = 0.7        # pixels between samples of a surface: below 1/√2, so that no pixel of it is left out
-COARSE = 6        # facets along a side of a cell to measure it by
-RIM = 0.14        # what of a colour is lost where the surface turns away from the eye; none where it faces it
-EDGE_WIDTH = 1.2  # of an element edge on the surface, pixels
-EDGE_INK = 0.75   # how white it is
-INSIDE = 0.45     # how dark the inner side is where a cell's face cuts a particle open
-CONTOUR = 8       # pixels of depth between neighbours from which on a contour is drawn
-OVERSAMPLING = 2  # finer pixels along a pixel
+STEP = 0.7        # distance between samples of a surface in pixels: below 1/√2, so that no pixel is missed
+COARSE = 6        # intervals along a side of a cell in the grid from which the size of the cell is estimated
+RIM = 0.14        # darkening where the surface is parallel to the line of sight; 0 where it faces the observer
+EDGE_WIDTH = 1.2  # width of element edges, in pixels
+EDGE_INK = 0.75   # opacity of the white element edges
+INSIDE = 0.45     # grey value of the inner side of a particle that a face of the periodic cell cuts open
+CONTOUR = 8       # a contour is drawn where the depth of neighbouring pixels differs by more than this, in pixels
+OVERSAMPLING = 2  # finer pixels along the side of a pixel of the image
 
 
 def picture(shot, values, view, colour_of, pixels=640):
-    """Returns an image (rows, columns, RGBA) of a surface, its uppermost row first, and the extent of the image (left,
-    right, low, high) in the surface's length.
+    """Returns an image (rows, columns, RGBA) of the surfaces in a snapshot, its uppermost row first, and its extent
+    (left, right, low, high) in the length unit of the snapshot.
 
-    `values` (n,) at the nodes of `shot` colour it; `view` (3, 3): right, up and towards the eye. Of a lattice it shows
-    what is in the cell at the origin: particles with their images, cut at its faces. `pixels`: of the longer side.
-    `colour_of`: maps values to RGBA."""
+    `values` (n,): values at the nodes that determine the colours. `view` (3, 3): rows are the directions to the right,
+    up and towards the observer. If the snapshot is a lattice, the image shows the periodic cell centred at the origin,
+    with the periodic images of the particles, cut at its faces. `colour_of`: function that maps values to RGBA.
+    `pixels`: length of the longer side."""
     depth, found, corner, size = seen(shot, values, view, OVERSAMPLING * pixels)
     columns, rows = numpy.array(depth.shape) // OVERSAMPLING
     image = _coloured(depth, found, colour_of).reshape(columns, OVERSAMPLING, rows, OVERSAMPLING, 4).mean((1, 3))
@@ -31,9 +32,9 @@ def picture(shot, values, view, colour_of, pixels=640):
 
 
 def seen(shot, values, view, pixels):
-    """Returns of the sample nearest to the eye in every pixel (right, up) the depth towards the eye in pixels, -inf
-    outside the surface, and rows of value, cosine to the eye and distance from an element edge; the lower left corner;
-    pixels per length."""
+    """Returns four items: the depth of the visible sample in every pixel (right, up), towards the observer, in pixels,
+    and -inf outside the surface; for every pixel the value, the cosine of the angle between normal and line of sight,
+    and the distance from an element edge in pixels; the position of the lower left corner; pixels per length."""
     places, frame = shot.positions @ view.T, shot.frame @ view.T
     low, high = frame[:, :2].min(0), frame[:, :2].max(0)
     size = pixels / (high - low).max()
@@ -50,7 +51,7 @@ def seen(shot, values, view, pixels):
         for sample in _samples(shot, places * size + shift, values, lattice):
             column, row = numpy.clip((sample[:, :2] - corner * size).astype(int), 0, shape - 1).T
             place = column * shape[1] + row
-            order = numpy.argsort(sample[:, 2], kind="stable")  # the nearest one last, which stays
+            order = numpy.argsort(sample[:, 2], kind="stable")  # the sample nearest to the observer is written last
             order = order[sample[order, 2] > depth[place[order]]]
             depth[place[order]] = sample[order, 2]
             found[place[order]] = sample[order, 3:]
@@ -58,16 +59,17 @@ def seen(shot, values, view, pixels):
 
 
 def _samples(shot, places, values, lattice=None):
-    """Yields samples no further than STEP pixels apart, of some cells at a time: rows of position (3), value, cosine to
-    the eye, distance from the cell's edge. With `lattice`, which maps positions to coordinates along its vectors, only
-    samples in the cell at the origin, and those of inner sides too, whose value is NaN."""
-    known = numpy.column_stack([places, values]).astype(numpy.float32)  # to a ten thousandth of a pixel
+    """Yields samples of the surface at most STEP pixels apart, for some cells at a time. A row holds position (3),
+    value, cosine of the angle between normal and line of sight, and distance from the edge of the cell in pixels.
+    `lattice`: matrix that maps positions to lattice coordinates. If it is given, yields only samples in the periodic
+    cell at the origin, also of inner sides, whose value is NaN."""
+    known = numpy.column_stack([places, values]).astype(numpy.float32)  # rounding: 1e-4 pixels
     grid = shot.sampled(places, COARSE)
     visible = _normals(grid)[0] > -0.2 if lattice is None else (numpy.abs(grid @ lattice) < 0.5).all(-1)
     seen = numpy.flatnonzero(visible.any((1, 2)))
     if len(seen) == 0:
         return
-    # by the longest facet of each cell as seen, because a cell is not sampled evenly by its parameters
+    # the longest projected interval determines the number of samples, because intervals differ in length
     facets = [numpy.linalg.norm(numpy.diff(grid[seen, :, :, :2], axis=axis), axis=-1).max((1, 2)) for axis in (1, 2)]
     k = 8 * numpy.ceil(numpy.maximum(*facets) * 1.05 * COARSE / STEP / 8).astype(int)
     for n in numpy.unique(k):
@@ -86,7 +88,8 @@ def _samples(shot, places, values, lattice=None):
 
 
 def _normals(grid):
-    """Returns at points of grids the cosine of normal and eye, the area of a facet, its lengths along t and along s."""
+    """Returns, at the points of grids, the cosine of the angle between normal and line of sight, and the area and the
+    lengths along t and s of a grid interval."""
     t, s = numpy.gradient(grid, axis=(1, 2))
     normal = numpy.cross(s, t)
     area, length_t, length_s = (numpy.maximum(numpy.linalg.norm(x, axis=-1), 1e-12) for x in (normal, t, s))
@@ -94,8 +97,8 @@ def _normals(grid):
 
 
 def _coloured(depth, found, colour_of):
-    """Returns colours (columns, rows, 4), multiplied by their opacity: a darker rim, element edges and contours;
-    transparent outside the surface."""
+    """Returns the RGBA colours (columns, rows, 4), with RGB multiplied by the opacity. Draws the darker rim, element
+    edges and contours. Pixels outside the surface are transparent."""
     value, facing, edge = numpy.moveaxis(found, -1, 0)
     hit = numpy.isfinite(depth)
     image = numpy.zeros((*depth.shape, 4))

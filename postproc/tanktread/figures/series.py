@@ -1,4 +1,4 @@
-"""Figures of series over time, and along branches of steady shapes."""
+"""Figures of series as functions of time or along branches of steady shapes."""
 
 import pathlib
 from typing import Literal
@@ -68,7 +68,7 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
 
 
 def draw_series(axis, run, name, **pen):
-    """Draws a series, an inclination as `unbroken`, and the band of its estimated error, if the run has one."""
+    """Draws a series and, if the run has it, the band of its estimated error. Inclinations are drawn by unbroken()."""
     drawn = run.time, run.series[name]
     axis.plot(*unbroken(*drawn) if name.endswith("inclination") else drawn, zorder=3, **pen)
     if run.band(name) is not None:
@@ -76,7 +76,7 @@ def draw_series(axis, run, name, **pen):
 
 
 def draw_run(panels, run, color):
-    """Draws the series on {name: axis}, and what the deck expects of them."""
+    """Draws the series on their axes, and marks the expected values in the deck. `panels`: {name of series: axis}."""
     points = run.series.get("n_control_points")
     label = run.name + (f", {points[-1]:.0f} control points" if points is not None and len(points) else "")
     for name, axis in panels.items():
@@ -100,7 +100,8 @@ def draw_particles(panels, run, deformation, colors):
 
 
 def unbroken(t, angle):
-    """Returns times and angles with NaN where an axis passes from one end of its range of 180 degrees to the other."""
+    """Returns times and angles for a plot. NaN is inserted where an angle jumps by 180 degrees at the end of its range,
+    so that no line is drawn there."""
     passes = numpy.flatnonzero(numpy.abs(numpy.diff(angle)) > 90) + 1
     return numpy.insert(t, passes, numpy.nan), numpy.insert(angle, passes, numpy.nan)
 
@@ -174,7 +175,7 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
 
 
 def draw_branch(axes, run, x, y, color, label=None):
-    """Draws a curve of a branch point by point, with a broken line between two points if a mode grows at one."""
+    """Draws a curve along a branch. A segment is dashed if the shape at one of its two points has a growing mode."""
     broken = run.series.get("unstable_modes", 0 * x) > 0
     axes.plot([], [], color=color, label=label)
     for k in range(len(x) - 1):
@@ -244,7 +245,8 @@ def growth_rates(run, axis, *, series: str = "taylor_surface", amplitude: float 
 
 
 def deck_in_time(run, directory):
-    """Writes the deck of a run without the sections that replace time, and returns its path."""
+    """Writes the deck of a run without the sections that replace the simulation in time (Steady, Continuation,
+    Spectrum), and returns its path."""
     sections = {key: run.deck[key] for key in run.deck if key not in ("Steady", "Continuation", "Spectrum", "Expect")}
     sections["Particle"] = {key: value for key, value in run.deck.get("Particle", {}).items() if key != "initial shape"}
     directory.mkdir(parents=True, exist_ok=True)
@@ -254,7 +256,8 @@ def deck_in_time(run, directory):
 
 
 def in_time(study, deck, run, k, path, series, amplitude, length):
-    """Returns the rate from two runs in time at point k; NaN at a fold, of a complex mode, or if a run fails."""
+    """Returns the growth rate of the leading mode at point k, fitted to the difference of two simulations in time with
+    opposite initial amplitudes of the mode. Returns NaN at a fold, if the mode is complex, or if a run fails."""
     here = {name: values[k] for name, values in run.series.items()}
     number = next((n for n in range(1, len(here)) if here.get(f"rate_{n}") == here["leading_rate"]), 0)
     if here.get("fold", 0) or here.get(f"frequency_{number}", 1):

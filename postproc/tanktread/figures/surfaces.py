@@ -13,7 +13,8 @@ from .series import unbroken
 
 
 def field_of(shots, field):
-    """Returns norm, colour map and label pattern of a field of snapshots. Raises Mistake if one does not hold it."""
+    """Returns the colour normalisation, the colour map and the label pattern for a field of several snapshots. Raises
+    Mistake if a snapshot does not contain the field."""
     for shot in shots:
         expect(field in shot.fields, f"{shot.path} holds no field {field}; there are: {', '.join(sorted(shot.fields))}")
     values = numpy.concatenate([magnitude(shot.fields[field]) for shot in shots])
@@ -102,7 +103,7 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
            f"--width must be at least 100 and --rate positive, but they are {width} and {rate:g}")
     shots = [shot.scaled(run) for shot in run.snapshots()]
     expect(shots, f"{run.directory} holds no snapshots")
-    # one scale, one window and the same colours in all frames
+    # all frames have the same scale, window and colours
     directions, colouring = view_axes(*view), field_of(shots, field)
     places = numpy.concatenate([shot.frame - middle(shot.frame) for shot in shots]) @ directions[:2].T
     window = numpy.array([places.min(0), places.max(0)])
@@ -115,7 +116,7 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
         low, high = window + directions[:2] @ middle(shot.frame)
         draw_triad(surface, directions, low, high)
         xlim, ylim = numpy.transpose([low, high]) + 0.11 * (high[0] - low[0]) * numpy.array([-1, 1])
-        # of this saved step, the last one if none came after
+        # row of the series at the time of the snapshot, or the last row if the series end earlier
         row = min(numpy.searchsorted(run.series["time"], shot.time * (1 - 1e-12)), len(run.time) - 1)
         title = f"{run.name}, t = {shot.time:.4g}: {run.series['n_control_points'][row]:.0f} control points"
         surface.set(xlim=xlim, ylim=ylim, title=title)
@@ -131,7 +132,7 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
 
 
 def arranged(axes, run, extent, field, norm, colours, pattern):
-    """Returns the figure with its colour bar, the axes of the surface, and those of the two series."""
+    """Returns the figure (with a colour bar), the axes for the surface, and the two axes for the series."""
     with style.plt.rc_context({"figure.constrained_layout.use": False}):  # it would move the axes from frame to frame
         figure = style.canvas(axes, 7.2, 7.2 * 0.80 * extent[1] / extent[0] + 3.1)
     height = figure.get_figheight()
@@ -143,7 +144,7 @@ def arranged(axes, run, extent, field, norm, colours, pattern):
 
 
 def draw_series(panels, run):
-    """Draws the series below the surface, and returns {name: mark of the present value}."""
+    """Draws the series below the surface. Returns {name: marker of the value at the time of the frame}."""
     deforming = [f"{name}/taylor_inertia" for name in run.particles if f"{name}/taylor_inertia" in run.series]
     if run.several:
         shown = ({"D": deforming} if deforming else {}) | {"smallest gap" + run.in_units("length"): ["smallest_gap"]}

@@ -1,4 +1,5 @@
-"""Figures of particles beside each other and beside a wall, of suspensions, and of the drift over many turns."""
+"""Figures of pairs of particles, particles next to a wall, suspensions, and the drift over many revolutions of a
+membrane."""
 
 import pathlib
 
@@ -89,7 +90,8 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
 
 
 def wall(run):
-    """Returns a point of the wall, its unit normal, and the direction along it: x1, or x3 if the normal is x1; (3,)."""
+    """Returns a point of the wall, its unit normal, and a unit vector along the wall, each (3,). The vector along the
+    wall is the projection of x1 onto the wall, or of x3 if the normal is close to x1."""
     expect(run.value("Wall/normal"), f"{run.directory}: its deck has no plane Wall")
     point, normal = (numpy.array(run.value(f"Wall/{key}"), float) for key in ("point", "normal"))
     normal /= numpy.linalg.norm(normal)
@@ -99,10 +101,11 @@ def wall(run):
 
 
 def sections(axis, run, moments):
-    """Draws sections of the snapshots through their middle, in the plane of the normal and along the wall."""
+    """Draws sections through the particle at several times, in the plane of the wall's normal and the vector along the
+    wall (see `wall`)."""
     point, normal, along = wall(run)
     across = numpy.argmin(abs(normal) + abs(along))
-    point, along, normal = numpy.delete([point, along, normal], across, axis=1)  # in the plane of the sections
+    point, along, normal = numpy.delete([point, along, normal], across, axis=1)  # in the section plane
     for shot, colour in style.shaded(evenly(run.snapshots(), moments), 0.15, 0.95):
         pieces = section(shot, shot.points[:, across].mean(), across) - point
         draw_pieces(axis, pieces @ numpy.transpose([along, normal]) / run.radius, colour, ends="butt")
@@ -132,7 +135,7 @@ def rheology(runs, upper, lower):
 
 
 def stresses(run):
-    """Returns [η], N1 and N2 over time (rows,), without a unit."""
+    """Returns the dimensionless intrinsic viscosity [η] and normal stress differences N1 and N2, each (rows,)."""
     flow = run.value("Flow/type")
     expect(flow == "simple shear", f"{run.directory}: intrinsic viscosity is of simple shear, and this is {flow}")
     expect(run.value("Flow/history") is None, f"{run.directory}: the flow changes in time; see its intrinsic_viscosity")
@@ -167,7 +170,8 @@ def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
 
 
 def average(strain, values, first, blocks):
-    """Returns the mean over strain from `first` on, by the trapezoidal rule, and its standard error by equal blocks."""
+    """Returns the mean of values(strain) from the strain `first` on, by the trapezoidal rule, and its standard error,
+    from the means over `blocks` equal parts."""
     expect(blocks > 1, f"--blocks must be at least 2, but is {blocks}")
     if strain[-1] <= first:
         return numpy.nan, numpy.nan
@@ -223,7 +227,8 @@ def viscosity(study, upper, lower, *, single: str = "inputs/shear_neo_hookean.ya
 
 
 def averages(outcome, first, blocks):
-    """Returns volume fraction, mean and standard error of a run, or None of one that did not end beyond `first`."""
+    """Returns the volume fraction, and the mean relative viscosity with its standard error, of a run. Returns None if
+    the run failed or ended before the strain `first`."""
     if not outcome.done:
         log.info(f"left out: {outcome.message.removeprefix('tanktread: ')}")
         return None
@@ -274,20 +279,22 @@ def drift(run, *axes, from_: int = 10):
 
 
 def turns(time, values, phase):
-    """Returns means in time over whole turns of the phase. Rows with NaN, where a series is undefined, are left out."""
+    """Returns the time average over each full revolution (360 degrees of `phase`). NaN values are left out."""
     ends = numpy.interp(360 * numpy.arange(phase.max() // 360 + 1), phase, time)
     return averages_between(time[~numpy.isnan(values)], values[~numpy.isnan(values)], ends)
 
 
 def line(means, first):
-    """Returns the change of the line through the means over all turns from `first` on, and its standard error."""
+    """Fits a straight line to the means of the revolutions from `first` on. Returns its change over all of them, and
+    the standard error of this change."""
     number = numpy.arange(first, len(means))
     (slope, _), covariance = numpy.polyfit(number, means[first:], 1, cov=True)
     return slope * (len(number) - 1), covariance[0, 0] ** 0.5 * (len(number) - 1)
 
 
 def flow_of(run):
-    """Returns the times at which the flow begins to end and from which it rests; infinity if it does not rest."""
+    """Returns the last time of Flow/history with a non-zero amplitude, and the next time, from which the amplitude is
+    0. Both are infinite if the history does not end at zero amplitude."""
     amplitudes, times = (numpy.atleast_1d(run.value(f"Flow/history/{name}", [])) for name in ("amplitudes", "times"))
     on = numpy.flatnonzero(amplitudes)
     if len(on) and len(times) == len(amplitudes) and on[-1] + 1 < len(times):

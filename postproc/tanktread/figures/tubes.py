@@ -10,8 +10,8 @@ from . import style
 from .draw import VIEW, draw_pieces, draw_surface, middle, section, share_window
 from .register import figure
 
-STEP = 0.2    # between contours, in mean velocities
-FLOOR = 1e-4  # smallest distance from the largest velocity that is drawn: the tolerances of a run allow for it
+STEP = 0.2    # difference between velocity contours, divided by the mean velocity
+FLOOR = 1e-4  # smallest distance of the centroid from the velocity maximum that is drawn; smaller ones are not accurate
 TIMES = [0.0, 0.5, 1.0, 2.0, 5.0, 20.0]
 PANELS = {"migration_velocity": "migration velocity / vₘ", "velocity_x1": "velocity along the tube / vₘ",
           "tank_treading_velocity": "tank-treading velocity / vₘ",
@@ -27,7 +27,7 @@ def duct(runs, *axes):
     largest = [d["maximum"][2] / d["mean_velocity"] for d in ducts]
     outlines = numpy.concatenate([d["outline"] for d in ducts])
     margin = 0.02 * numpy.ptp(outlines, axis=0).max()
-    low, high = outlines.min(0) - margin, outlines.max(0) + margin  # of every panel: one scale
+    low, high = outlines.min(0) - margin, outlines.max(0) + margin  # all panels have the same limits
     levels = numpy.append(numpy.arange(0, max(largest), STEP), max(largest))
     for axis, d, run, most in zip(axes, ducts, runs, largest):
         filled = draw_section(axis, d, levels)
@@ -42,7 +42,7 @@ def duct(runs, *axes):
 
 
 def duct_of(run):
-    """Returns the arrays of duct.h5 by name, lengths over R_T, and the `radius` R_T."""
+    """Returns {name: array} of duct.h5. Lengths are divided by R_T, except `radius`, which is R_T."""
     expect(run.value("Flow/type") == "duct", f"{run.directory} is not in a tube")
     arrays = arrays_of(run.directory / "duct.h5")
     arrays["maximum"][:2] /= arrays["radius"]
@@ -50,7 +50,7 @@ def duct_of(run):
 
 
 def draw_section(axis, d, levels):
-    """Draws contours up to the wall, where the velocity is zero, and returns them."""
+    """Draws the velocity of the empty tube in its cross-section as filled contours, and returns them."""
     velocity = d["velocity"] / d["mean_velocity"]
     inside = numpy.isfinite(velocity)
     grid = numpy.stack(numpy.meshgrid(d["x2"], d["x3"]), axis=-1)[inside]
@@ -186,7 +186,8 @@ def channel(run, cut, extents, velocity, pressure, wall, *, shapes: int = 7, acr
 
 
 def way_along(run, c):
-    """Returns the way of the centroid (rows,) along the centre line: to its nearest point, and on along its tangent."""
+    """Returns the position s (rows,) of the centroid along the centre line: s of the nearest point of the centre line,
+    plus the component along its tangent of the vector from this point to the centroid."""
     name = "center_x" if "center_x1" in run.series else "centroid_x"
     places = numpy.column_stack([run.series[f"{name}{k}"] for k in (1, 2, 3)])
     nearest = numpy.argmin(numpy.linalg.norm(places[:, None] - c["centre"][None], axis=2), axis=1)
@@ -196,11 +197,11 @@ def way_along(run, c):
 
 def cut_open(axis, run, c, way, n, across):
     bent = numpy.ptp(c["centre"][:, 1]) > 0
-    across = 2 if bent else across  # in its plane
+    across = 2 if bent else across  # a bend is cut in its plane x1 x2
     up = 3 - across
     lines = c["wall"][2:] if across == 1 else c["wall"][:2]
     axis.plot(lines[:, :, 0].T, lines[:, :, up].T, color=style.INK, linewidth=1.6)
-    reach, labelled = run.series["length_x1"].max(), []  # places of the times
+    reach, labelled = run.series["length_x1"].max(), []  # labelled: positions of the time labels
     shots = [run.snapshot_at(numpy.interp(x, way, run.series["time"])) for x in numpy.linspace(way[0], way[-1], n)]
     for shot, colour in style.shaded({shot.path: shot for shot in shots}.values()):
         centre = middle(shot.points)

@@ -38,7 +38,7 @@ TAKES = {"last": lambda time, values: values[-1], "smallest": lambda time, value
 
 
 def drawn(text):
-    """Returns rows of random settings."""
+    """Returns a list of settings {key: value}, drawn at random as the section `random` requests."""
     expect("number" in text and keys_of(text.get("keys"), "random: keys"), "random needs a number and keys")
     size, seed = whole(text["number"], "random: number"), text.get("seed", 1)
     expect(isinstance(seed, int) and seed >= 0, f"random: seed must be a whole number, 0 or above, but is {seed}")
@@ -56,7 +56,7 @@ def drawn(text):
 
 
 def combinations(text):
-    """Returns the settings of every run that a study asks for, each once."""
+    """Returns the settings of all runs of a study, without duplicates."""
     grid, together = ({key: values_of(key, one) for key, one in text[name].items()} for name in ("grid", "together"))
     expect(len({len(values) for values in together.values()}) <= 1, "the lists of `together` must be equally long")
     groups = [[dict(zip(grid, row)) for row in itertools.product(*grid.values())],
@@ -67,7 +67,7 @@ def combinations(text):
 
 
 def columns_of(text, path):
-    """Returns {column: (series, take, at)}."""
+    """Returns {column: (series, take, at)} from the section `record` of a study file."""
     record = text.get("record")
     expect(record, f"{path} records nothing: name series under `record`")
     if isinstance(record, list):
@@ -85,8 +85,9 @@ def columns_of(text, path):
 
 
 def recorded(outcome, columns):
-    """Returns the columns of a run, and `time` of whole series; none of a run that did not come to its end. A run with
-    requested accuracy has `<column> error` beside each column of one value, and one that lacks a time a `message`."""
+    """Returns {column: value} for a run; {} if the run was not completed. For whole series (`take: all`), the value is
+    an array, and `time` is added. A column with one value has a second column `<column> error` if an accuracy was
+    requested. If a series has no value at the time `at`, the value is NaN and a `message` is added."""
     if not outcome.done:
         return {}
     row, time = {}, outcome.series["time"]
@@ -95,7 +96,7 @@ def recorded(outcome, columns):
         if take == "all":
             row |= {name: values, "time": time}
             continue
-        kept = numpy.full(len(values), True) if take == "last" else ~numpy.isnan(values)  # it is NaN where undefined
+        kept = numpy.full(len(values), True) if take == "last" else ~numpy.isnan(values)  # defined values only
         take_error = TAKES["last" if take == "last" else "largest"]
         for column, found, one in (name, values, TAKES[take]), (f"{name} error", errors, take_error):
             if found is not None and at is not None and len(found):
@@ -110,7 +111,8 @@ def recorded(outcome, columns):
 
 
 class Sweep:
-    """A study file and its runs: `keys` that vary, `rows` of settings, and their `outcomes` once they are made."""
+    """A study file and its runs. `keys`: keys that vary. `rows`: settings of each run. `outcomes`: their Outcomes,
+    available after make()."""
 
     def __init__(self, path, study):
         text = study_of(path, {"set", "grid", "together", "random"}, {"record", "limit", "ranks"})
@@ -122,12 +124,12 @@ class Sweep:
                      if len({str(row.get(key)) for row in self.rows}) > 1]
 
     def make(self):
-        """Makes the runs, the progress of the whole on standard error."""
+        """Makes the runs and prints the progress on standard error."""
         start, ends = time.monotonic(), collections.Counter()
 
         def told(outcome):
             ends[outcome.status] += 1
-            if ends["done"] == 1:  # a column that no run has is told after the first one, not after the last
+            if ends["done"] == 1:  # after the first completed run, raises Mistake for columns that do not exist
                 recorded(outcome, self.columns)
             made = sum(ends.values())
             left = (time.monotonic() - start) / made * (len(self.rows) - made)
@@ -139,8 +141,8 @@ class Sweep:
         progress("")
 
     def write(self, directory):
-        """Writes table.csv, without whole series, and table.h5 with them (/columns/<name>, rows padded with NaN). The
-        attribute `unit` of keys and columns in table.h5, such as ", µm", is as the first run that ended has it."""
+        """Writes table.csv and table.h5. Whole series are only in table.h5 (/columns/<name>, rows padded with NaN).
+        Keys and columns in table.h5 have the attribute `unit`, such as ", µm", taken from the first completed run."""
         found = [recorded(outcome, self.columns) for outcome in self.outcomes]
         whole = [name for name, (_, take, _) in self.columns.items() if take == "all"]
         single = [word for name in self.columns if name not in whole for word in (name, f"{name} error")
@@ -178,7 +180,8 @@ class Sweep:
 
 
 def table(directory):
-    """Returns of a sweep's table.h5 {column or key: values}, the keys that vary, and labels of axes by both names."""
+    """Reads the table.h5 of a sweep. Returns {column or key: values}, the keys that vary, and {column or key: axis
+    label}."""
     with opened(directory / "table.h5") as file:
         keys = list(file.attrs["keys"])
         found = {key: file[f"keys/{key}"] for key in keys}
@@ -189,7 +192,8 @@ def table(directory):
 
 
 def plot(directory, column, key, axes=None):
-    """Returns a figure of a column against a key, or of series against time, a line per combination of other keys."""
+    """Returns a figure of a column against a key, or of whole series against time. There is one line per combination of
+    the other keys."""
     from ..figures import style
 
     columns, keys, labels = table(directory)
@@ -206,7 +210,7 @@ def plot(directory, column, key, axes=None):
             axis.plot(x.T, y.T, color=color)[0].set_label(label)
             continue
         order = numpy.argsort(x)
-        dash = ("-", "--", ":")[k // len(style.RUNS)] if few else ""  # where the colours begin again
+        dash = ("-", "--", ":")[k // len(style.RUNS)] if few else ""  # another dash when the colours repeat
         axis.plot(x[order], y[order], "o", linestyle=dash, ms=3.5, color=color if few else style.RUNS[0],
                   label=label if few else None)
     along = columns[key]
@@ -219,8 +223,9 @@ def plot(directory, column, key, axes=None):
 
 
 def run(path, directory=None, jobs=None, fresh=False):
-    """Makes the runs of a study file, writes its table, and returns the Sweep. `directory`: of table.csv, table.h5 and
-    runs/ (default: results/<study>). `jobs`: runs at a time (default: one per core). `fresh`: makes all runs anew."""
+    """Makes the runs of a study file, writes its table, and returns the Sweep. `directory`: directory of table.csv,
+    table.h5 and runs/ (default: results/<study>). `jobs`: number of simultaneous runs (default: one per core). `fresh`:
+    if true, existing results are not used."""
     directory = pathlib.Path(directory or f"results/{pathlib.Path(path).stem}")
     sweep = Sweep(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count(), fresh=fresh))
     directory.mkdir(parents=True, exist_ok=True)
