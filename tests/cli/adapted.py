@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# A run whose mesh refines itself: two ranks make the mesh of one, and a run that is taken up after refinements goes on to the last bit.
+# Tests of adaptive meshes: two ranks produce the mesh of one rank, and a run that is resumed after refinements is
+# bitwise equal to an uninterrupted run.
 import pathlib
 import shutil
 import subprocess
@@ -105,7 +106,8 @@ def the_volume_is_kept_through_every_change_of_the_mesh():
 
 
 def a_change_of_the_mesh_that_fails_is_undone():
-    """56, 218, 866 and 3458 points, of which the last need 860 MB for the double layer alone."""
+    """The meshes have 56, 218, 866 and 3458 control points. On the last mesh, the double layer alone needs 860 MB, more
+    than the limit of the process."""
     run(deck(GROWING % 900), "--output", "whole", "--quiet")
     check((_points("whole") == [56, 218, 866, 866]).all(), _points("whole"))
     words = " ".join(f"'{word}'" for word in command(deck(GROWING % 4000), "--output", "out", "--quiet"))
@@ -122,7 +124,7 @@ def a_change_of_the_mesh_that_fails_is_undone():
 
 
 def a_picture_within_a_step_is_of_the_mesh_of_that_step():
-    """At a time before the mesh changed, the shape is that of a run whose mesh stays."""
+    """A snapshot at a time before the first change of the mesh has the same points as in a run without adaptation."""
     pictures = {}
     for enabled in "true", "false":
         run(deck(BETWEEN % enabled), "--output", enabled, "--quiet")

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# A particle in a channel: mistakes are told with their numbers; a run ends when it is past a place; mirror planes and ranks change no run; what is held stays.
+# Tests of a particle in a channel: messages about wrong values; end of a run beyond a given position; mirror symmetry;
+# ranks; bodies that are held.
 import pathlib
 
 import h5py
@@ -96,7 +97,8 @@ def an_iterated_wall_does_what_the_factored_one_does():
         fixed = ["Time/scheme=bs3", "Time/fixed step=0.01", "Time/final time=0.01", "Quadrature/tolerance=1e-5", f"Particle/viscosity ratio={ratio}"]
         for solver in "factored", "iterative":
             run(deck(DECK), *_words(fixed + [f"Solvers/wall={solver}", f"Symmetry/use={symmetry}"]), "--output", f"{ratio} {symmetry} {solver}", "--quiet")
-        for name in "velocity_x1", "length_x1", "disturbed_pressure_drop", "pressure_drop_by_flux", "channel_pressure_drop":  # as far as their integrals
+        # tolerance: quadrature
+        for name in "velocity_x1", "length_x1", "disturbed_pressure_drop", "pressure_drop_by_flux", "channel_pressure_drop":
             one, other = (series(f"{ratio} {symmetry} {solver}", name)[-1] for solver in ("factored", "iterative"))
             check(abs(other / one - 1) < 1e-5, f"{name}: {one} factored, {other} iterated, viscosity ratio {ratio}, symmetry {symmetry}")
     _refused(["Solvers/wall", "block"], "Solvers/wall=iterative", "Solvers/tube=block")
@@ -176,7 +178,8 @@ def viscosities_may_differ():
 
 
 def a_bend_is_its_own_mirror_image():
-    """What passes it backwards, on another wall, is as fast: by the flow's reversal, along and across."""
+    """By reversibility of Stokes flow, a particle that passes the bend backwards moves as fast as one that passes it
+    forwards, along the centre line and across it. The two walls have different meshes."""
     bend = "profile: straight, azimuthal elements: 12, bend radius: 2.0, bend start: 0.0, start: -3.0, end: 6.141592653589793"
     lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0, azimuthal elements: 8, axial elements: 20, start: -3.4, end: 3.4", bend)
     first = ["Time/final time=1e-6", "Time/end when past=8", "Particle/viscosity ratio=5", "Surface/elements per side=3"]

@@ -9,7 +9,7 @@ import numpy
 
 from harness import check, close, deck, main, run, series
 
-EMPTY = 159.429662  # extra pressure drop of the round constriction, own axisymmetric solution
+EMPTY = 159.429662  # extra pressure drop of the round constriction, from an axisymmetric solution of this project
 
 PASSES = """
 Tanktread:
@@ -26,7 +26,9 @@ OF_PASSAGE = "velocity_x1", "velocity_x2", "disturbed_pressure_drop", "channel_p
 
 
 def _empty(name, *lines, half_length=2.0, depth=0.5, ends=4.0):
-    """Extra pressure drop; flow rates through ten sections over that at the inlet. A held sphere far from the change does nothing to either."""
+    """Returns the extra pressure drop of an empty constriction, and the flow rates through ten cross-sections divided
+    by the flow rate at the inlet. A particle is required; it is held far from the constriction, where it changes
+    neither."""
     reach = half_length + ends
     scene = f"""
 Tanktread:
@@ -50,9 +52,9 @@ def the_empty_constriction_costs_what_is_known():
 
 
 def a_slender_constriction_costs_what_lubrication_says():
-    """What lubrication leaves out falls with the square of the slenderness."""
+    """The relative error of lubrication theory falls with the square of depth divided by length."""
     x = (numpy.arange(4000) + 0.5) / 4000
-    mean = numpy.mean((1 - 0.1 * (1 + numpy.cos(numpy.pi * x))) ** -4.0 - 1)  # of R^-4 over the half length
+    mean = numpy.mean((1 - 0.1 * (1 + numpy.cos(numpy.pi * x))) ** -4.0 - 1)  # mean of R^-4 - 1 over the half length
     off = [_empty(f"length {w}", "Channel/azimuthal elements=16", half_length=w, depth=0.2)[0] / (16 * w * mean) - 1 for w in (4.0, 8.0, 16.0)]
     powers = numpy.diff(numpy.log(numpy.abs(off))) / numpy.log(0.5)
     check(abs(off[2]) < 2e-3 and numpy.abs(powers - 2).max() < 0.1, f"{off} off, powers {powers}")
@@ -67,7 +69,8 @@ def what_is_straight_does_as_the_tube_does():
     tube = _passes("tube", "Tube: {azimuthal elements: 28, axial elements: 48}", "[0, 0, 0]")
     wall = "start: -3.3, end: 3.3, azimuthal elements: 24, axial elements: 48}"
     along = "Channel: {profile: straight, "
-    bent = f"bend radius: 1.0e4, bend start: -1.5, bend angle: {3e-4 * 180 / numpy.pi!r}, "  # drift across is as the bend, the rest as its square
+    # the velocity across is proportional to the curvature of the bend, all other changes to its square
+    bent = f"bend radius: 1.0e4, bend start: -1.5, bend angle: {3e-4 * 180 / numpy.pi!r}, "
     for name, channel in ("straight", along + wall), ("bent", along + bent + wall):
         velocity, across, drop, _ = _passes(name, channel, "[0, 0, 0]")
         check(abs(velocity / tube[0] - 1) < 1e-6 and abs(drop / tube[2] - 1) < 1e-5, f"{name}: {velocity}, {drop}; the tube: {tube}")
@@ -75,7 +78,8 @@ def what_is_straight_does_as_the_tube_does():
 
 
 def _mirrored(name, walls, centers, along, radius):
-    """On default walls and on finer ones: velocities along and across over that along, the pressure drop of the channel with what passes it."""
+    """Compares two mirrored problems on default walls and on finer walls: the velocities along and across the channel
+    divided by the velocity along it, the pressure drop of the empty channel, and the total pressure drop."""
     for mesh, elements, bounds in (("default", ("", ", axial elements: 80"), (3e-5, 1e-4)),
                                    ("finer", (", axial elements: 90", ", azimuthal elements: 28, axial elements: 100"), (1e-5, 1e-6))):
         one, other = (numpy.abs(_passes(f"{name} {mesh} {k}", f"Channel: {{{walls[k]}{elements[k]}}}", centers[k], radius, 1e-6)) for k in (0, 1))

@@ -23,7 +23,7 @@ import yaml
 from harness import Failed, check, difference, run
 from metamorphic import _rotation, _rotation_vector
 
-FACTORS = {  # the first value of each is the one that a deck has if nothing speaks against it
+FACTORS = {  # the first value of each factor is its default
     "kind": ["capsule", "drop", "red cell", "vesicle", "free body", "prescribed body"],
     "law": ["neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "expression", "surface tension", "none"],
     "ratio": ["1", "5", "0.2"],
@@ -47,7 +47,7 @@ ELASTIC = ("neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "expression
 ONE_IS_NOT_REPEATED = True
 AFFINE = ("simple shear", "quiescent", "uniform", "four-roll", "planar hyperbolic", "uniaxial extension", "linear")
 
-# What the program rejects: words of its sentence, the choices that it names, and the reason.
+# Pairs of choices that the program rejects: words of the message, the choices that it names, and the reason.
 ANY = {factor: tuple(values) for factor, values in FACTORS.items()}
 REASONS = [
     ("a rigid particle has no membrane", {"kind": RIGID, "law": ("none",)}, {"law": (*ELASTIC, "surface tension"), "Maxwell": ("yes",), "viscosity": ("yes",)},
@@ -70,9 +70,11 @@ REASONS = [
     ("a tube or channel is periodic along x1 only", {"medium": ("lattice of 2", "lattice of 3")}, {"duct": ("tube", "channel"), "flow": ("duct",)}, "a duct has walls across"),
 ]
 NO_DECK = {*(("kind", kind, "law", "surface tension") for kind in ("capsule", "red cell")), *(("kind", kind, "law", law) for kind in FLUID for law in ELASTIC),
-           *(("kind", kind, "law", "none") for kind in FACTORS["kind"] if kind not in RIGID)}  # by the definition of the kinds
+           # excluded by the definition of the kinds
+           *(("kind", kind, "law", "none") for kind in FACTORS["kind"] if kind not in RIGID)}
 RANK = {factor: k for k, factor in enumerate(FACTORS)}
-# Where a resumed run is not the same to the last bit, to be mended: by the choices, and what differs by how much.
+# Known defects: cases in which a resumed run is not bitwise equal. A function of the choices, the differences and the
+# names of the counters.
 OPEN = {
     "a resumed run counts an evaluation less": lambda c, off, counts: off and len(counts) == len(off),
     "a resumed run differs by rounding": lambda c, off, counts: off and (c["medium"] != "unbounded" or c["adaptation"] == "yes") and
@@ -84,18 +86,19 @@ GRADIENTS = {"simple shear": [[0, 0, 1], [0, 0, 0], [0, 0, 0]], "four-roll": [[0
              "planar hyperbolic": [[1, 0, 0], [0, 0, 0], [0, 0, -1]], "uniaxial extension": [[-0.5, 0, 0], [0, -0.5, 0], [0, 0, 1]],
              "linear": [[0.3, -0.2, 1.0], [0.1, -0.4, 0.2], [-0.3, 0.5, 0.1]], "changing": [[0, 0, 1], [0, 0, 0], [0, 0, 0]]}
 STEP, STEPS = 0.005, 3
-FIRST = 12  # decks of the short run
+FIRST = 12  # number of decks in the short run
 CHECKS = ("series", "resume", "ranks", "order", "symmetry", "motions")
-SIDES = [6.5, 3.7, 3.9]  # of a lattice, over the particle's radius
+SIDES = [6.5, 3.7, 3.9]  # side lengths of a lattice divided by the particle's radius
 OWN = re.compile(r"(.*/)?(wall_seconds|solver_iterations|velocity_iterations)")  # of the machine, or of sums in another order
 UNDEFINED = re.compile(r"(.*/)?(inclination|axis_1_x[123])")  # of equal semi-axes
-NEAREST = re.compile(r"first_of_gap|second_of_gap|particle_at_wall|gap_x[123]|nearest_to_wall_x[123]")  # where a distance is least: known to its root, or one of several
+# positions of a smallest distance: known only to the square root of the tolerance, or one of several
+NEAREST = re.compile(r"first_of_gap|second_of_gap|particle_at_wall|gap_x[123]|nearest_to_wall_x[123]")
 INVARIANT = re.compile(r"(.*/)?(volume|area|energy|membrane_dissipation|local_area_change|axis_[123]|surfactant_mass|smallest_concentration"
                        r"|largest_concentration|gap|smallest_gap|fluid_dissipation|disturbed_pressure_drop)")
 
 
 def complete(fixed):
-    """Adds to some choices those that suit them."""
+    """Returns the choices in `fixed`, completed by default choices that are compatible with them."""
     c = dict(fixed)
     if "kind" not in c:
         wants = "drop" if "surfactant" in c and c["surfactant"] == "yes" else "capsule"
@@ -114,7 +117,7 @@ def complete(fixed):
 
 
 class Scene:
-    """A choice as a deck, moved by `shift` and turned by `turn`."""
+    """The deck of a set of choices. The scene is shifted by `shift` and rotated by `turn`."""
 
     def __init__(self, c, shift=(0, 0, 0), turn=numpy.eye(3), order=("one", "two"), more=(), symmetric=None):
         self.c, self.shift, self.turn, self.order, self.more = c, numpy.array(shift, float), turn, order, more
@@ -257,7 +260,7 @@ def _sentences(text):
 
 
 def sentences(c):
-    """What the program says against a choice: nothing if it accepts it."""
+    """Returns the messages with which the program rejects the choices; empty if it accepts them."""
     return _sentences(Scene(c).text())
 
 
@@ -266,7 +269,8 @@ def pairs_of(c):
 
 
 def reason(pair, said):
-    """The entries of the table that are about this pair and hold words of what is said."""
+    """Returns the entry of REASONS for a pair of choices whose words occur in one of the messages `said`; None if there
+    is none."""
     (f, a), (g, b) = pair
     for entry in REASONS:
         words, one, other, _ = entry
@@ -286,8 +290,8 @@ class Cover:
     def __init__(self):
         self.left = {((f, a), (g, b)): None for f, g in itertools.combinations(FACTORS, 2) for a in FACTORS[f] for b in FACTORS[g]
                      if (f, a, g, b) not in NO_DECK}
-        self.barred = {((f, a), (g, b)) for f, a, g, b in NO_DECK}  # pairs that no deck holds
-        self.together = []  # three choices that the program rejects although it accepts each two of them
+        self.barred = {((f, a), (g, b)) for f, a, g, b in NO_DECK}  # pairs that are known to be rejected
+        self.together = []  # sets of three choices that are rejected although each pair of them is accepted
         self.decks, self.rejected, self.without_reason = [], {}, {}
         self.asked = 0
         while self.left:
@@ -297,7 +301,7 @@ class Cover:
         count = collections.Counter(choice for pair in self.left for choice in pair)
         start = max(self.left, key=lambda pair: count[pair[0]] + count[pair[1]])
         c = self.grown(dict(start), count)
-        if c is None:  # each of the two is accepted with none of the choices that the other one needs
+        if c is None:  # no completion without a rejected pair exists
             return self.reject(start)
         self.asked += 1
         said = sentences(c)
@@ -312,7 +316,8 @@ class Cover:
         return None
 
     def third(self, blamed, c):
-        """Finds a choice of c with which a pair is rejected that is accepted without it."""
+        """Searches for a choice in c with which a pair is rejected that is accepted without this choice. Returns True
+        if there is one."""
         for pair in blamed:
             for choice in c.items():
                 self.asked += 1
@@ -322,7 +327,7 @@ class Cover:
         return False
 
     def reject(self, pair):
-        """Tries a pair by itself. Returns whether it is rejected."""
+        """Tests a pair with default choices otherwise. Returns True if it is rejected."""
         c = complete(dict(pair))
         self.asked += 1
         said = sentences(c)
@@ -336,11 +341,13 @@ class Cover:
         return True
 
     def grown(self, c, count):
-        """Adds a value for each factor that is left, so that no pair is barred: depth first, values that cover most first. None if there are none."""
+        """Completes c by a value for each missing factor such that no pair is barred. Depth-first search; values that
+        cover most uncovered pairs come first. Returns None if there is no such completion."""
         rest = sorted((f for f in FACTORS if f not in c), key=lambda f: (-sum(count[f, a] for a in FACTORS[f]), f))
         if not rest:
             return c
-        f = min(rest, key=lambda f: (sum(self.fits(c, f, a) for a in FACTORS[f]) > 1, rest.index(f)))  # values without an alternative first
+        # factors with only one possible value come first
+        f = min(rest, key=lambda f: (sum(self.fits(c, f, a) for a in FACTORS[f]) > 1, rest.index(f)))
         for a in sorted((a for a in FACTORS[f] if self.fits(c, f, a)), key=lambda a: -sum(self.pair(g, c[g], f, a) in self.left for g in c)):
             if whole := self.grown({**c, f: a}, count):
                 return whole
@@ -355,7 +362,7 @@ class Cover:
 
 
 def _series(results):
-    """Every series of a run by its name, `particle/name` of a particle."""
+    """Returns {name: values} for all series of a run. The series of a particle are named `particle/name`."""
     import h5py
 
     found = {}
@@ -365,7 +372,7 @@ def _series(results):
 
 
 def _points(results):
-    """The last surface: of each particle, its points about their middle."""
+    """Returns for each particle the points of its last surface relative to their mean."""
     import h5py
 
     with h5py.File(sorted(pathlib.Path(results).glob("snapshot_*.hdf"))[-1], "r") as file:
@@ -375,7 +382,7 @@ def _points(results):
 
 
 class Trial:
-    """The checks of one deck, in a directory of its own."""
+    """Runs and checks of one deck, in a directory of its own."""
 
     def __init__(self, c, directory):
         self.scene, self.c, self.directory, self.wrong = Scene(c), c, pathlib.Path(directory), []
@@ -398,7 +405,7 @@ class Trial:
         check(not beyond, f"off by more than {tolerance:g}: {beyond}")
 
     def check_series(self):
-        """Volume, mass, forces and power, and that everything is finite."""
+        """Checks volume, surfactant mass, forces and power balance, and that all values are finite."""
         c, found = self.c, _series(self.base)
         for name, values in found.items():
             last = name.split("/")[-1]
@@ -409,7 +416,7 @@ class Trial:
                 check(abs(values - 1).max() <= 1e-12, f"{name} {abs(values - 1).max():.1e}")
             if last == "power_residual":
                 check(abs(values).max() <= 3e-2, f"{name} {abs(values).max():.1e}")
-            if last == "force_imbalance":  # of a wall of 8 elements around
+            if last == "force_imbalance":  # tolerance for a wall with 8 azimuthal elements
                 check(abs(values).max() <= 5e-3, f"{name} {abs(values).max():.1e}")
         if c["medium"] == "lattice of 3" and c["kind"] != "prescribed body":
             weights = 0.8 * numpy.array([0.4, -0.3, -1.0]) if c["weight"] == "yes" else numpy.zeros(3)
@@ -417,7 +424,7 @@ class Trial:
             check(abs(abs(gradient) - abs(weights * found["volume_fraction"][-1])).max() <= 1e-6, f"pressure gradient {gradient} for weights {weights}")
 
     def check_resume(self):
-        """To the last bit."""
+        """Checks that a resumed run is bitwise equal to the uninterrupted run."""
         parts = self.directory / "parts"
         shutil.copytree(self.base, parts)
         snapshots = sorted(parts.glob("snapshot_*.hdf"))
@@ -435,20 +442,23 @@ class Trial:
         return self.c["scheme"] in ("tr-bdf2", "bdf3", "auto")
 
     def rounding(self):
-        """What sums in another order may change. Implicit steps multiply it, more so on a mesh that has just been refined: they are extrapolated with
-        the frozen operator, which is kept in single precision."""
+        """Returns the tolerance for a change of the order of summation. Implicit schemes amplify rounding errors, and
+        more so just after a refinement, because they extrapolate with the frozen operator, which is stored in single
+        precision."""
         return 1e-7 if self.c["adaptation"] == "yes" else 1e-8 if self.implicit() else 1e-10
 
     def check_ranks(self):
         self.compare(self.base, self.run("ranks", self.scene, ranks=2), self.rounding())
 
     def check_order(self):
-        """In a scene without symmetry: rules at equal distances may differ."""
+        """Checks that the order of the particles does not matter. Symmetry is off, because quadrature rules at equal
+        distances may differ."""
         one, other = (self.run(name, Scene(self.c, order=order, symmetric=False)) for name, order in (("ordered", ("one", "two")), ("permuted", ("two", "one"))))
         self.compare(one, other, self.rounding(), excluded=NEAREST)
 
     def check_motions(self):
-        """Shift and rotation. Rotations change the single-precision numbers of the frozen operator, with which implicit steps are extrapolated."""
+        """Checks that a shift and a rotation of the scene do not change the result. A rotation changes the rounding of
+        the frozen operator, which is stored in single precision and with which implicit schemes extrapolate."""
         tolerance = 1e-5 if self.implicit() else 1e-8
         c, more = self.c, [("Quadrature", "tolerance", 1e-9), ("Time", "newton tolerance", 1e-9), ("Time", "newton iterations", 50),
                            ("Time", "iteration tolerance", 1e-12), ("Time", "final time", STEP)]
@@ -476,8 +486,9 @@ class Trial:
                     check(off <= tolerance, f"{name}: points are off by {off:.1e}")
 
     def check_symmetry(self):
-        """What is computed of the fundamental part only is what is computed of all: the first row, if rkc2 takes fewer stages because modes are left
-        out. Integrals over the wall of a channel are as good as Quadrature/tolerance, by other rules."""
+        """Checks that a run with symmetry agrees with a run without symmetry. Only the first row is compared if rkc2
+        takes fewer stages because of the symmetry. Integrals over the wall of a channel agree to Quadrature/tolerance,
+        because the quadrature rules differ."""
         tolerance = 1e-5 if self.c["duct"] == "channel" else 1e-6 if self.implicit() else 1e-8
         whole = self.run("whole", Scene(self.c, more=[("Symmetry", "use", "none")]))
         fewer = self.c["scheme"] == "rkc2" and (_series(self.base)["evaluations"] != _series(whole)["evaluations"]).any()
@@ -493,12 +504,13 @@ class Trial:
             yield self.check_order
         if self.c["symmetry"] == "auto":
             yield self.check_symmetry
-        if self.c["adaptation"] == "no" or self.c["number"] == "1":  # 436 points take minutes
+        if self.c["adaptation"] == "no" or self.c["number"] == "1":  # with 436 points this takes minutes
             if "--long" in sys.argv or self.c["medium"] not in LATTICES:
                 yield self.check_motions
 
     def faults(self, ranks, chosen):
-        """Runs the deck and its checks; returns what is wrong, which faults of OPEN it shows, and the seconds of each check."""
+        """Runs the deck and its checks. Returns the failures, the known defects (OPEN) that occurred, and the seconds
+        of each check."""
         wrong, seconds, self.open = [], {}, []
         try:
             self.base = self.run("base", self.scene)
@@ -516,7 +528,7 @@ class Trial:
 
 
 def said_of(c):
-    """The choices that are not those that suit the others."""
+    """Returns the choices that differ from the default choices, as text."""
     neutral = complete({})
     return ", ".join(f"{factor}={value}" for factor, value in c.items() if value != neutral[factor]) or "neutral"
 
@@ -531,7 +543,7 @@ def _tried(c, ranks):
 
 
 def _report(decks):
-    """Runs the decks, two at a time. Returns how many have faults."""
+    """Runs the decks, two at a time. Returns the number of decks with failures."""
     failed = 0
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         for c, (wrong, still_open, seconds) in zip(decks, pool.map(_tried, decks, itertools.cycle([True, False, False]))):

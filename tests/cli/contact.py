@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 2
-# Contact/limiter: a gap that is held at the limit, by forces that are known, equal and opposite, and 0 until then.
+# Tests of Contact/limiter: it keeps a gap at the limit, by known, equal and opposite forces that vanish before contact.
 import h5py
 import numpy
 
@@ -108,7 +108,7 @@ Tanktread:
 
 
 def drops_that_are_pressed_together_are_held_apart():
-    """Their interfaces are dented by the force, and the narrowest place moves to the rim of the dent."""
+    """The contact force dents the interfaces, and the smallest gap moves to the rim of the dent."""
     deck("""
 Tanktread:
   Flow: {type: planar hyperbolic}
@@ -122,11 +122,13 @@ Tanktread:
 """)
     run("deck.yaml", "--output", "drops", "--quiet")
     gap, force = series("drops", "smallest_gap"), series("drops", "contact_force")
-    check(force[-1] > 0 and gap.min() > 0.05 * (1 - 0.02), gap, force)  # of a second contact and of its target: 1 % each
+    # tolerance: 1 % for a second contact and 1 % for its target
+    check(force[-1] > 0 and gap.min() > 0.05 * (1 - 0.02), gap, force)
 
 
 def images_are_let_go_when_the_flow_turns_back():
-    """After the reversal at time 0.2 the period along x3 grows in every step, and with it the gap to the image."""
+    """After the reversal of the flow at time 0.2, the period along x3 and the gap to the periodic image grow in every
+    step."""
     deck("""
 Tanktread:
   Flow: {type: planar hyperbolic, history: {times: [0.2, 0.2], amplitudes: [1.0, -1.0]}}

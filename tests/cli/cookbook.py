@@ -28,7 +28,7 @@ from harness import PROGRAM, SOURCE, Failed, check
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"(?<![\w.])[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
 FOLDER = pathlib.Path("inputs/cookbook")
-LARGEST = 60000  # bytes of a picture
+LARGEST = 60000  # size limit of a committed picture in bytes
 
 
 def blocks(text):

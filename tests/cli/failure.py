@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# A run that fails, is stopped or runs out of time leaves a checkpoint from which it goes on with another scheme or tolerance.
+# Tests that a run which fails, is stopped or reaches its time limit leaves a checkpoint, and can be resumed with
+# another scheme or tolerance.
 import os
 import pathlib
 import signal
@@ -19,7 +20,8 @@ Tanktread:
 
 
 def _goes_on(results, *settings):
-    """The newest checkpoint opens, and the run gets to its end from there; the record has no gap."""
+    """Checks that the newest checkpoint can be read, that the resumed run reaches its end, and that no rows are
+    missing."""
     begun = series(results, "time")
     words = [word for setting in settings for word in ("--set", setting)]
     run("--resume", results, *words, "--quiet")
@@ -30,7 +32,8 @@ def _goes_on(results, *settings):
 
 
 def _fails(*settings):
-    """Exit code 3, one sentence with the reason, the time and the place of the checkpoint."""
+    """Checks that the run exits with code 3 and one sentence with the reason, the time, and the path of the
+    checkpoint."""
     words = [word for setting in settings for word in ("--set", setting)]
     said = run(deck(DECK), *words, "--output", "out", "--quiet", code=3).stderr
     check(len(said.splitlines()) == 1 and "at time" in said and "checkpoint" in said and "out" in said, said)
@@ -79,7 +82,8 @@ def a_run_in_a_long_step_stops_before_its_end_and_goes_on_to_the_same_bits():
 
 
 def _told(signal_number, *arguments):
-    """Starts the program, tells it to stop as soon as it listens, and gives exit code and standard error."""
+    """Starts the program and sends it a signal as soon as it has installed its signal handler. Returns exit code and
+    standard error."""
     process = start(*arguments)
     end = time.monotonic() + 5
     while time.monotonic() < end and process.poll() is None:
@@ -110,7 +114,7 @@ def nobody_needs_to_listen():
 
 
 def a_solver_that_fails_at_a_trial_shape_makes_the_step_shorter():
-    # an explicit scheme: implicit stages take no solution of the system of the velocity
+    # an explicit scheme, because the stages of implicit schemes do not solve the linear system for the velocity
     short = ["Time/scheme=bs3", "Particle/viscosity ratio=5", "Solvers/Belos/Maximum Iterations=8", "Time/initial step=3", "Time/final time=3",
              "Output/interval=3"]
     said = _fails(*short)
@@ -145,7 +149,7 @@ def a_run_stops_at_its_wall_clock_limit():
     check("wall-clock" in said, said)
     check(summary("out")["status"] == "stopped: at the wall-clock limit", summary("out")["status"])
     steps = len(series("out", "time"))
-    run("--resume", "out", "--quiet", code=4)  # the limit is for each part
+    run("--resume", "out", "--quiet", code=4)  # the time limit applies to each call separately
     check(len(series("out", "time")) > steps, "no step more")
     deck("Tanktread: {Flow: {type: simple shear}, Particle: {motion: prescribed}, Output: {wall-clock limit: 1.0e-6}}", "held.yaml")
     said = run("held.yaml", "--quiet", "--output", "held", code=4).stderr

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 2
-# Surfactants and Maxwell elements: in implicit steps, of several particles, on meshes that adapt, in searches for steady shapes.
+# Tests of surfactants and Maxwell elements: implicit schemes, several particles, adaptive meshes, steady shapes.
 import numpy
 import yaml
 
@@ -14,7 +14,7 @@ STEPS = {"Time": {"scheme": "tr-bdf2", "fixed step": 0.1, "final time": 0.4}}
 
 
 def _one(particle, **more):
-    """The deck of one particle."""
+    """Returns the path of a deck with one particle."""
     lists = {name: particle[name] for name in ("Membrane", "Surface", "Interface") if name in particle}
     own = {name: value for name, value in particle.items() if name not in lists}
     return _deck(Particle=own, **lists, **more)
@@ -35,7 +35,8 @@ def particles_far_apart_do_what_one_does():
             run(text, "--output", output, "--quiet", "--overwrite")
         for name in names:
             off = abs(series("two", "b/" + name) - series("one", name)).max() / abs(series("one", name)).max()
-            check(off < 1e-9, f"{name} differs by {off}")  # 10/(8 pi) 1000^-3 of the flow is what a stresslet of 10 adds so far away
+            # a stresslet of 10 changes the velocity gradient at a distance of 1000 by 10/(8 pi) 1000^-3
+            check(off < 1e-9, f"{name} differs by {off}")
 
 
 def implicit_steps_do_what_explicit_ones_do():
@@ -45,7 +46,8 @@ def implicit_steps_do_what_explicit_ones_do():
         for scheme in "tr-bdf2", "bdf3":
             for name in names:
                 off = abs(series(scheme, name)[-1] / series("bs3", name)[-1] - 1)
-                check(off < 1e-4, f"{name} of {scheme} differs by {off}")  # of the energy, which is small yet, some thirty tolerances
+                # relative to the energy, which is still small, this is about thirty times the tolerance
+                check(off < 1e-4, f"{name} of {scheme} differs by {off}")
             if particle is DROP:
                 mass = series(scheme, "surfactant_mass")
                 check(abs(mass - 1).max() < 1e-12, f"the mass is off by {abs(mass - 1).max()}")
@@ -88,7 +90,9 @@ def meshes_that_adapt_keep_the_mass():
 
 
 def _theory(l, tension, elasticity, diffusivity):
-    """Matrix of d(f, g)/dt of the second harmonics of the radius and of the concentration of a nearly spherical drop, as tests/verify/surfactant.cpp."""
+    """Returns the matrix of d(f, g)/dt for a nearly spherical drop, where f and g are the amplitudes of the harmonic of
+    degree l in the radius and in the concentration; see tests/verify/surfactant.cpp. The diffusion term holds for l =
+    2."""
     mobility = numpy.array([[10 * (l + 1), 6 * (3 * l + 2)], [3 * l + 2, 13 * l + 12]]) / ((19 * l + 16) * (2 * l + 3))
     load, motion = numpy.array([[-4, 2 * elasticity], [0, -elasticity]]), numpy.array([[1, 0], [-2, 6]])
     return tension * motion @ mobility @ load - numpy.diag([0, 6 * diffusivity])

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# Fits give back what made their data, say what the data do not determine, and refuse in one sentence; outlines and edges are exact.
+# Tests of fits: they return the parameters that produced the data, report undetermined unknowns, and reject wrong
+# studies in one sentence. Tests of outlines and edge detection.
 import os
 import pathlib
 import re
@@ -56,7 +57,8 @@ def a_value_has_the_digits_of_its_error():
 
 
 def an_error_of_the_runs_is_smooth_along_a_curve_and_does_not_average_out():
-    """2000 points, whose noise is a fifth of the error of the runs: each point still has unit variance."""
+    """A curve of 2000 points. Its noise is a fifth of the discretisation error of the runs, which is smooth in time.
+    Each residual still has unit variance."""
     times, noise = numpy.linspace(0.0, 3.0, 2000), numpy.random.default_rng(1).normal(size=2000)
     numpy.savetxt("curve.csv", numpy.column_stack([times, 1e-3 * noise]), delimiter=",")
     datum = fit_data.SeriesData({"series": "y", "curve": "curve.csv", "error": 1e-3}, "data", pathlib.Path())
@@ -85,7 +87,8 @@ def curves_give_back_two_unknowns_and_tell_the_law():
 
 
 def a_relaxation_tells_the_viscosity_of_a_membrane():
-    """Length over width of an ellipsoid that is let go, told on a clock of its own; each law has its own start."""
+    """The data are the ratio of length to width of an ellipsoid that relaxes, with an unknown origin of time. Each law
+    has its own unknown and start value."""
     deck("""
 Tanktread:
   Units: { length: 1 um, time: 1 s, force: 1 nN }
@@ -104,7 +107,7 @@ Tanktread:
                                                                                                 "Membrane/shear viscosity": 0.0}}
     said = _fit({"deck": "deck.yaml", "laws": laws, "experiments": {"let go": {"data": [datum]}}})
     value, error = _found("neo-Hookean")["Membrane/shear viscosity"]
-    close(value, 0.4, 1e-3, "surface viscosity")  # a straight line between the steps of the truth
+    close(value, 0.4, 1e-3, "surface viscosity")  # tolerance: the data are interpolated linearly between steps
     check(0 < error < 0.02 and " nN s/µm (" in said, said)
     check("Particle/viscosity ratio" in _found("without"), said)
 
@@ -140,13 +143,15 @@ def an_outline_is_that_of_the_shape():
     turn = numpy.radians(30)
     turned = _ellipse(1.2, 0.9) @ [[numpy.cos(turn), -numpy.sin(turn)], [numpy.sin(turn), numpy.cos(turn)]]
     curve = silhouette.seen(shot)
-    check(abs(curve.distances(turned)).max() < 2e-4, abs(curve.distances(turned)).max())  # what the mesh is worth
+    # tolerance: discretisation error of the coarse mesh
+    check(abs(curve.distances(turned)).max() < 2e-4, abs(curve.distances(turned)).max())
     close(abs(curve.distances(1.01 * turned)).max(), 0.012, 3e-4, "a distance outside")
     check(curve.distances(0.9 * turned).max() < 0, "a point inside is outside")
 
 
 def _picture(noise, generator, pixels=256, finer=8):
-    """An ellipse with semi-axes 90 and 70 pixels, turned and off the middle, blurred, with noise; and its edge."""
+    """Returns a blurred, noisy image of a rotated ellipse with semi-axes of 90 and 70 pixels that is not centred, and
+    its exact edge."""
     x = (numpy.arange(pixels * finer) + 0.5) / finer - 0.5
     column, row = numpy.meshgrid(x, x)
     along, across = (0.8 * (column - 130.3) + 0.6 * (row - 124.6)) / 90, (-0.6 * (column - 130.3) + 0.8 * (row - 124.6)) / 70
@@ -158,7 +163,7 @@ def _picture(noise, generator, pixels=256, finer=8):
 
 def an_edge_is_found_to_a_twentieth_of_a_pixel():
     generator = numpy.random.default_rng(1)
-    for noise, bound in (0.0, 0.015), (0.02, 0.05):  # 0.024 where blur leaves an edge on the inner side of its bend
+    for noise, bound in (0.0, 0.015), (0.02, 0.05):  # without the correction of the shift by blur, the error is 0.024
         image, edge = _picture(noise, generator)
         points, error = outline.edge(image, outline.body(image, "picture"), 60)
         off = edge.distances(points)
@@ -171,7 +176,7 @@ def an_edge_is_found_to_a_twentieth_of_a_pixel():
     check(said.returncode == 0 and "60 points" in said.stdout, said)
     datum = fit_data.OutlineData({"outline": "edge.csv", "scale": 1.0}, "edge", pathlib.Path())
     check(abs(edge.distances(datum.points * [1, -1])).max() < 0.2, "the points in the file")
-    close(datum.error, error, 0.1 * error, "the error in the file")  # the file's picture has 256 levels
+    close(datum.error, error, 0.1 * error, "the error in the file")  # the image in the file is rounded to 256 levels
     said = package("outline", "cut.png")
     check(said.returncode == 2 and "does not close" in said.stderr and said.stderr.count("\n") == 1, said)
 

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# Flow/history: a table from a file is the same run as one in the deck, goes along with the run, and is refused in one sentence where it is wrong; in a tube.
+# Tests of Flow/history: a table from a file gives the same run as a table in the deck and is copied to the results; a
+# wrong table is rejected in one sentence; a history in a tube.
 import pathlib
 
 import numpy
@@ -28,7 +29,7 @@ IN_FILE = "# measured\ntime, amplitude\n0, 0.5\n\n 0.15, 1.5  # the pump stops\n
 
 
 def _row(results):
-    """The last row of the series, without what the machine's pace decides."""
+    """Returns the last row of the series, without the series that depend on the speed of the machine."""
     import h5py
 
     with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
@@ -37,7 +38,8 @@ def _row(results):
 
 def _same(one, other, tolerance=0.0, but=()):
     for name, value in _row(one).items():
-        undefined = value != value and _row(other)[name] != _row(other)[name]  # NaN in both: a direction of equal semi-axes
+        # NaN in both: two semi-axes are equal, so that the direction is undefined
+        undefined = value != value and _row(other)[name] != _row(other)[name]
         if name not in but and not undefined:
             close(_row(other)[name], value, tolerance * max(1, abs(value)), f"{name} of {other}")
 

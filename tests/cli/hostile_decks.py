@@ -20,9 +20,10 @@ arguments.add_argument("--count", type=int, default=60)
 arguments.add_argument("--seed", type=int, default=1)
 OPTIONS = arguments.parse_args()
 
-SECONDS = 60  # of one case: a limit for what hangs, far above what the largest surface that a deck may ask for takes to set up
+# time limit of one case, to detect a program that hangs; the largest surface that a deck allows takes much less
+SECONDS = 60
 
-# What a library or the language says where nobody expected it to fail; paths of source files.
+# texts that must not be in a message: errors of libraries or of the language, and paths of source files
 TRACES = ["std::", "Teuchos", "Belos::", "NOX::", "Amesos2::", "Throw", "terminate", "what()", "bad_alloc", "basic_string", "vector::", "map::", ".cpp", ".hpp",
           "filesystem error", "HDF5-DIAG", "yaml-cpp", "Eigen::"]
 
@@ -42,7 +43,7 @@ def _leaves(tree, path=()):
 
 
 def _keys():
-    """Every key of the manual, by its path."""
+    """Returns the paths of all keys in the manual, each as a list of names."""
     section, keys = "", []
     for line in (SOURCE / "inputs/REFERENCE.md").read_text().splitlines():
         if line.startswith("## "):
@@ -161,7 +162,7 @@ MUTATIONS = [_values_changed, _values_changed, _value_of_the_deck_changed, _valu
 
 
 def _fault(name):
-    """What is wrong with the answer to the deck of this name; nothing, or a sentence."""
+    """Returns a sentence about what is wrong with the program's answer to the deck `name`, or nothing."""
     try:
         result = subprocess.run(command(name, "--check", "--quiet"), capture_output=True, stdin=subprocess.DEVNULL, timeout=SECONDS)
     except subprocess.TimeoutExpired:

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# A surface from a file: what was written is taken up again, and a file that is no closed surface is one sentence.
+# Tests of surfaces from files: a written surface can be read again, and a file without a closed surface is rejected in
+# one sentence.
 import pathlib
 
 from harness import check, close, deck, main, refused, run, series

@@ -33,7 +33,7 @@ def _row(name, *more, names=OF_ONE + OF_ALL, ranks=1, **lists):
 
 
 def _with(**lists):
-    """The deck with other lists, or more."""
+    """Returns the text of the deck in which the given sections replace or extend the sections of DECK."""
     lines, keep = [], True
     for line in DECK.splitlines():
         if not line.startswith("   "):
@@ -55,8 +55,9 @@ def the_same_lattice_by_other_cells_is_the_same():
 
 
 def one_particle_is_a_list_of_one():
-    """A deck with `Particle` is the same run as one with a list of one particle: only columns that have the particle's name in front are without it. To
-    round-off, because the order of Eigen's sums depends on where vectors lie in memory."""
+    """A deck with the section Particle gives the same run as a deck with the section Particles and one particle. Only
+    the names of series differ, by the prefix of the particle. The runs agree to round-off, because the order of Eigen's
+    sums depends on the alignment of vectors in memory."""
     free = DECK[DECK.index("    defaults"):DECK.index("  Quadrature")]
     for kind, keys, lists in (
         ("capsule", "center: [0.3, 0.2, 0.1], viscosity ratio: 2.0", {"Membrane": "{law: neo-Hookean, capillary number: 0.3}"}),
@@ -79,8 +80,9 @@ def one_particle_is_a_list_of_one():
 
 
 def gaps_reach_beyond_the_nearest_cells():
-    """The long axis of the body points to its image one cell along x1 and two along x3. Their tips are |[2, 0, 4]| - 2 x 2.1 apart, to the error of
-    the mesh at the tips. The images in the nearest cells are beside it, where the gap is larger by half."""
+    """The long axis of the body points to its image one cell along x1 and two cells along x3. Up to the discretisation
+    error at the tips, the tips have the distance |[2, 0, 4]| - 2 x 2.1. The gap to the images in the nearest cells is
+    half as large again."""
     text = """
 Tanktread:
   Flow: {type: quiescent}
@@ -101,8 +103,10 @@ def ranks_agree():
 
 def a_tilt_that_is_put_back_leaves_no_trace():
     fine = "--set", "Quadrature/tolerance=1e-8", "--set", "Time/final time=0.06"
-    before = _row("before", *fine, Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, 1.26, 0, 2.8]}")  # put back at 0.05
-    after = _row("after", *fine, Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, -1.54, 0, 2.8]}")  # was put back
+    # the tilt of the cell is reduced by one period at time 0.05
+    before = _row("before", *fine, Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, 1.26, 0, 2.8]}")
+    # the same lattice with the tilt already reduced
+    after = _row("after", *fine, Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, -1.54, 0, 2.8]}")
     check(abs(before - after).max() < 1e-8, before - after)
 
 
@@ -126,8 +130,9 @@ def a_run_is_resumed_with_its_lattice_where_it_was():
 
 
 def a_lattice_follows_a_flow_that_turns():
-    """A flow that turns at a constant rate about x2 is steady in axes that turn with it, where its gradient has that rotation taken off. Two particles of
-    unequal size, so that nothing is equal by symmetry. Both runs have the same steps, so that only the errors of bs3 in the two frames differ."""
+    """A shear flow whose axes rotate at a constant rate about x2 is a steady flow in the rotating frame, where the
+    rotation is subtracted from its gradient. The two particles differ in size, so that nothing is equal by symmetry.
+    Both runs use the same steps; they differ by the time integration error of bs3 in the two frames."""
     rate, end = 5.0, 0.02
     pair = """{defaults: {viscosity ratio: 2.0, Membrane: {law: neo-Hookean, shear modulus: 3.0}, Surface: {elements per side: 3}},
               one: {center: [0.3, 0.2, 0.1]}, two: {center: [2.6, 0.1, 0.4], radius: 0.8}}"""
@@ -142,11 +147,13 @@ def a_lattice_follows_a_flow_that_turns():
     run(deck(text.replace(changing, f"{{type: linear, gradient: {gradient}}}")), "--output", "steady", "--quiet")
     for name in names:
         off = abs(series("turning", name) - series("steady", name)).max()
-        check(off < 1e-5 * max(1, abs(series("steady", name)).max()), name, off)  # Quadrature/tolerance is 1e-6, of a net in another direction
+        # tolerance: quadrature error (Quadrature/tolerance is 1e-6), which depends on the orientation of the mesh
+        check(off < 1e-5 * max(1, abs(series("steady", name)).max()), name, off)
 
 
 def a_lattice_goes_to_and_fro_with_its_flow():
-    """A rigid body has no memory: where it is depends only on the integral of the amplitude, here 0.04, as of a steady flow at the same time."""
+    """The position of a rigid body and the lattice depend only on the time integral of the amplitude. It is 0.04 in all
+    three runs, which therefore end at the same state."""
     spheroid = "{motion: free, shape: spheroid, semi-axes: [1.2, 0.8, 0.8], center: [0.3, 0.2, 0.1]}"
     text = DECK[:DECK.index("  Particles")] + f"  Particle: {spheroid}\n" + DECK[DECK.index("  Quadrature"):]
     run(deck(text), "--output", "once", "--quiet")
@@ -161,7 +168,8 @@ def a_lattice_goes_to_and_fro_with_its_flow():
 
 
 def a_parabolic_flow_goes_along_its_periods():
-    """A particle of the next cell has the same velocity, and one alone that of an unbounded fluid, where the period is long."""
+    """A particle that is shifted by a lattice vector has the same velocity. For a long period, the velocity tends to
+    that of a single particle in unbounded fluid."""
     names = "one/velocity_x1", "one/velocity_x3", "one/energy", "one/stresslet_13"
     flow = "{type: parabolic, profile: plane, maximum velocity: 1.5, half width: 4.0}"
     cells = ("{periodic: x1, side lengths: [2.8, 1, 1]}", [2.8, 0]), ("{periodic: x1 x2, side lengths: [2.8, 3.0, 1]}", [5.6, -3.0])
@@ -176,8 +184,9 @@ def a_parabolic_flow_goes_along_its_periods():
 
 
 def a_steady_shape_on_a_lattice_is_where_a_run_ends():
-    """In shear along a plane of cells the lattice stays as it is. The search finds the shape that the run in time comes to. The two have their control
-    points at other places of the surface: the error of the mesh and that of time, 6e-4."""
+    """In a shear along the plane of a lattice with two periods, the cell does not deform. The search for a steady shape
+    finds the shape that a run in time approaches. They differ by 6e-4, because their control points are at different
+    positions, and by the time integration error."""
     drop = """{defaults: {viscosity ratio: 2.0, Membrane: {law: surface tension, capillary number: 0.2}, Surface: {elements per side: 4}},
              one: {center: [0.0, 0.0, 0.0]}}"""
     lists = {"Domain": "{periodic: x1 x2, side lengths: [2.8, 2.8, 1]}", "Time": "{tolerance: 1.0e-3, final time: 9.0}", "Particles": drop}
@@ -196,7 +205,8 @@ def a_particle_that_meets_its_image_ends_the_run():
 
 
 def a_prescribed_body_keeps_its_velocity_outside_of_the_cell():
-    """Two bodies with one velocity stay at their distance, 0.7, in a flow with a gradient along the cell, though one of them is beyond its face."""
+    """The flow has a gradient along the period, and one of the bodies is partly outside the cell. Two bodies with equal
+    prescribed velocity keep their distance of 0.7."""
     body = "motion: prescribed, velocity: [0.5, 0.0, 0.2], Surface: {elements per side: 3}"
     deck(f"""
 Tanktread:

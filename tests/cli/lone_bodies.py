@@ -19,11 +19,12 @@ ALONE = """Tanktread:
   Time: {final time: 0.4, fixed step: 0.1}
   %s
 """
-FLATTENING = (2**2 - 1) / (2**2 + 1)  # (r^2 - 1)/(r^2 + 1) of the aspect ratio, Jeffery 1922
+FLATTENING = (2**2 - 1) / (2**2 + 1)  # (r^2 - 1)/(r^2 + 1) with the aspect ratio r, Jeffery 1922
 
 
 def a_spheroid_aligns_with_an_extension():
-    """Off the axis its axis returns at the rate 3/2 times the flattening times that of the extension."""
+    """A deviation of the symmetry axis from the axis of extension decays at the rate 3/2 FLATTENING, if the rate of
+    extension is 1."""
     run(deck(SPHEROID % ("uniaxial extension", 60, "Steady: {tolerance: 1.0e-7}\n  Spectrum: {number: 6}")), "--output", "found", "--quiet")
     rates = sorted(series("found", f"rate_{k}")[-1] for k in range(1, 7))
     expected = sorted([1, -0.5, -0.5, 0, -1.5 * FLATTENING, -1.5 * FLATTENING])
@@ -47,7 +48,8 @@ def a_spheroid_tumbles_with_the_period_of_jeffery():
 
 
 def powers_balance_around_one_body():
-    """What a shear puts in, all is dissipated in the fluid: 20/3 pi mu R^3 E:E of a sphere, E:E = 1/2."""
+    """All power of the flow is dissipated in the fluid. For a sphere it is 20/3 pi mu R^3 E:E, with E:E = 1/2 in a
+    shear of rate 1."""
     run(deck(ALONE % ("type: simple shear", "free", "Output: {power balance: true}")), "--output", "found", "--quiet")
     exact = 20 / 3 * numpy.pi / 2
     close(series("found", "flow_power")[-1], exact, 2e-3 * exact, "power of the flow")
@@ -55,7 +57,8 @@ def powers_balance_around_one_body():
 
 
 def a_wall_pushes_a_body():
-    """The force is the integral of what the wall does over the sphere, whose gap is known everywhere."""
+    """The repulsive force of the wall is compared with its integral over the sphere, where the gap is known at every
+    point."""
     text = """Tanktread:
   Flow: {type: quiescent}
   Particle: {motion: free, radius: 0.6, center: [0, 0.2, 0.1]}
@@ -75,7 +78,7 @@ def a_wall_pushes_a_body():
 
 
 def what_is_told_of_a_body_holds_in_a_flow_that_changes():
-    """At rest in a shear a(t), the torque on a sphere is 8 pi mu R^3 a(t)/2."""
+    """The torque on a sphere at rest in a simple shear of rate a(t) is 8 pi mu R^3 a(t)/2."""
     told = "type: simple shear, history: {type: sine, mean: 1, amplitude: 0.5, frequency: 1}"
     run(deck(ALONE % (told, "prescribed", "")), "--output", "found", "--quiet")
     a = 1 + 0.5 * numpy.sin(2 * numpy.pi * series("found", "time"))
@@ -84,7 +87,7 @@ def what_is_told_of_a_body_holds_in_a_flow_that_changes():
 
 
 def a_mesh_is_refined_for_a_body_that_does_not_deform():
-    """A slender one of few elements, whose pressure is known."""
+    """A slender spheroid on a coarse mesh, for which the exact pressure is known."""
     text = """Tanktread:
   Flow: {type: quiescent}
   Particle: {motion: prescribed, shape: spheroid, semi-axes: [0.3, 0.3, 1.5], velocity: [0, 0, 1]}

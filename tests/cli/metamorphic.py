@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# The same scene told otherwise: moved, turned, mirrored, in other units, from a frame that moves along, with its control points in another order, with
+# Tests that equivalent scenes give the same surface and series: moved, rotated, mirrored, in other units, in a moving
+# frame, with reordered control points, with
 # other far sums, on two ranks. The surface and the series are the same. metamorphic_all.py does that with every kind of particle.
 import pathlib
 
@@ -10,13 +11,14 @@ from harness import check, deck, main, run, series
 
 GRADIENT = numpy.array([[0.3, -0.2, 1.0], [0.1, -0.4, 0.2], [-0.3, 0.5, 0.1]])
 FRAME = numpy.array([0.7, -1.1, 0.4])  # its velocity
-SERIES = {"area": (2, 0, 0), "volume": (3, 0, 0), "energy": (3, -1, 1), "smallest_tension": (0, 0, 0)}  # powers of length, time and viscosity
+# exponents of length, time and viscosity in the unit of each series
+SERIES = {"area": (2, 0, 0), "volume": (3, 0, 0), "energy": (3, -1, 1), "smallest_tension": (0, 0, 0)}
 FIXED = "scheme: bs3, fixed step: {step!r}"
-AROUND = 8  # elements of the wall of the tube
+AROUND = 8  # azimuthal elements of the tube wall
 
 
 def _rotation(vector):
-    """The matrix of a rotation vector, in radians."""
+    """Returns the rotation matrix of a rotation vector in radians."""
     angle = numpy.linalg.norm(vector)
     x, y, z = vector / angle
     k = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -24,7 +26,7 @@ def _rotation(vector):
 
 
 def _rotation_vector(q):
-    """In degrees, of a matrix that turns by less than half a turn."""
+    """Returns the rotation vector in degrees of a rotation matrix with an angle below 180 degrees."""
     axis = numpy.array([q[2, 1] - q[1, 2], q[0, 2] - q[2, 0], q[1, 0] - q[0, 1]])
     sine = numpy.linalg.norm(axis) / 2
     return numpy.degrees(numpy.arctan2(sine, (numpy.trace(q) - 1) / 2)) * axis / (2 * sine)
@@ -42,7 +44,7 @@ class Scene:  # an ellipsoid of a kind (capsule, free, or how the mesh of a drop
         self.length = self.time = self.viscosity = 1.0
         self.steps_of = 0.05  # unit of time
         self.centre = numpy.array([0.0, 0.1, -0.15]) if flow == "duct" else numpy.zeros(3)
-        self.axes = _rotation(numpy.radians([20.0, 35.0, -15.0]))  # the particle's own, as columns
+        self.axes = _rotation(numpy.radians([20.0, 35.0, -15.0]))  # columns: directions of the particle's semi-axes
         self.gradient = GRADIENT
         self.file, self.elements, self.far_sum, self.quadrature, self.steps = None, 3, "dense", 1e-4, FIXED
 
@@ -83,7 +85,8 @@ class Scene:  # an ellipsoid of a kind (capsule, free, or how the mesh of a drop
         return "Tanktread:\n" + "".join(f"  {line}\n" for line in lines).replace(", }", "}")
 
     def result(self, name, ranks=1):
-        """The last surface about its middle, in units of the scene's length, and the last row of the series in its units."""
+        """Returns the points of the last surface relative to their mean, divided by the length unit of the scene, and
+        the last row of the series, divided by their units."""
         import h5py
 
         run(deck(self.text(), f"{name}.yaml"), "--output", name, "--overwrite", "--quiet", ranks=ranks)
@@ -95,8 +98,9 @@ class Scene:  # an ellipsoid of a kind (capsule, free, or how the mesh of a drop
 
 
 def _difference(one, other, image=numpy.eye(3)):
-    """Of two surfaces, the first turned by `image`, as sets of points, and of the series, relative; of a tension over the modulus, which may vanish,
-    as it is."""
+    """Returns the largest difference of two results: the distance between the surfaces as sets of points, after the
+    first one is rotated by `image`, and the relative differences of the series. The difference of a dimensionless
+    series is absolute, because the series may vanish."""
     check(len(one[0]) == len(other[0]), f"{len(one[0])} and {len(other[0])} points")
     between = (one[0] @ image.T)[:, None, :] - other[0][None, :, :]
     apart = numpy.sqrt((between**2).sum(2).min(1).max())
@@ -105,7 +109,7 @@ def _difference(one, other, image=numpy.eye(3)):
 
 
 def _reordered(file):
-    """A copy of an .iga file with its control points in reverse order."""
+    """Returns a copy of an .iga file with its control points in reverse order."""
     lines = pathlib.Path(file).read_text().splitlines()
     n = int(lines[1].split()[1])
     nodes = [i for i, line in enumerate(lines) if line.startswith("node ")]
@@ -125,7 +129,7 @@ def pairs(scene):
     base = scene.result("base")
     yield "ranks", _difference(base, scene.result("two_ranks", ranks=2))
     yield "units", _difference(base, scene.but(length=1.3e-3, time=0.021, viscosity=70.0).result("units"))
-    mirror = numpy.diag([1.0, -1.0, 1.0])  # of which the meshes are their own images
+    mirror = numpy.diag([1.0, -1.0, 1.0])  # the reflection maps the meshes onto themselves
     yield "mirrored", _difference(base, scene.turned(mirror, mirror @ scene.axes @ mirror).result("mirrored"), mirror)
     q = _rotation(numpy.array([2 * numpy.pi / AROUND, 0, 0]) if scene.flow == "duct" else numpy.array([0.5, -0.9, 0.3]))
     yield "turned", _difference(base, scene.turned(q, q @ scene.axes).result("turned"), q)
@@ -150,7 +154,7 @@ def compare(scenes, tolerance, pairs=pairs):
 
 def by_clusters(scene):
     """not a test"""
-    # sums by clusters err by as much as Quadrature/tolerance allows
+    # the error of far sums by clusters is controlled by Quadrature/tolerance
     yield "far sum", _difference(scene.result("dense"), scene.but(far_sum="tree").result("tree"))
 
 

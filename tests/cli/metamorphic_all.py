@@ -17,19 +17,20 @@ def fixed_steps_of_an_explicit_scheme():
 
 
 def fixed_steps_of_an_implicit_scheme():
-    """The filtered error that is subtracted at the end of a step is solved for with a stored operator. For viscosity ratios other
-    than 1 and in tubes its numbers are rounded to 2^-9, in another way if the scene is turned, moved or in other units: up to 1e-7
-    in steps of 0.05, less by the cube of the step here."""
+    """The step (4.30) solves a linear system with the frozen operator. For viscosity ratios other than 1 and in tubes,
+    this operator is rounded to 2^-9. The rounding differs if the scene is rotated, moved or in other units. The effect
+    is up to 1e-7 for a step of 0.05 and decreases with the third power of the step."""
     compare([scene.but(steps=IMPLICIT, steps_of=0.001) for scene in SCENES], 1e-10)
 
 
 def controlled_steps():
-    """A tolerance bounds the displacement of one step; steps add up, and energies are of its gradients."""
+    """The tolerance bounds the error of the displacement in one step. Errors add up over the steps, and energies depend
+    on gradients of the displacement."""
     compare([scene.but(steps="tolerance: 1.0e-5") for scene in SCENES], 1e-4)
 
 
 def far_sums():
-    """Of implicit steps: explicit ones of this length are far beyond the limit of stability on so fine a mesh."""
+    """Uses implicit steps, because steps of this length are unstable for explicit schemes on this fine mesh."""
     scenes = [Scene(kind, ratio, flow) for flow in ("linear", "duct") for kind in ("capsule", "relaxed") for ratio in (1.0, 3.0)]
     compare([scene.but(elements=10, steps=IMPLICIT) for scene in scenes], 1e-4, by_clusters)
 

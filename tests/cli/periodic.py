@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# Motions that come back: in a flow that changes with a period, on meshes that adapt, and disturbances of another symmetry.
+# Tests of periodic motions: in a flow that is periodic in time, on adaptive meshes, and their Floquet exponents for
+# disturbances of another parity.
 from harness import check, close, deck, main, refused, run, series
 
 DRIVEN = """Tanktread:
@@ -17,7 +18,7 @@ def a_driven_motion_is_that_which_a_run_settles_to():
     run(deck(DRIVEN % ("simple shear", ", final time: 12", "Output: {interval: 12}")), "--output", "run", "--quiet")
     close(series("found", "period")[-1], 2, 0, "period")
     for name in "taylor_inertia", "energy":
-        close(series("found", name)[-1], series("run", name)[-1], 1e-3, name)  # ten times the tolerance of the search
+        close(series("found", name)[-1], series("run", name)[-1], 1e-3, name)  # ten times Periodic/tolerance
 
 
 def its_period_is_that_of_the_flow():
@@ -32,7 +33,8 @@ def its_unit_of_time_is_that_of_the_deck():
 
 
 def its_exponents_are_decay_rates_where_the_flow_is_weak():
-    """Those of the sphere at rest, of the parity of the motion and of another."""
+    """In a weak flow, the Floquet exponents are the decay rates of a sphere at rest, for disturbances with the parity
+    of the motion and with another parity."""
     weak = DRIVEN.replace("amplitude: 1,", "amplitude: 1.0e-3,")
     rest = """Tanktread:
   Flow: {type: quiescent}
@@ -45,7 +47,8 @@ def its_exponents_are_decay_rates_where_the_flow_is_weak():
         run(deck(weak % ("uniaxial extension", "", SEARCH + "\n  " + spectrum)), "--output", "driven", "--quiet", "--overwrite")
         run(deck(rest % spectrum), "--output", "rest", "--quiet", "--overwrite")
         driven, at_rest = ([series(name, f"rate_{k}")[-1] for k in range(1, 5)] for name in ("driven", "rest"))
-        decaying = [rate for rate in at_rest if rate < -0.1][:2]  # volume, translations and rotations stay
+        # excludes the neutral modes: volume, translations, rotations
+        decaying = [rate for rate in at_rest if rate < -0.1][:2]
         for rate in decaying:
             check(min(abs(rate - other) for other in driven) < 5e-3, parity, rate, driven)
 

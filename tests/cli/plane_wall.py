@@ -30,7 +30,7 @@ Tanktread:
 
 
 def _with(text, **lists):
-    """The deck with other lists, or more."""
+    """Returns the text of a deck in which the given sections replace or extend its sections."""
     lines = [line for line in text.splitlines() if not any(line.startswith(f"  {name}:") for name in lists)]
     return "\n".join(lines + [f"  {name}: {words}" for name, words in lists.items()]) + "\n"
 
@@ -41,7 +41,7 @@ def _last(name, *more, names=OF_CAPSULE, ranks=1, text=CAPSULE, **lists):
 
 
 def a_held_sphere_takes_the_force_that_is_known():
-    """Brenner 1961; Goldman, Cox & Brenner 1967."""
+    """The exact values are from Brenner (1961) and Goldman, Cox & Brenner (1967)."""
     towards = _last("towards", "--set", "Particle/velocity=[0, 0, -1]", names=["drag_x3"], text=SPHERE)[0]
     close(towards / (6 * numpy.pi), 11.45915720, 2e-5 * 11.46, "drag across")
     along = _last("along", "--set", "Particle/velocity=[1, 0, 0]", names=["drag_x1", "torque_x2"], text=SPHERE)
@@ -55,8 +55,10 @@ def a_held_sphere_takes_the_force_that_is_known():
 
 
 def a_side_of_a_wide_channel_is_a_plane_wall():
-    """A drop drawn along at a distance of 1 from one side of a square channel of side L. That side sends its force on as h/r^2 and receives what comes
-    back as h/L, so that what the others do falls like L^-3; the power between two sizes falls short of that by 1/L."""
+    """Compares a drop that is pulled along one side of a square channel of side L, at the distance h = 1, with a drop
+    at the same distance from a plane wall. Next to a wall, the far field of a force decays like h/r^2, and the
+    disturbance that the other sides reflect changes the drop's velocity by a further factor h/L. The difference
+    therefore decays like L^-3. The exponent measured between two sizes differs from 3 by a term of order 1/L."""
     drop = """
 Tanktread:
   Flow: {type: quiescent, gravity: [1, 0, 0]}
@@ -91,7 +93,8 @@ def a_free_sphere_moves_as_is_known():
 
 
 def the_wall_may_be_anywhere():
-    """Moved and turned with everything else: a half turn about x2 takes the flow to itself."""
+    """Shifts the wall together with the particle, and rotates both by half a turn about x2, which maps the flow onto
+    itself."""
     one = _last("one")
     moved = _last("moved", "--set", "Wall/point=[3, 1, -5]", "--set", "Particle/center=[0, 0, -3.8]")
     moved[0] += 5
@@ -118,7 +121,7 @@ def a_run_is_resumed_beside_its_wall():
 
 
 def units_do_not_matter():
-    """Lengths over 4, times over 10, viscosities times 3."""
+    """In other units, lengths are divided by 4 and times by 10, and viscosities are multiplied by 3."""
     one = _last("one", names=["taylor_inertia", "velocity_x3", "gap"])
     other = _last("other", names=["taylor_inertia", "velocity_x3", "gap"], Flow="{type: simple shear, shear rate: 10.0, viscosity: 3.0}",
                   Particle="{shape: sphere, radius: 0.25, center: [0, 0, 0.3], viscosity ratio: 2.0}",

@@ -33,7 +33,8 @@ KNOWN = {1: (2.12553557, 1.38275238, 0.005024711, 1.33152305, 0.98542482, 0.9641
 
 
 def _brenner(gap):
-    """Drag across over that in unbounded fluid."""
+    """Returns the drag of a sphere that moves towards the wall, divided by its drag in unbounded fluid (Brenner
+    1961)."""
     a = numpy.arccosh(1 + gap)
     n = numpy.arange(1, int(600 / a))
     n = n[(2 * n + 1) * a < 600]
@@ -43,7 +44,7 @@ def _brenner(gap):
 
 
 def _row(gap, film, tolerance):
-    """f; F_t, T_t; F_s, T_s; U, Omega."""
+    """Returns f; F_t, T_t; F_s, T_s; U, Omega for a gap (see KNOWN)."""
     height, unit = 1.0 + gap, 6 * numpy.pi
     found = []
     for name, flow, motion, values in (
@@ -67,7 +68,8 @@ def a_sphere_feels_the_wall_as_is_known():
 
 
 def a_film_of_0_003_is_resolved():
-    """Against the exact drag across, lubrication's along, F_t = -(8/15 + 64/375 gap) log gap + 0.95429 + 0.429 gap, and a finer mesh."""
+    """Compares the drag across the gap with the exact solution, the drag along the wall with lubrication theory, F_t =
+    -(8/15 + 64/375 gap) log gap + 0.95429 + 0.429 gap, and both with a finer mesh."""
     gap = 0.003
     found, finer = _row(gap, 0.5, 1e-8), _row(gap, 0.35, 1e-8)
     along = -(8 / 15 + 64 / 375 * gap) * numpy.log(gap) + 0.95429 + 0.429 * gap
@@ -76,7 +78,7 @@ def a_film_of_0_003_is_resolved():
 
 
 def a_capsule_is_driven_away_as_its_stresslet_says():
-    """-9 S33/(64 pi z^2) far from the wall: what is left falls like z^-2."""
+    """Far from the wall the migration velocity is -9 S33/(64 pi z^2). Its relative error decreases like z^-2."""
     run(deck(CAPSULE.replace("HEIGHT", "0")), "--output", "alone", "--quiet")
     stresslet, ratios, heights = series("alone", "stresslet_33")[-1], [], []
     for height in 8, 16:

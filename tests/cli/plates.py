@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# Plates and posts in periodic cells: exact values, balances of forces and power, ranks and resume, and what a deck may not ask for.
+# Tests of plates and posts in periodic cells: exact values, balances of forces and power, ranks, resumed runs, rejected
+# decks.
 import math
 
 import numpy
@@ -62,7 +63,8 @@ def a_sphere_midway_takes_the_force_and_torque_that_are_known():
 
 
 def empty_plates_and_a_small_sphere_carry_poiseuilles_flow():
-    """Pressure gradient 0.5, distance 4: mean velocity 2/3, and no more than a sphere of the volume fraction 1e-4 takes from it."""
+    """For a pressure gradient of 0.5 and a distance of 4, the mean velocity is 2/3. The sphere, whose volume fraction
+    is 1e-4, changes it by less than the tolerance."""
     settings = ("Flow/pressure gradient=[-0.5, 0, 0]", "Particles/sphere/motion=free", "Particles/sphere/radius=0.3", "Wall/elements per period=8")
     names = ["mean_velocity_x1", "wall_force_x1", "second_wall_force_x1", "sphere/velocity_x1", "permeability"]
     mean, lower, upper, velocity, permeability = _first("poiseuille", SPHERE, *settings, names=names)
@@ -91,13 +93,15 @@ def the_place_along_plates_does_not_matter():
     names = ["velocity_x1", "velocity_x3", "wall_force_x1", "mean_velocity_x1", "gap"]
     here = _first("here", CAPSULE, names=names)
     there = _first("there", CAPSULE, "Particle/center=[12.3, -7.9, 0.3]", names=names)
-    check(abs(here - there).max() < 1e-9, f"{here} and {there}")  # two periods farther, in both directions
+    # the particle is shifted by two periods in both directions
+    check(abs(here - there).max() < 1e-9, f"{here} and {there}")
     shifted = _first("shifted", CAPSULE, "Particle/center=[2.05, 0.32, 0.3]", names=names)
-    check(abs(here - shifted).max() < 1e-3, f"{here} and {shifted}")  # other places between the elements of the plates
+    # the particle is shifted relative to the elements of the plates
+    check(abs(here - shifted).max() < 1e-3, f"{here} and {shifted}")
 
 
 def power_of_the_flow_is_that_of_its_rate_of_strain():
-    """In Couette flow the power that plates put in is that of the stresslet, S:E."""
+    """In Couette flow, the additional power of the plates equals S:E, with the stresslet S of the particle."""
     text = CAPSULE.replace("velocity: [0.2, 0.0, 0.0], second velocity: [1.0, 0.5, 0.0], ", "").replace(", pressure gradient: [-1.0, 0.3, 0.0]", "")
     run(deck(text.replace("quiescent", "simple shear")), "--output", "shear", "--quiet")
     power, stresslet = series("shear", "flow_power"), series("shear", "stresslet_13")
@@ -105,7 +109,8 @@ def power_of_the_flow_is_that_of_its_rate_of_strain():
 
 
 def mean_velocity_does_not_depend_on_how_bodies_are_modelled():
-    """Two spheres near one of two moving plates, by their tractions and by a double layer; a stiff drop of high viscosity comes close to them."""
+    """Two spheres near one of two moving plates, computed with tractions as unknowns and with double-layer densities as
+    unknowns. A drop of high viscosity and high tension gives nearly the same mean velocity."""
     text = """
 Tanktread:
   Flow: {type: simple shear}
@@ -119,13 +124,14 @@ Tanktread:
 """
     by = {kind: _first(kind.split()[0], text, f"Solvers/rigid bodies={kind}", names=["mean_velocity_x1"])[0] for kind in ("first kind", "second kind")}
     check(by["first kind"] > 0.04, f"{by}: the fluid is drawn along by the nearer plate")
-    close(by["second kind"], by["first kind"], 1e-3 * by["first kind"], "mean velocity")  # 2e-4, the mesh of the double layer
+    # measured: 2e-4, the discretisation error of the double layer
+    close(by["second kind"], by["first kind"], 1e-3 * by["first kind"], "mean velocity")
     drops = text.replace("motion: free, ", "viscosity ratio: 300.0, Membrane: {law: surface tension, capillary number: 0.001}, ")
     close(_first("drops", drops, names=["mean_velocity_x1"])[0], by["first kind"], 0.03 * by["first kind"], "mean velocity of drops")  # 1e-2
 
 
 def a_single_plate_in_a_domain_is_the_image_plane_of_a_dilute_layer():
-    """Images of the wall and the periodic plate agree as the period grows."""
+    """As the period grows, a plate in a periodic cell gives the result of the section Wall, which uses images."""
     text = """
 Tanktread:
   Flow: {type: simple shear}
@@ -143,7 +149,8 @@ Tanktread:
 
 
 def posts_of_a_square_array_take_the_force_that_is_known():
-    """Sangani & Acrivos 1982: F/(mu U) = 24.83 per length at the area fraction 0.1, two meshes agree, and along its axis."""
+    """Across the posts, F/(mu U) = 24.83 per unit length at the area fraction 0.1 (Sangani & Acrivos 1982), and two
+    meshes agree. The permeability along the posts is also known."""
     names = ["permeability", "post_force_x1", "mean_velocity_x2"]
     coarse = _first("coarse", POST, names=names)
     fine = _first("fine", POST, "Surface/azimuthal elements=24", names=names)
@@ -180,7 +187,8 @@ Tanktread:
 
 
 def a_drop_among_posts_is_carried_by_the_flow():
-    """Without a post and an ambient flow its shape has all mirror planes; with them it has not."""
+    """The drop itself has all mirror planes. The post and the flow break these symmetries, so the run must not use
+    them."""
     text = """
 Tanktread:
   Flow: {type: quiescent, pressure gradient: [-1.0, 0.0, 0.0]}
@@ -196,7 +204,8 @@ Tanktread:
 
 
 def a_flow_that_changes_in_time_is_the_flow_of_that_time():
-    """Amplitude -1 reverses velocities and pressure gradient; an angle of 90 degrees about the normal of the plates turns them."""
+    """An amplitude of -1 reverses velocities and the pressure gradient. An angle of 90 degrees about the normal of the
+    plates rotates them."""
     names = ["velocity_x1", "velocity_x2", "wall_force_x1", "wall_force_x2", "mean_velocity_x1", "permeability", "flow_power", "power_residual"]
     words = ("gradient: [-1.0, 0.3, 0.0]", "velocity: [0.2, 0.0, 0.0], second velocity: [1.0, 0.5, 0.0]")
 
@@ -216,7 +225,8 @@ def a_flow_that_changes_in_time_is_the_flow_of_that_time():
 
 
 def a_flow_past_a_post_changes_in_time():
-    """The mean velocity and the force on the post follow the amplitude of the pressure gradient, and the permeability is undefined without it."""
+    """The mean velocity and the force on the post are proportional to the amplitude of the pressure gradient. The
+    permeability is undefined when the amplitude is zero."""
     text = POST.replace("  Particle: {shape: cylinder", "  Particles:\n    post: {shape: cylinder").replace(
         "\n  Surface: {azimuthal elements: 16, axial elements: 4}\n",
         ", Surface: {azimuthal elements: 16, axial elements: 4}}\n    sphere: {motion: free, radius: 0.1, center: [0.5, 0.5, 0.25], "
@@ -225,12 +235,12 @@ def a_flow_past_a_post_changes_in_time():
     run(deck(text + "  Time: {scheme: bs3, fixed step: 0.01, final time: 0.02}\n"), "--output", "post", "--quiet")
     mean, force = series("post", "mean_velocity_x1"), series("post", "post/post_force_x1")
     for name, one in (("mean velocity", mean), ("force", force)):
-        check(abs(one / one[0] - [1, 0.5, 0]).max() < 1e-3, f"{name}: {one}")  # the sphere moves by little
+        check(abs(one / one[0] - [1, 0.5, 0]).max() < 1e-3, f"{name}: {one}")  # tolerance: the sphere moves slightly
     check(numpy.isnan(series("post", "permeability")[-1]), series("post", "permeability"))
 
 
 def a_drop_between_plates_is_steady_midway():
-    """From two places off the middle, the search finds the same shape at the same height."""
+    """From two positions off the midplane, the search finds the same shape in the midplane."""
     text = """
 Tanktread:
   Flow: {type: simple shear}

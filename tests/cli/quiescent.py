@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-# In a fluid at rest the energy of a membrane only falls: an ellipsoid that is inflated starts out of equilibrium and relaxes.
-# A fluid that turns as a whole is one at rest to whoever turns with it.
+# Tests that the energy of a membrane never increases in a fluid at rest: an inflated ellipsoid relaxes to equilibrium.
+# Tests that a drop in a rigidly rotating fluid relaxes as in a fluid at rest.
 import numpy
 
 from harness import check, deck, main, run, series
@@ -16,7 +16,8 @@ Tanktread:
 
 
 def _relax(*settings):
-    """The energy falls in every step, by more than a hundredth in all, and in the end nothing moves."""
+    """Checks that the energy decreases in every step and by more than 1 % in total, and that the membrane is almost at
+    rest at the end."""
     words = [word for setting in settings for word in ("--set", setting)]
     run(deck(DECK), *words, "--output", "out", "--overwrite", "--quiet")
     energy = series("out", "energy")
@@ -32,21 +33,23 @@ def a_neo_hookean_membrane_in_implicit_steps():
 
 
 def a_skalak_membrane_in_explicit_steps():
-    """Short of the limit of stability: at the limit an explicit scheme rings, by what its tolerance allows."""
+    """The step is below the stability limit, because at the limit an explicit scheme oscillates within its
+    tolerance."""
     _relax("Membrane/law=Skalak", "Membrane/area dilatation=2.0", "Time/scheme=bs3", "Time/maximum step=0.1")
 
 
 def velocities_are_relative_to_relaxation_in_every_unit_of_time():
     path = deck(DECK.replace("20.0", "0.5, steady tolerance: 1.0e-9"))
     run(path, "--output", "one", "--quiet")
-    run(path, "--output", "half", "--quiet", "--set", "Flow/viscosity=2", "--set", "Time/final time=1")  # the unit of time is half as long
+    # this doubles the relaxation time
+    run(path, "--output", "half", "--quiet", "--set", "Flow/viscosity=2", "--set", "Time/final time=1")
     for name in "normal_velocity", "shape_velocity":
         one, half = series("one", name)[0], series("half", name)[0]
         check(abs(half / one - 1) < 1e-10, f"{name} is {one}, and {half} in another unit of time")
 
 
 def a_drop_in_a_fluid_that_turns_relaxes_as_in_one_at_rest():
-    """D and energy, whatever its mesh does: to what steps and rule let pass."""
+    """D and the energy agree for all motions of the mesh, up to the errors of the steps and the quadrature."""
     settings = ["Membrane/law=surface tension", "Membrane/pre-inflation=0", "Particle/drift=free", "Time/final time=2.0", "Time/tolerance=1e-5"]
     turning = ["Flow/type=linear", "Flow/gradient=[0, 0, 2, 0, 0, 0, -2, 0, 0]"]
     path = deck(DECK.replace("shear modulus", "surface tension"))

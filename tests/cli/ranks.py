@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 3
-# The answer does not depend on the number of ranks: every series and picture of one, two and three is the same.
+# Tests that the series and snapshots do not depend on the number of ranks (one, two, three).
 import pathlib
 import re
 import subprocess
@@ -17,7 +17,8 @@ Tanktread:
   Surface: {elements per side: 3}
   Time: {final time: 1.0}
 """
-LONG = ["Particle/shape=ellipsoid", "Particle/semi-axes=[4.0, 0.6, 0.5]", "Surface/elements per side=6", "Quadrature/tolerance=1e-2"]  # ends are far apart
+# slender, so that far sums use clusters
+LONG = ["Particle/shape=ellipsoid", "Particle/semi-axes=[4.0, 0.6, 0.5]", "Surface/elements per side=6", "Quadrature/tolerance=1e-2"]
 TWO = """
 Tanktread:
   Flow: {type: simple shear}
@@ -37,7 +38,7 @@ def _names(results):
 
 
 def _pictures(results):
-    """Every array of every picture of a run."""
+    """Returns all arrays of all snapshots of a run."""
     import h5py
 
     arrays = {}
@@ -53,7 +54,7 @@ def _kernel_evaluations(results):
 
 
 def _compare_pictures(one, many):
-    """Each rank has filled in its own nodes."""
+    """Compares the snapshots of runs on one and on several ranks, to which each rank contributes its own nodes."""
     check(one.keys() == many.keys() and any(name.endswith("Normals") for name in one), one.keys() ^ many.keys())
     for name in one:
         check(one[name].shape == many[name].shape, f"{name}: another shape")
@@ -62,12 +63,13 @@ def _compare_pictures(one, many):
 
 
 def _compare(*settings):
-    """One, two and three ranks agree to 1e-10; to the last bit is what is measured."""
+    """Checks that runs on one, two and three ranks agree to 1e-10."""
     words = [word for setting in settings for word in ("--set", setting)]
     for ranks in 1, 2, 3:
         run(deck(DECK), *words, "--output", f"on_{ranks}", "--overwrite", "--quiet", ranks=ranks)
     for ranks in 2, 3:
-        alone, together = _kernel_evaluations("on_1"), _kernel_evaluations(f"on_{ranks}")  # parts that every rank needs are made by each
+        # some parts are computed by every rank
+        alone, together = _kernel_evaluations("on_1"), _kernel_evaluations(f"on_{ranks}")
         check(0.95 * alone <= together <= 1.3 * alone, f"{alone} kernel evaluations on one rank, {together} on {ranks}")
         _compare_pictures(_pictures("on_1"), _pictures(f"on_{ranks}"))
         check(_names("on_1") == _names(f"on_{ranks}"), "other series")
@@ -93,8 +95,9 @@ def the_paper_s_scheme_quadrature_and_load():
 
 
 def far_sums_by_clusters():
-    """Clusters save work, and ranks that share what is left of it add up to the sum of one, with and without symmetry, for a drop too. The drop takes
-    one step: rounding grows with each solve, and at this tolerance one pair of clusters more or less changes a velocity by 3e-5."""
+    """Checks that clusters save work, and that ranks which share the far sum give the sum of one rank: with and without
+    symmetry, and for a drop. The drop takes only one step, because rounding errors grow with each solve, and one more
+    or fewer pair of clusters changes a velocity by 3e-5 at this tolerance."""
     evaluations = {}
     for far_sum in "dense", "tree":
         run(deck(DECK), *[word for setting in [*LONG, f"Quadrature/far sum={far_sum}", "Time/scheme=bs3", "Time/fixed step=0.01", "Time/final time=0.01"] for word in ("--set", setting)],

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 2
-# A run that was killed and goes on is the run that was left alone.
+# Tests that a killed and resumed run is bitwise equal to an uninterrupted run.
 import pathlib
 import random
 import signal
@@ -23,7 +23,7 @@ OWN_TIME = ["wall_seconds"]  # the only series that may differ
 
 
 def _names(results):
-    """All series of a run."""
+    """Returns the names of all series of a run."""
     import h5py
 
     with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
@@ -31,7 +31,7 @@ def _names(results):
 
 
 def _same_bits(one, other):
-    """Two runs are equal in every series and in their last checkpoint."""
+    """Checks that two runs are bitwise equal in all series and in their last checkpoint."""
     check(_names(one) == _names(other), "the series have other names")
     for name in _names(one):
         if name not in OWN_TIME:
@@ -45,7 +45,7 @@ def _same_bits(one, other):
 
 
 def _last_checkpoint(results):
-    """Arrays and numbers of the newest snapshot by name."""
+    """Returns {name: array or number} of the checkpoint in the newest snapshot."""
     import h5py
 
     with h5py.File(sorted(pathlib.Path(results).glob("snapshot_*.hdf"))[-1], "r") as file:
@@ -57,12 +57,12 @@ def _last_checkpoint(results):
 
 
 def _kill_after(results, snapshots, *arguments):
-    """Starts a run and kills it when it has that many snapshots, most of which wait for a while in the first second of a run."""
+    """Starts a run and kills it when it has written `snapshots` snapshots."""
     _kill_when(lambda: len(list(pathlib.Path(results).glob("snapshot_*.hdf"))) >= snapshots, *arguments)
 
 
 def _kill_when(holds, *arguments):
-    """Starts a run and kills it when `holds()`."""
+    """Starts a run and kills it as soon as holds() is true."""
     process = start(*arguments)
     end = time.monotonic() + 300
     while process.poll() is None and time.monotonic() < end:
@@ -101,7 +101,8 @@ def a_run_that_is_killed_again_and_again_arrives_at_the_same_end():
 
 
 def what_solvers_start_from_belongs_to_the_checkpoint():
-    """Scenes whose solutions depend on the solves before: a free body in a tube, and recycled products. Pictures are made between two steps."""
+    """Tests scenes whose solutions depend on earlier solves, which give the initial guess or the recycled subspace: a
+    free body in a tube, and a capsule with the preconditioner `recycled`. Snapshots are written between two steps."""
     body = "Particle: {motion: free, radius: 0.5, center: [0, 0.2, 0.1]}\n  Surface: {elements per side: 3}"
     capsule = ("Particle: {radius: 0.5, viscosity ratio: 5}\n  Membrane: {law: neo-Hookean, shear modulus: 5}\n  Surface: {elements per side: 3}\n"
                "  Solvers: {velocity: {preconditioner: recycled}}")

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 3
-# A run that goes on on another number of processes arrives where one process does: far sum by clusters, refinement, tube, drop.
+# Tests that a run resumed on another number of ranks gives the result of one rank: far sum by clusters, refinement,
+# tube, drop.
 # A third argument `all`: every number from one to four, and a table of the largest differences.
 import shutil
 import sys
@@ -46,7 +47,7 @@ Tanktread:
   Membrane: {law: surface tension, capillary number: 0.2}
   Surface: {elements per side: 4}
 """
-OWN = ("wall_seconds", "solver_iterations", "velocity_iterations")  # of the machine, or of sums in another order
+OWN = ("wall_seconds", "solver_iterations", "velocity_iterations")  # depend on the machine or on the order of summation
 
 
 def _names(results):
@@ -57,7 +58,8 @@ def _names(results):
 
 
 def _off(one, other):
-    """The largest difference of all series, each relative to its largest value where that is above one."""
+    """Returns the largest difference of all series. A difference is divided by the largest value of the series if that
+    is above 1."""
     worst = 0.0, "none"
     check(_names(one) == _names(other), one, other, "other series")
     for name in _names(one):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# What comes out: series, fields and numbers, and that the manual of the results names them all.
+# Tests of the series and fields in the results, and that the manual lists all of them.
 import pathlib
 import shutil
 
@@ -29,7 +29,7 @@ def _settings(*settings):
 
 
 def _finished(text, *settings):
-    """Runs a deck into `run`, from nothing."""
+    """Deletes the directory `run` and runs a deck there."""
     shutil.rmtree("run", ignore_errors=True)
     run(deck(text), *_settings(*settings), "--output", "run", "--quiet")
 
@@ -42,7 +42,8 @@ def a_shear_in_another_plane_gives_the_same_numbers():
     _finished(SHEAR, "Flow/type=linear", "Flow/gradient=[0, 1, 0, 0, 0, 0, 0, 0, 0]")
     check("x1 x2" in summary("run")["plan"]["deformation"], summary("run")["plan"])
     for name in names:
-        tolerance = 1e-4 if "treading" in name else 1e-6  # the curve of chords lies otherwise on the mesh; solvers and steps to 1e-8
+        # the tank-treading velocity is measured on a polygon, which depends on the mesh; other errors are about 1e-8
+        tolerance = 1e-4 if "treading" in name else 1e-6
         close(series("run", name)[-1], there[name][-1], tolerance * max(1, abs(there[name][-1])), name)
     close(series("run", "axis_1_x2")[-1], there["axis_1_x3"][-1], 1e-6, "direction of the longest axis")
     check(there["taylor_inertia"][-1] > 0.2, there)
@@ -58,7 +59,8 @@ def a_flow_that_is_not_planar_is_measured_along_the_longest_and_shortest_axis():
 def a_free_sphere_turns_at_half_the_rate_and_thickens_as_einstein_says():
     _finished(RIGID)
     close(series("run", "tank_treading_frequency")[-1], 0.5, 1e-6, "frequency")
-    close(series("run", "tank_treading_velocity")[-1], 0.5, 1e-3, "velocity")  # a curve of chords
+    # error of the polygon on which it is measured
+    close(series("run", "tank_treading_velocity")[-1], 0.5, 1e-3, "velocity")
     close(series("run", "phase")[-1], numpy.degrees(1.0), 1e-3, "phase")
     close(series("run", "intrinsic_viscosity")[-1], 2.5, 0.01, "intrinsic viscosity")  # the coarse mesh
 
@@ -67,11 +69,12 @@ def the_phase_of_a_capsule_is_what_its_frequency_adds_up_to():
     _finished(SHEAR, "Time/final time=14")
     time, phase, frequency = (series("run", name) for name in ("time", "phase", "tank_treading_frequency"))
     start = numpy.searchsorted(time, 4.0)  # steady
-    end = numpy.interp(phase[start] + 180, phase, time)  # half a turn, after which the shape is its own image
+    end = numpy.interp(phase[start] + 180, phase, time)  # after half a turn, the shape is mapped onto itself
     check(end < 14, f"half a turn takes until {end}")
     fine = numpy.linspace(time[start], end, 4000)
     turned = numpy.trapz(numpy.interp(fine, time, frequency), fine)
-    close(turned / numpy.pi, 1, 2e-3, "half a turn by the frequency")  # chords of the curve, straight lines between rows
+    # errors of the polygon and of linear interpolation between rows
+    close(turned / numpy.pi, 1, 2e-3, "half a turn by the frequency")
     perimeter = 2 * numpy.pi * series("run", "tank_treading_velocity")[-1] / frequency[-1]
     check(5.5 < perimeter < 8, f"the curve is {perimeter} long")
 
@@ -92,7 +95,8 @@ def the_phase_goes_on_through_refinement_and_resume():
 
 def a_drop_thickens_as_taylor_says_and_its_fluid_treads():
     _finished(SHEAR, "Membrane/law=surface tension", "Membrane/capillary number=0.03", "Particle/viscosity ratio=2")
-    close(series("run", "intrinsic_viscosity")[-1], (1 + 2.5 * 2) / (1 + 2), 0.02, "intrinsic viscosity")  # small deformation: Ca^2, and the mesh
+    # tolerance: terms of order Ca^2, and the discretisation error
+    close(series("run", "intrinsic_viscosity")[-1], (1 + 2.5 * 2) / (1 + 2), 0.02, "intrinsic viscosity")
     frequency = series("run", "tank_treading_frequency")
     check(0.2 < frequency[-1] < 0.5, f"frequency {frequency[-1]}")
     time = series("run", "time")
@@ -119,7 +123,8 @@ def derived_numbers_are_in_the_plan_and_in_the_summary():
 
 
 def directions_of_equal_semi_axes_are_undefined():
-    """A sphere has no inclination; the capsule that it becomes has one. Each run reports that, resumes exactly, and its Expect fails where there is none."""
+    """A sphere has no inclination; the capsule that it deforms into has one. Each run reports this, is resumed exactly,
+    and fails an expectation at a time when the inclination is undefined."""
     directions = "inclination", "axis_1_x1", "axis_1_x2", "axis_1_x3"
     expect = "  Expect: { early: { series: inclination, value: 40, tolerance: 100, at: 0 }, late: { series: inclination, value: 40, tolerance: 10 } }\n"
     shutil.rmtree("run", ignore_errors=True)

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# Several capsules and drops in one run: each keeps what is its own, and nothing depends on order, ranks or a pause.
+# Tests of several capsules and drops in one run: each has its own parameters and series; the result does not depend on
+# their order, on ranks or on a resumption.
 import pathlib
 import re
 
@@ -38,11 +39,11 @@ Tanktread:
   Solvers: {tolerance: 1.0e-12}
   Output: {interval: 0.04}
 """
-OWN = ("wall_seconds", "solver_iterations", "velocity_iterations")  # of the machine, or of sums in another order
+OWN = ("wall_seconds", "solver_iterations", "velocity_iterations")  # depend on the machine or on the order of summation
 
 
 def _all(results):
-    """Every series of a run by its name, `particle/name` of a particle."""
+    """Returns {name: values} for all series of a run. The series of a particle are named `particle/name`."""
     import h5py
 
     found = {}
@@ -55,7 +56,7 @@ def _same(one, other, tolerance):
     a, b = _all(one), _all(other)
     check(a.keys() == b.keys(), one, other, "other series")
     for name in a:
-        # The direction of a nearly spherical shape is known to round-off divided by D.
+        # The error of the direction of a nearly spherical shape is round-off divided by D.
         weight = a.get(name.replace("inclination", "taylor_inertia"), 1) if name.endswith("inclination") else 1
         off = difference(a[name], b[name], f"{other}: {name}", weight)
         check(off <= tolerance, f"{other}: {name} is off by {off:.1e} of {one}")
@@ -100,7 +101,8 @@ def the_order_is_of_no_consequence():
 
 
 def rows_of_a_body_that_comes_first_are_of_the_shape_of_the_row():
-    """With a coarse tolerance, within which shapes of the iteration lie."""
+    """With a coarse tolerance, the shapes during the iteration of a step differ from the accepted shape. The series of
+    the body must belong to the accepted shape."""
     body = "    ball: {center: [0.0, 0.3, 1.9], radius: 0.6, motion: free}\n"
     capsule = "    capsule: {viscosity ratio: 2.0, Membrane: {law: neo-Hookean, capillary number: 0.3}}\n"
     head = "Tanktread:\n  Flow: {type: simple shear}\n  Time: {tolerance: 1.0e-2, final time: 0.2}\n  Particles:\n    defaults: {Surface: {elements per side: 3}}\n"
@@ -131,7 +133,7 @@ Tanktread:
 
 
 def a_rigid_body_that_comes_first_hides_no_warning():
-    """The volume of the drop, which nothing keeps, is lost by more than 1e-3, because its steps are long."""
+    """With these long steps and the constraint `flux`, the drop loses more than 1e-3 of its volume."""
     text = """
 Tanktread:
   Flow: {type: uniaxial extension}
@@ -171,8 +173,8 @@ Tanktread:
 
 
 def the_load_of_a_capsule_is_measured_on_its_own_unstressed_surface():
-    """A drop, whose load is measured on its present surface, does not change what the loads of others are measured on. Its flow changes by 1e-9 of
-    the rate over a capsule at a distance of 1000 along the axis of vorticity."""
+    """A drop, whose load is per current area, does not change the capsule, whose load is per unstressed area. At a
+    distance of 1000 along the vorticity axis, the disturbance by the drop is 1e-9 of the rate."""
     text = """
 Tanktread:
   Flow: {type: simple shear}
@@ -205,7 +207,8 @@ Tanktread:
 """)
     run("deck.yaml", "--output", "pair", "--quiet")
     distance = 2 * numpy.linalg.norm([1.2, 0.3, 0.5])
-    close(series("pair", "smallest_gap")[0], distance - 2, 2e-3, "the gap of two spheres")  # their splines are spheres to this
+    # error of the spheres as splines
+    close(series("pair", "smallest_gap")[0], distance - 2, 2e-3, "the gap of two spheres")
     for k in (1, 2, 3):
         a, b = series("pair", f"first/centroid_x{k}"), series("pair", f"second/centroid_x{k}")
         check(numpy.abs(a + b).max() < 1e-4, f"x{k} is not that of a symmetric pair", numpy.abs(a + b).max())  # Time/tolerance
@@ -250,7 +253,7 @@ Tanktread:
 
 
 def of_equal_gaps_one_is_reported_on_any_ranks():
-    """Two spheres on a cubic lattice: each is as far from the other one as from its images along x1 and x3."""
+    """Two spheres on a cubic lattice. The gap to the other sphere equals the gaps to its images along x1 and x3."""
     spheres = "\n".join(f"    s{k}: {{center: [0.3, {2.3 * k}, 0.2]}}" for k in range(2))
     deck(f"""
 Tanktread:
@@ -291,7 +294,7 @@ def a_mixture_in_a_tube_resumes_on_other_ranks_and_balances():
     drop = series("whole", "disturbed_pressure_drop")
     for route in ("pressure_drop_by_flux", "pressure_drop_by_force"):
         off = numpy.abs(series("whole", route) / drop - 1).max()
-        check(off < 5e-2, route, "is off by", off)  # three elements a side
+        check(off < 5e-2, route, "is off by", off)  # tolerance for three elements per side
 
 
 def a_ball_in_a_tube_moves_as_the_first_kind_equation_says():
@@ -310,7 +313,8 @@ Tanktread:
     for name in ("first", "second"):
         run(f"{name}.yaml", "--output", name, "--quiet")
     for name in ("velocity_x1", "angular_velocity_x2", "stresslet_13"):
-        close(series("second", f"ball/{name}")[0], series("first", name)[0], 3e-4, name)  # the first kind collocates: 1e-4 of a stresslet at six elements a side
+        # collocation error of the first kind: 1e-4 of a stresslet with six elements per side
+        close(series("second", f"ball/{name}")[0], series("first", name)[0], 3e-4, name)
     close(series("second", "disturbed_pressure_drop")[0], series("first", "disturbed_pressure_drop")[0], 2e-4, "pressure drop")  # the second's error
 
 
@@ -361,7 +365,7 @@ Tanktread:
 
 
 def _centres(results, kind="many "):
-    """Where the copies start."""
+    """Returns the initial positions of the copies."""
     found = _all(results)
     names = sorted({name.split("/")[0] for name in found if name.startswith(kind)}, key=lambda name: int(name.split()[1]))
     return numpy.array([[found[f"{name}/centroid_x{k}"][0] for k in (1, 2, 3)] for name in names])
@@ -408,7 +412,8 @@ def copies_fill_a_cell_across_its_faces():
 
 
 def kinds_of_equal_seed_are_at_other_positions_of_a_cell():
-    """Copies with the same number in their kinds are not close: a cell of 40 has a mean distance of 19."""
+    """Copies with equal numbers in two kinds are not close to each other. Random points in a cell of side 40 have a
+    mean distance of 19."""
     run(deck("""
 Tanktread:
   Flow: {type: quiescent}

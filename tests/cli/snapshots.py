@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# Snapshots between steps: steps of a fixed size keep it, pictures are of the times that were asked for.
+# Tests of snapshots between steps: fixed steps keep their size, and snapshots are at the requested times.
 import pathlib
 
 import h5py
@@ -24,7 +24,7 @@ def _series(results, name):
 
 
 def _pictures(results):
-    """(time, points of the surface) of each."""
+    """Returns (time, points of the surface) of each snapshot."""
     found = []
     for entry in json.loads((pathlib.Path(results) / "run.hdf.series").read_text())["files"]:
         with h5py.File(pathlib.Path(results) / entry["name"], "r") as file:
@@ -40,7 +40,8 @@ def steps_of_a_fixed_size_keep_it_and_pictures_are_of_the_times_asked_for():
     for (time, points), (exact_time, exact_points) in zip(_pictures("fixed"), _pictures("exact"), strict=True):
         close(time, exact_time, 1e-12, "time of a picture")
         worst = abs(points - exact_points).max()
-        check(worst < 2e-3, f"at {time} the surface is off by {worst}")  # steps of 0.1, not the pictures: 5e-4 of them at their ends
+        # error of the steps of 0.1, not of the interpolation between them; at the end of a step it is 5e-4
+        check(worst < 2e-3, f"at {time} the surface is off by {worst}")
 
 
 def the_first_step_is_no_longer_than_the_time_between_two_pictures():

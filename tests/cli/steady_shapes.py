@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# Steady shapes, spectra and branches in place of a run in time: what they write, and what they say where there is nothing to find.
+# Tests of steady shapes, spectra and branches: their results, and the messages if nothing is found.
 import itertools
 import pathlib
 import time
@@ -78,7 +78,7 @@ def a_branch_goes_round_its_fold_where_a_mode_begins_to_grow():
     at = fold.argmax()
     check(fold.sum() == 1 and parameter.argmax() == at, parameter, fold)
     check((rate[:at] < 0).all() and (rate[at + 1:] > 0).all() and len(rate) > at + 1, rate)
-    check(abs(rate[at]) < 1e-3, rate[at])  # whatever the mesh, which follows the mode
+    check(abs(rate[at]) < 1e-3, rate[at])  # for any mesh, because the mesh follows the mode
 
 
 def a_branch_of_too_few_points_says_so():
@@ -87,7 +87,7 @@ def a_branch_of_too_few_points_says_so():
 
 
 def a_branch_that_turns_back_ends_where_it_began():
-    """With the unstable shape, at the very value of the parameter."""
+    """The branch passes a fold and ends on its unstable part, at the parameter value at which it started."""
     deck(LONG, "long.yaml")
     run(deck(DECK), "long.yaml", "--set", "Surface/elements per side=4", "--set", "Membrane/capillary number=0.117", "--set",
         "Particle/initial shape/stretch=[1.15, 1.15, 0.756]", "--set", "Continuation/parameter=Membrane/capillary number", "--set",
@@ -110,11 +110,11 @@ def a_fold_goes_on_in_a_second_parameter_to_where_a_branch_of_its_own_has_it():
 
 
 def a_branch_that_is_stopped_keeps_its_points():
-    """By the wall-clock limit and by a signal."""
+    """The branch is stopped by the wall-clock limit and by a signal."""
     words = [deck(DECK), "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.02", "--set",
              "Continuation/step=1e-5", "--set", "Continuation/largest change=1e-5", "--set", "Continuation/points=10000", "--quiet"]
     said = {}
-    for limit in 0.5, 4, 32:  # the first point takes seconds on a busy machine
+    for limit in 0.5, 4, 32:  # computing the first point takes several seconds if the machine is busy
         said["clock"] = run(*words, "--set", f"Output/wall-clock limit={limit}", "--output", "clock", "--overwrite", code=4).stderr
         if pathlib.Path("clock/summary.yaml").exists():
             break
@@ -132,7 +132,8 @@ def a_branch_that_is_stopped_keeps_its_points():
 
 
 def a_branch_coarsens_its_mesh_at_every_point():
-    """From a drawn-out drop on a refined mesh to a sphere, for which the first mesh suffices."""
+    """The branch leads from an elongated drop on a refined mesh to a sphere, for which the initial mesh is fine
+    enough."""
     run(deck(DECK), "--set", "Steady/tolerance=1e-5", "--set", "Membrane/capillary number=0.1", "--set",
         "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.0005", "--set", "Continuation/step=0.01", "--set",
         "Continuation/largest change=0.055", "--set", "Adaptation/enabled=true", "--set", "Adaptation/coarsen=true", "--set",
@@ -143,7 +144,8 @@ def a_branch_coarsens_its_mesh_at_every_point():
 
 
 def a_branch_in_the_radius_keeps_a_drop_with_surfactant_similar():
-    """With equal capillary, elasticity and Peclet numbers, shape and concentration do not depend on the radius; nor does the shape on the rate."""
+    """If the capillary, elasticity and Peclet numbers are constant, shape and concentration do not depend on the radius
+    of the drop or the rate of the flow."""
     text = """
 Tanktread:
   Flow: {type: simple shear}
@@ -159,7 +161,7 @@ Tanktread:
         check(series("similar", "parameter")[-1] == 1.5, series("similar", "parameter"))
         for name in "surfactant_mass", "taylor_inertia", "largest_concentration":
             values = series("similar", name)
-            check(abs(values - values[0]).max() < 1e-4, parameter, name, values)  # of quadrature and searches; it was 0.02 to 0.3
+            check(abs(values - values[0]).max() < 1e-4, parameter, name, values)  # tolerance: quadrature and search
 
 
 def a_branch_whose_resting_shape_changes_needs_a_fixed_mesh():
@@ -176,7 +178,7 @@ Tanktread:
     check("set Adaptation/enabled to false" in said and "what was reached is in refused" in said, said)
     run(deck(text), "--output", "fixed", "--quiet", "--set", "Adaptation/enabled=false")
     sizes = series("fixed", "volume") / series("fixed", "parameter")**3
-    check(abs(sizes / sizes[0] - 1).max() < 1e-5, sizes)  # of the searches; on the adapted mesh, volumes kept the first radius, 0.6 at the end
+    check(abs(sizes / sizes[0] - 1).max() < 1e-5, sizes)  # tolerance: search
 
 
 def a_branch_without_a_fold_says_so():
@@ -188,7 +190,8 @@ def a_branch_without_a_fold_says_so():
 
 
 def a_run_in_time_from_a_mode_grows_at_its_rate():
-    """On the unstable branch, to both sides: the difference of the two has no even terms. At first its mesh slides."""
+    """On the unstable branch, two runs start with opposite amplitudes of the mode. Terms of even order cancel in their
+    difference. At the start, the mesh also moves along the surface."""
     deck(LONG, "long.yaml")
     run(deck(DECK), "long.yaml", "--set", "Membrane/capillary number=0.117", "--set", "Spectrum/number=1", "--set",
         "Particle/initial shape/stretch=[0.9, 0.9, 1.2346]", "--output", "unstable", "--quiet")
@@ -216,7 +219,8 @@ def a_mode_needs_the_run_that_has_it():
 
 
 def modes_of_all_parities_are_those_of_the_whole():
-    """Of a drop, whose shapes are told by what is normal to it, and of a capsule."""
+    """The union of the modes of all parities is the set of modes without symmetry: for a drop, whose modes are compared
+    by normal displacements, and for a capsule."""
     for law, projection in ("surface tension", "collocation"), ("surface tension", "least squares"), ("neo-Hookean", "collocation"):
         scene = ["--set", f"Membrane/law={law}", "--set", f"Solvers/projection={projection}", "--set", "Steady/tolerance=1e-9", "--quiet"]
         run(deck(DECK), *scene, "--set", "Symmetry/use=none", "--set", "Spectrum/number=16", "--output", "whole", "--overwrite")
@@ -261,7 +265,7 @@ def the_mesh_of_a_shape_and_of_a_branch_adapts():
 
 
 def a_capsule_that_a_pressure_drop_does_not_push_through_a_constriction_rests():
-    """Carried along with a flow rate it does not."""
+    """At a prescribed flow rate, the capsule would be pushed through, so that no shape is at rest."""
     search = ["--set", "Steady/tolerance=1e-7", "--set", "Steady/step=7", "--quiet"]
     run(deck(STUCK), *search, "--output", "stuck")
     place = series("stuck", "centroid_x1")[-1]
@@ -282,7 +286,8 @@ Tanktread:
 
 
 def an_oblate_capsule_that_swings_comes_back():
-    """To where a run in time is one period later, turned by half a round; and `Steady` has nothing to find there."""
+    """A run in time returns to this state after one period, rotated by half a turn. `Steady` and a search without a
+    period are rejected."""
     run(deck(SWINGS), "--set", "Periodic/period=9", "--set", "Periodic/turn=180", "--set", "Periodic/tolerance=1e-4", "--set", "Time/tolerance=1e-5",
         "--output", "swings", "--quiet")
     period, d, angle = (series("swings", name)[-1] for name in ("period", "taylor_inertia", "inclination"))
@@ -305,7 +310,8 @@ def a_membrane_that_treads_is_found_and_its_decay_is_that_of_a_run():
              "Surface/elements per side=4"]
     run(deck(DECK), *shear, "--set", "Steady/tolerance=1e-7", "--set", "Spectrum/number=8", "--output", "tread", "--quiet")
     run(deck(IN_TIME, "in_time.yaml"), *shear, "--set", "Time/steady tolerance=5e-4", "--output", "tread_in_time", "--quiet")
-    for name, digits in ("taylor_inertia", 3e-3), ("inclination", 0.3):  # what the labels matter on this mesh, which go round in the run
+    # effect of the positions of the mesh, which rotates around the shape in the run in time
+    for name, digits in ("taylor_inertia", 3e-3), ("inclination", 0.3):
         close(series("tread", name)[-1], series("tread_in_time", name)[-1], digits)
     kinds = list(summary("tread")["modes"].values())
     check("labels" in kinds, kinds)
@@ -313,7 +319,7 @@ def a_membrane_that_treads_is_found_and_its_decay_is_that_of_a_run():
 
 
 def modes_are_those_on_a_mesh_that_fits_the_shape():
-    """Of an oblate capsule at rest: the mesh is refined before its modes are looked for."""
+    """For an oblate capsule at rest, the mesh is refined before the modes are computed."""
     at_rest = """
 Tanktread:
   Flow: {type: quiescent}

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 2
-# Membranes whose stress-free shape is not the resting one: what they relax to, ranks, and what a deck may not ask for.
+# Tests of membranes whose stress-free shape differs from the resting shape: relaxation, ranks, rejected decks.
 import numpy
 
 from harness import check, close, deck, main, run, series
@@ -17,7 +17,8 @@ Tanktread:
 
 
 def a_spheroid_relaxes_towards_its_stress_free_sphere():
-    """Of the same area, that sphere holds more: what is left at the volume of the spheroid is rounder, and at rest."""
+    """The stress-free sphere has the same area but a larger volume. At the volume of the spheroid, the equilibrium
+    shape is therefore rounder than the spheroid, but not a sphere."""
     run(deck(DECK), "--output", "relaxed", "--quiet")
     energy, volume = series("relaxed", "energy"), series("relaxed", "volume_error")
     check(numpy.all(numpy.diff(energy) <= 1e-12) and energy[-1] < 0.5 * energy[0], f"the energy falls: {energy}")

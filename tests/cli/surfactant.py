@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# A drop with surfactant as a run: its mass, meshes that slide or go with the fluid, ranks, a run that goes on, and one that runs out of tension.
+# Tests of a drop with surfactant: mass, motions of the mesh, ranks, a resumed run, and a run that fails because the
+# tension vanishes.
 import numpy
 
 from harness import check, deck, main, run, series, summary
@@ -34,7 +35,8 @@ def two_processes_do_what_one_does_and_the_mass_is_kept():
 
 
 def implicit_steps_do_not_depend_on_the_unit_of_time():
-    """The flow twice as fast, in half of the time: powers of two, so that only constants with a unit could make a difference."""
+    """The flow is twice as fast and the run half as long. Because the factors are powers of two, any difference must
+    come from a constant with a unit."""
     implicit = DECK.replace("scheme: bs3", "scheme: tr-bdf2")
     run(deck(implicit), "--output", "slow", "--quiet")
     run("deck.yaml", *[word for setting in ("Flow/shear rate=2", "Interface/surfactant/diffusivity=0.1", "Time/fixed step=0.02", "Time/final time=0.4",
@@ -48,7 +50,7 @@ def a_run_goes_on_as_if_it_had_not_stopped():
     run(deck(DECK), "--output", "whole", "--quiet")
     run(deck(DECK), "--set", "Time/final time=0.4", "--output", "parts", "--quiet")
     run("--resume", "parts", "--set", "Time/final time=0.8", "--quiet")
-    _close("whole", "parts", 1e-13)  # the time of 0.4 is met by different sums
+    _close("whole", "parts", 1e-13)  # the time 0.4 is reached by different sums of steps
 
 
 def a_mesh_that_slides_and_one_that_goes_with_the_fluid_carry_it_alike():
@@ -57,7 +59,7 @@ def a_mesh_that_slides_and_one_that_goes_with_the_fluid_carry_it_alike():
         words += ["--set", "Membrane/capillary number=0.05", "--set", "Time/scheme=rkc2"]
         run(deck(DECK), *words, "--output", motion, "--quiet")
     d = [series(motion, "taylor_inertia")[-1] for motion in ("relaxed", "material")]
-    check(abs(d[0] / d[1] - 1) < 1e-4, f"D is {d[0]} and {d[1]}")  # 1.7e-4 with 6 elements a side
+    check(abs(d[0] / d[1] - 1) < 1e-4, f"D is {d[0]} and {d[1]}")  # with 6 elements per side: 1.7e-4
     largest = series("material", "largest_concentration")[-1]
     check(largest > 1.2, f"hardly anything is swept to the poles: {largest}")
 

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # label: long
-# Accuracy of drops with surfactant: implicit schemes, searches and branches of steady shapes, meshes that adapt, and two drops.
+# Tests of the accuracy of drops with surfactant: implicit schemes, steady shapes and branches, adaptive meshes, two
+# drops.
 import numpy
 import yaml
 
@@ -10,7 +11,7 @@ SHAPE = "taylor_inertia", "largest_concentration"
 
 
 def _merged(one, other):
-    """The nested mapping `one` with the values of `other` in place of its own."""
+    """Returns the nested mapping `one`, with values replaced by the values of `other`."""
     both = dict(one)
     for key, value in other.items():
         both[key] = _merged(both[key], value) if isinstance(value, dict) and isinstance(both.get(key), dict) else value
@@ -18,7 +19,7 @@ def _merged(one, other):
 
 
 def _run(name, changes, **more):
-    """Runs a drop in simple shear, the deck changed by `changes`, into the directory `name`."""
+    """Runs a drop in simple shear in the directory `name`. `changes`: changes of the deck."""
     drop = {"Flow": {"type": "simple shear"}, "Particle": {"shape": "sphere"}, "Membrane": {"law": "surface tension", "capillary number": 0.05},
             "Interface": {"surfactant": {"elasticity number": 0.3, "Peclet number": 10}}, "Output": {"interval": 100}}
     run(deck(yaml.safe_dump({"Tanktread": _merged(drop, changes)}), name + ".yaml"), "--output", name, "--quiet", **more)
@@ -26,7 +27,7 @@ def _run(name, changes, **more):
 
 
 def _at(results, name, times):
-    """The values of a series at output times."""
+    """Returns the values of a series at the times of the snapshots."""
     time = series(results, "time")
     return numpy.array([series(results, name)[numpy.argmin(abs(time - t))] for t in times])
 
@@ -54,7 +55,8 @@ def implicit_schemes_have_their_orders_and_agree_with_the_explicit_one():
 
 
 def a_steady_search_finds_what_a_run_comes_to():
-    """In shear, the mesh of the run has turned a little with the drop, that of the search has not: the results differ by errors of both meshes."""
+    """In shear, the mesh of the run in time has rotated slightly with the drop, and the mesh of the search has not. The
+    two results therefore differ by discretisation errors."""
     for flow, capillary, most in ("uniaxial extension", 0.05, (1e-6, 1e-6)), ("simple shear", 0.1, (1e-4, 1e-4)):
         case = {"Flow": {"type": flow}, "Membrane": {"capillary number": capillary}}
         steady = _run(f"steady {flow}", _merged(case, {"Steady": {"tolerance": 1e-9}}))
@@ -68,7 +70,8 @@ def a_steady_search_finds_what_a_run_comes_to():
 def branches_pass_through_what_searches_find():
     ends = {"Interface/surfactant/elasticity number": (0.4, {"Interface": {"surfactant": {"elasticity number": 0.4}}}),
             "Membrane/capillary number": (0.055, {"Membrane": {"capillary number": 0.055}})}
-    for flow, largest in ("uniaxial extension", 1e-6), ("simple shear", 1e-3):  # of the concentration: the mesh on a treading drop, as above
+    # difference of the concentration; in shear it is the discretisation error explained above
+    for flow, largest in ("uniaxial extension", 1e-6), ("simple shear", 1e-3):
         case = {"Flow": {"type": flow}, "Membrane": {"capillary number": 0.04}, "Steady": {"tolerance": 1e-8}}
         for k, (key, (to, there)) in enumerate(ends.items()):
             branch = _run(f"branch {flow} {k}", _merged(case, {"Continuation": {"parameter": key, "to": to}}))
@@ -81,8 +84,9 @@ def branches_pass_through_what_searches_find():
 
 
 def a_mesh_that_adapts_does_what_a_finer_one_does_with_fewer_points():
-    """Until D = 0.41, on a mesh that slides. The finer mesh goes with the fluid, which gathers it where the surfactant gathers. The estimate
-    is of one interpolation, 3e-5 of the mean; measured errors of the largest concentration, which add up in time, are up to 1.8e-4."""
+    """Until D = 0.41, on a mesh with the motion `relaxed`. The points of the finer mesh move with the fluid, so that
+    they gather where the surfactant gathers. The estimated error is of one interpolation, 3e-5 of the mean
+    concentration. The measured errors of the largest concentration accumulate in time, up to 1.8e-4."""
     case = {"Flow": {"type": "uniaxial extension"}, "Membrane": {"capillary number": 0.15}, "Time": {"tolerance": 1e-6, "final time": 1.1},
             "Interface": {"surfactant": {"elasticity number": 0.2}}, "Output": {"interval": 0.1}}
     uniform = _run("uniform", _merged(case, {"Interface": {"motion": "material"}, "Surface": {"elements per side": 18}}))
@@ -98,7 +102,7 @@ def a_mesh_that_adapts_does_what_a_finer_one_does_with_fewer_points():
 
 
 def _pair(n, centers, **more):
-    """The deck of two drops, which replaces the one of _run."""
+    """Returns the changes that replace the drop of _run by two drops."""
     drop = {"shape": "sphere", "Membrane": {"law": "surface tension", "capillary number": 0.1}, "Surface": {"elements per side": n},
             "Interface": {"surfactant": {"elasticity number": 0.3, "diffusivity": 0.1}}}
     scene = {"Flow": {"type": "simple shear"}, "Particles": {"defaults": drop, **{k: {"center": c} for k, c in zip("ab", centers)}}}

@@ -50,13 +50,14 @@ def ranks_and_a_pause_change_nothing():
 
 
 def a_pair_moves_as_without_a_far_drop():
-    """The drop is `auto`'s business too. Its influence decays like the fourth power of the distance."""
+    """A drop in the scene makes `auto` choose how the bodies are computed. Its influence decays like the fourth power
+    of the distance."""
     push = 6 * numpy.pi
     run(deck(PAIR % (push, push)), "--output", "found", "--quiet")
     # Mobilities x^a_11, x^a_12, y^a_11, y^a_12 of spheres at distance 2.1: multipole solution.
     for name, exact in (("one/velocity_x1", 0.835613351), ("two/velocity_x1", 0.700720614), ("one/velocity_x2", 0.97406452),
                         ("two/velocity_x2", 0.417673569)):
-        close(series("found", name)[0], exact, 1e-5, name)  # 1e-6; by double layers 1e-3
+        close(series("found", name)[0], exact, 1e-5, name)  # measured: 1e-6; with double layers 1e-3
 
 
 main()

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# Ducts that repeat: several particles in as many periods do what one does; the seam of the wall is nowhere; mistakes are told.
+# Tests of periodic ducts: n particles in n periods move like one particle in one period; the position of the seam of
+# the wall does not matter; rejected decks.
 import math
 
 from harness import check, deck, main, refused, run, series, summary
@@ -19,7 +20,7 @@ NAMES = ("velocity_x1", "velocity_x3", "disturbed_pressure_drop", "stresslet_13"
 
 
 def _several(n, ratio, shift=0.0):
-    """n particles in n periods, the first one moved by `shift`."""
+    """Returns the deck of n particles in n periods. The first particle is shifted by `shift`."""
     centers = [2.0 * i - (n - 1) + (shift if i == 0 else 0) for i in range(n)]
     head = HEAD.replace("periodic length: 2.0", f"periodic length: {2.0 * n}").replace("axial elements: 8", f"axial elements: {8 * n}")
     return head + "  Particles:\n    defaults: {radius: 0.4, viscosity ratio: %d, %s}\n" % (ratio, BODY) + "".join(
@@ -36,7 +37,7 @@ def _one(*settings, viscosity_ratio=1, ranks=1, at=-1):
 
 
 def several_periods_do_what_one_does():
-    """At first to what rounding and the rest of the lattice leave; after explicit steps too."""
+    """The runs agree up to the accuracy of rounding and of the lattice sums, also after explicit steps."""
     steps = ("Time/scheme=bs3", "Time/fixed step=0.01", "Time/final time=0.02")
     for ratio in (1, 4):
         _run(_several(1, ratio), "p1", *steps)
@@ -51,7 +52,8 @@ def several_periods_do_what_one_does():
 
 
 def trains_of_spheres_are_exact_to_one_part_in_a_hundred_thousand_with_default_keys():
-    """Free spheres at a distance of 2.5 tube radii, against an exact multipole solution (0.5) and n = 12 on walls of 36 x 36 and 48 x 56 elements."""
+    """Free spheres in a tube at a distance of 2.5 tube radii. The references are an exact multipole solution (radius
+    0.5), and runs with n = 12 on walls of 36 x 36 and 48 x 56 elements."""
     text = """
 Tanktread:
   Flow: {type: duct}
@@ -75,7 +77,8 @@ def a_particle_that_has_overtaken_another_by_a_period_does_the_same():
     _run(_several(2, 4, shift=4.0), "there", "Time/scheme=bs3")
     for name in ("p0/velocity_x1", "p1/velocity_x1", "p0/velocity_x3", "disturbed_pressure_drop"):
         off = series("there", name) - series("here", name)
-        check(abs(off).max() < 1e-6, f"{name}: {off}")  # the wall's elements are elsewhere: it goes along with the mean of both
+        # the wall moves with the mean of both particles, so that its elements are at other positions
+        check(abs(off).max() < 1e-6, f"{name}: {off}")
 
 
 def a_domain_along_the_tube_is_its_period():
@@ -87,7 +90,8 @@ def a_domain_along_the_tube_is_its_period():
 
 
 def a_body_is_solved_for_alike_as_particle_and_in_a_list():
-    """A list with one particle is the same scene. By default both solve for the traction."""
+    """The sections Particle and Particles with one particle describe the same scene. By default the unknown is the
+    traction in both."""
     for motion in ("free", "prescribed"):
         body = f"{{shape: sphere, radius: 0.4, motion: {motion}"
         _run(HEAD + f"  Particle: {body}}}\n  Surface: {{elements per side: 4}}\n", "particle", "Time/scheme=bs3")
@@ -98,7 +102,8 @@ def a_body_is_solved_for_alike_as_particle_and_in_a_list():
 
 
 def a_held_flow_rate_and_the_pressure_drop_that_gives_it_do_the_same():
-    """8 mu V/R^2 along the empty tube: the empty tube of the same pressure drop is faster by Delta p^D/(8 L)."""
+    """The pressure gradient of the empty tube is 8 mu V/R^2. An empty tube with the total pressure drop of the tube
+    with the particle is therefore faster by Delta p^D/(8 L), for mu = V = R = 1."""
     for ratio in (1, 4):
         settings = ["Time/scheme=bs3", "Time/fixed step=1e-4", "Time/final time=1e-4", f"Particle/viscosity ratio={ratio}",
                     "Membrane/shear modulus=1"]
@@ -130,12 +135,14 @@ def a_channel_that_repeats_does_the_same_across_its_seam():
         off = series("inside", name) - series("beyond", name)
         check(abs(off).max() < 1e-10, f"{name}: {off}")
     by_flux, by_force, drop = (series("inside", name) for name in ("pressure_drop_by_flux", "pressure_drop_by_force", "disturbed_pressure_drop"))
-    check(abs(by_flux - drop).max() < 5e-3 * drop.max(), f"by flux {by_flux}, {drop}")  # what this wall errs by
+    # discretisation error of this wall
+    check(abs(by_flux - drop).max() < 5e-3 * drop.max(), f"by flux {by_flux}, {drop}")
     check(abs(by_force - drop).max() < 5e-3 * drop.max(), f"by force {by_force}, {drop}")
 
 
 def a_channel_that_repeats_has_the_same_balance_of_power_on_two_ranks():
-    short = ("Output/power balance=true", "Time/final time=0.05", "Surface/elements per side=4")  # more than 64 points, which ranks divide
+    # more than 64 points, so that ranks share the work
+    short = ("Output/power balance=true", "Time/final time=0.05", "Surface/elements per side=4")
     for ranks in (1, 2):
         _run(CHANNEL, f"power_{ranks}", *short, ranks=ranks)
     one, two = (series(f"power_{ranks}", "power_residual") for ranks in (1, 2))
@@ -143,7 +150,8 @@ def a_channel_that_repeats_has_the_same_balance_of_power_on_two_ranks():
 
 
 def the_extra_pressure_drop_of_a_long_period_is_that_of_one_constriction():
-    """Own axisymmetric solution; at this wall the channel with two ends errs by as much."""
+    """The reference is the axisymmetric solution of tests/cli/channel_accuracy.py. On a wall with these elements, a
+    channel with two ends has the same error."""
     _run(CHANNEL.replace("depth: 0.3", "depth: 0.5").replace("[5.0]", "[12.0]").replace("elements: 12", "elements: 16"), "long", "Time/final time=0.05")
     check(abs(series("long", "channel_extra_pressure_drop")[0] / 159.429662 - 1) < 2e-4, series("long", "channel_extra_pressure_drop")[0])
 

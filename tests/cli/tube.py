@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# A particle in a tube: mistakes are told with their numbers; ranks, interruptions and the way the block system is solved do not change a run; contact ends it.
+# Tests of a particle in a tube: messages about wrong values; independence of ranks, resumptions and the solver of the
+# block system; a run ends at contact.
 import math
 import pathlib
 
@@ -97,13 +98,15 @@ def two_ranks_give_the_answer_of_one():
 def every_form_of_the_block_system_gives_the_same_run():
     for ratio in 1, 5:
         fixed = ["Time/fixed step=0.025", "Time/final time=0.025", f"Particle/viscosity ratio={ratio}", "Solvers/tolerance=1e-10",
-                 "Time/tolerance=1e-8", "Time/newton iterations=20"]  # the forms take different iterates of a stage
+                 # the two solvers end the iteration of a stage at different iterates
+                 "Time/tolerance=1e-8", "Time/newton iterations=20"]
         run(deck(DECK), *_words(fixed), "--output", "schur", "--overwrite", "--quiet")
         for form in "block triangular", "block diagonal", "block":
             more = [f"Solvers/tube={form}", "Solvers/Belos/Maximum Iterations=2000", "Solvers/Belos/Num Blocks=500"]
             run(deck(DECK), *_words(fixed + more), "--output", "blocks", "--overwrite", "--quiet")
             check(summary("blocks")["counts"]["velocity_iterations"] > 0, "nothing was solved")
-            _compare("schur", "blocks", 1e-6)  # a stage errs by 2e-9, its stresslet by a hundred times as much
+            # the error of a stage is 2e-9; the error of its stresslet is a hundred times as large
+            _compare("schur", "blocks", 1e-6)
 
 
 BESIDE_OTHERS = """
@@ -121,7 +124,8 @@ Tanktread:
 
 
 def the_block_system_has_the_loads_that_depend_on_the_velocity_and_keeps_every_volume():
-    """A prescribed body beside others, in a tube with ends and in a periodic one, and a viscous membrane."""
+    """A prescribed body and a viscous membrane together with other particles, in a tube with ends and in a periodic
+    tube."""
     viscous = DECK.replace("pre-inflation: 0.02", "pre-inflation: 0.02, shear viscosity: 1.0")
     viscous = viscous.replace("final time: 0.3", "fixed step: 1.0e-3, final time: 1.0e-3")
     periodic = BESIDE_OTHERS.replace("axial elements: 8}", "axial elements: 8, periodic length: 5.0}")
@@ -165,7 +169,8 @@ def a_run_goes_on_in_the_tube_to_the_same_last_bit():
 
 def a_strong_load_acts_in_a_tube_as_well():
     run(deck(DECK), "--set", "Membrane/load=strong", "--set", "Time/final time=0.01", "--output", "out", "--quiet")
-    check(abs(series("out", "disturbance_flux")).max() < 1e-2, series("out", "disturbance_flux"))  # of so coarse a mesh
+    # tolerance for this coarse mesh
+    check(abs(series("out", "disturbance_flux")).max() < 1e-2, series("out", "disturbance_flux"))
 
 
 def contact_stops_the_run_with_a_checkpoint_to_go_on_from():

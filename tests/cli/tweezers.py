@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# A membrane pulled at two patches: what the linear theory of a sphere gives, drift under one force, and what a deck may not ask for.
+# Tests of a membrane pulled at two patches: linear theory of a sphere, drift under a single force, rejected decks.
 import numpy
 from numpy.polynomial import legendre
 
@@ -20,7 +20,8 @@ Tanktread:
 
 
 def _harmonics(force, radius, degree):
-    """Of each degree l: p_r, p_t of the load p_r Y r + p_t grad Y of the patch on x1 = 1, Y = P_l of x1; and P_l."""
+    """Yields l, p_r, p_t and P_l for each degree l. The load of the patch around x1 = 1 is the sum over l of p_r Y r +
+    p_t grad Y, where Y = P_l(x1)."""
     mu, weight = legendre.leggauss(4000)
     sine = numpy.sqrt(1 - mu**2)
     shape = numpy.where(mu > 0, numpy.clip(1 - (sine / radius) ** 2, 0, None) ** 2, 0)
@@ -28,7 +29,7 @@ def _harmonics(force, radius, degree):
     for l in range(1, degree):
         p = legendre.Legendre.basis(l)
         radial = (2 * l + 1) / 2 * (weight * density * mu * p(mu)).sum()
-        slope = -sine * p.deriv()(mu)  # of P_l by the polar angle
+        slope = -sine * p.deriv()(mu)  # derivative of P_l with respect to the polar angle
         yield l, radial, (2 * l + 1) / (2 * l * (l + 1)) * (weight * -density * sine * slope).sum(), p
 
 
@@ -37,7 +38,8 @@ def _stretch(force, radius, degree=60):
 
     Displacements a Y r + b grad Y balance a load of harmonic l by 2 K (2a - L b) = p_r and G (L - 2) b - K (2a - L b) = p_t, L = l (l + 1)."""
     along = across = 0.0
-    for l, radial, tangential, p in _harmonics(2 * force, radius, degree):  # the other patch doubles even harmonics and takes odd ones away
+    # the second patch doubles even harmonics and cancels odd harmonics
+    for l, radial, tangential, p in _harmonics(2 * force, radius, degree):
         if l % 2:
             continue
         b = (tangential + radial / 2) / (l * (l + 1) - 2)
@@ -47,7 +49,8 @@ def _stretch(force, radius, degree=60):
 
 
 def _drift(force, radius):
-    """Velocity of the centroid under one force, viscosities 1: the single layer has the eigenvalues 2/3 on Y r + grad Y and 1/15 on -2 Y r + grad Y."""
+    """Returns the velocity of the centroid under one force, for both viscosities 1. The single layer has the
+    eigenvalues 2/3 on Y r + grad Y and 1/15 on -2 Y r + grad Y."""
     _, radial, tangential, _ = next(_harmonics(force, radius, 2))
     return 2 / 3 * (radial + 2 * tangential) / 3 - 2 / 15 * (tangential - radial) / 3
 
@@ -56,9 +59,10 @@ def a_sphere_stretches_as_linear_theory_says():
     run(deck(DECK), "--output", "pulled", "--quiet")
     along, across = _stretch(0.001, 0.8)
     for name, expected in ("length_x1", along), ("length_x2", across), ("length_x3", across):
-        length = series("pulled", name)  # the sphere itself is off by 4e-5
+        length = series("pulled", name)  # error of the initial sphere: 4e-5
         found = (length[-1] - length[0]) / 2
-        check(abs(found - expected) < 3e-3 * along, f"{name}: {found:.4e} where linear theory gives {expected:.4e}")  # of the mesh: 5e-2 at n = 4
+        # discretisation error: 5e-2 for n = 4
+        check(abs(found - expected) < 3e-3 * along, f"{name}: {found:.4e} where linear theory gives {expected:.4e}")
     check(series("pulled", "normal_velocity")[-1] < 1e-5, "it still moves")
 
 

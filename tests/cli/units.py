@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# A scene is the same in any units, but for the rounding of the radius of equal volume where the units differ by powers of two.
+# Tests that results do not depend on units. If units differ by powers of two, the only difference is rounding in the
+# radius of equal volume.
 import re
 
 from harness import check, deck, main, refused, run, series, summary
@@ -32,7 +33,7 @@ TUBE = """
 
 
 def _series(scene, name, length, time, viscosity, **words):
-    """Runs the scene in units of such a size."""
+    """Runs the scene in the given units."""
     stress = viscosity / time
     text = scene.format(length=length, longer=2 * length, rate=1 / time, viscosity=viscosity, bending=0.05 * stress * length**3,
                         tension=2 * stress * length, speed=length / time, **words)
@@ -70,7 +71,8 @@ def a_capsule_in_a_tube():
 
 
 def values_with_units_give_the_same_as_their_numbers():
-    """In micrometres, seconds and piconewtons, and by another choice."""
+    """Values with units (micrometres, seconds, piconewtons, and another choice) give the same result as their
+    numbers."""
     said = """Tanktread:
   Units: {%s}
   Flow: {type: simple shear, shear rate: 100 1/s, viscosity: 35 mPa s}

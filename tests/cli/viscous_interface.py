@@ -18,7 +18,7 @@ RUN = DECK + "  Time: {final time: 0.3, tolerance: 1.0e-5}\n  Output: {interval:
 
 
 def _set(**values):
-    """Words for the command line: `Membrane__shear_viscosity` stands for Membrane/shear viscosity."""
+    """Returns command-line arguments that set keys. `Membrane__shear_viscosity` stands for Membrane/shear viscosity."""
     return [word for key, value in values.items() for word in ("--set", f"{key.replace('__', '/').replace('_', ' ')}={value}")]
 
 
@@ -27,14 +27,15 @@ def _last(name, results):
 
 
 def _deformation(capillary, ratio, shear, dilatational):
-    """D in a slow simple shear (3.28)."""
+    """Returns D in a slow simple shear (3.28)."""
     w = 5 / (5 + 5 * ratio + 6 * dilatational + 4 * shear)
     return capillary / 8 * (5 + (3 + 4.5 * ratio + 6 * dilatational) * w)
 
 
 def shapes_at_rest_in_slow_flows_are_those_of_small_deformation():
-    """D/Ca in shear is even in Ca, because a flow reversed mirrors the shape: one Ca of 1e-3 is enough. In extension three are extrapolated. The
-    mesh errs by 5e-5 to 9e-5."""
+    """In shear, D/Ca is an even function of Ca, because reversing the flow mirrors the shape; one value, Ca = 1e-3, is
+    therefore enough. In extension, the limit is extrapolated from three values. The discretisation error is 5e-5 to
+    9e-5."""
     for motion, ratio, shear, dilatational in ("relaxed", 0.4, 1.5, 0.5), ("normal", 3, 0.5, 2):
         more = _set(Particle__viscosity_ratio=ratio, Membrane__shear_viscosity=shear, Membrane__dilatational_viscosity=dilatational)
         more += _set(Interface__motion=motion) + ["--quiet"]
@@ -52,7 +53,8 @@ def shapes_at_rest_in_slow_flows_are_those_of_small_deformation():
 
 
 def what_flows_in_becomes_heat_in_fluids_and_interface():
-    """The balance of power lacks less than 1e-4 on 6 elements a side, and falls with the fourth power of their size."""
+    """With 6 elements per side, the residual of the power balance is below 1e-4. It decreases with the fourth power of
+    the element size."""
     residuals = []
     for n in 4, 6:
         run(deck(STEADY), *_set(Surface__elements_per_side=n, Output__power_balance="true"), "--output", f"power_{n}", "--quiet")
@@ -61,12 +63,13 @@ def what_flows_in_becomes_heat_in_fluids_and_interface():
     check(residuals[1] < 1e-4 and order > 3.5, f"{residuals} is lacking, order {order}")
     flow, fluids, interface = (_last(name, "power_6") for name in ("flow_power", "fluid_dissipation", "membrane_dissipation"))
     check(interface > 0.04 * flow, f"{interface} becomes heat in the interface of {flow}")
-    check(abs((fluids + interface) / flow - 1) < 1e-4, f"{fluids} and {interface} become heat of {flow}")  # the mesh errs: D is 6e-5 off
+    # discretisation error; D has an error of 6e-5
+    check(abs((fluids + interface) / flow - 1) < 1e-4, f"{fluids} and {interface} become heat of {flow}")
 
 
 def implicit_schemes_do_what_explicit_ones_do():
-    """With control points that slide, or go with the fluid; the power that the interface dissipates is that of the fluid's velocity. Each scheme
-    errs by less than three times Time/tolerance."""
+    """The mesh has the motion `relaxed` or `material`. The dissipation in the interface must be computed from the
+    velocity of the fluid. The error of each scheme is below three times Time/tolerance."""
     found = {}
     for motion, scheme in ("relaxed", "tr-bdf2"), ("relaxed", "bdf3"), ("relaxed", "bs3"), ("material", "bdf3"):
         name = f"{motion}_{scheme}"
@@ -76,7 +79,8 @@ def implicit_schemes_do_what_explicit_ones_do():
         check(abs(_last("power_residual", name)) < 1e-4, f"{name}: {_last('power_residual', name)} is lacking")
     for name, values in found.items():
         for one, other in zip(values, found["relaxed_bs3"]):
-            check(abs(one / other - 1) < 1e-3, f"{name}: {one} where bs3 has {other}")  # 3e-5 of D = 0.06; another mesh, 4e-4
+            # measured: 3e-5 of D = 0.06; with the other motion of the mesh 4e-4
+            check(abs(one / other - 1) < 1e-3, f"{name}: {one} where bs3 has {other}")
 
 
 def a_surfactant_flows_on_a_viscous_interface():
@@ -88,7 +92,7 @@ def a_surfactant_flows_on_a_viscous_interface():
 
 
 def loads_of_viscous_membranes_may_be_measured_on_the_present_surface():
-    """It is the same load, but for what the mesh errs by."""
+    """Both measures give the same load up to the discretisation error."""
     found = []
     for measure in "reference", "current":
         words = _set(Membrane__law="Skalak", Membrane__load_measure=measure, Surface__elements_per_side=4, Time__final_time=1.2)
