@@ -21,7 +21,7 @@ FUNCTIONS = vars(edges_of_methods) | vars(edges_of_shapes)
 
 
 def draw(name, study, output):
-    """Draws a map, with its text and the command that makes it under the chart, and writes its table."""
+    """Draws a map, with its text and the command that reproduces it below the chart, and writes its table."""
     given = MAPS[name]
     print(f"{name}: {given['title']}", flush=True)
     figure, (axes,) = plt.subplots(1, len(given["axes"]), squeeze=False, **given["figure"])

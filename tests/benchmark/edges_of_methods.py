@@ -67,7 +67,7 @@ def drop_mesh(study, given, axes):
 
 
 def _stretch(shot, k=3):
-    """Returns the ratio of the largest area of a cell to the smallest one."""
+    """Returns the area of the largest cell divided by the area of the smallest cell."""
     grid = shot.sampled(shot.points, k)
     along, across = numpy.diff(grid, axis=2)[:, :-1], numpy.diff(grid, axis=1)[:, :, :-1]
     areas = numpy.linalg.norm(numpy.cross(along, across), axis=-1).sum((1, 2))
@@ -81,9 +81,9 @@ def stiffness(settings):
 
 
 def largest_step(study, settings, scheme):
-    """Returns the largest fixed step of a scheme, and what it is (studies.edge): with it a run comes to its end and to
-    where steps under control of the error lead, D and the energy within 5 %. The run is forty times the explicit limit
-    long, so that what grows can be seen to grow, and bisection starts around that limit."""
+    """Returns the largest fixed step of a scheme, and how the search ended (studies.edge). A step counts as stable if
+    the run is completed and its D and energy agree within 5 % with a run with controlled steps. The run is forty times
+    as long as the explicit stability limit, so that instabilities can grow. The bisection starts around this limit."""
     limit = 2.51 / stiffness(settings)
     settings = settings | {"Time/final time": 40 * limit, "Output/interval": 40 * limit}
     reference = study.run(SHEAR, settings | {"Time/scheme": "tr-bdf2"})
@@ -113,12 +113,12 @@ def largest_steps(study, given, axes):
 
 
 def worst(name):
-    """Returns the measure of `line` that is the largest absolute value of a series over the run."""
+    """Returns a measure for line(): the largest absolute value of a series over the run."""
     return lambda outcome: numpy.nanmax(abs(outcome.series[name]))
 
 
 def error_from(reference):
-    """Returns the measure of `line` that is the error of D at the end."""
+    """Returns a measure for line(): the error of D at the end of the run."""
     return lambda outcome: max(abs(outcome.final["taylor_inertia"] - reference.final["taylor_inertia"]), 1e-9)
 
 

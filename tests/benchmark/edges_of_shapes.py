@@ -5,7 +5,7 @@ from package import PENS, SHEAR, SIDE, lines, numpy, style, varied
 import waves
 from tanktread.figures import pushed as stuck
 
-MARKS = (8, "x"), (10, "o-")  # n, the coarse and the fine mesh
+MARKS = (8, "x"), (10, "o-")  # elements per side of the coarse and the fine mesh, and their markers
 
 
 def bursting(study, given, axes):
@@ -48,8 +48,8 @@ def wrinkling(study, given, axes):
 
 
 def onset(study, deck, settings):
-    """Returns the bending number at which the leading rate passes through zero, by secants of its logarithm, and the
-    last run."""
+    """Returns the bending number at which the leading rate is zero, by the secant method in its logarithm, and the last
+    run."""
     numbers, rates = [0.0045, 0.005], []
     for k in range(9):
         outcome = study.run(deck, settings | {"Membrane/bending number": float(f"{numbers[k]:.6g}")})
@@ -80,7 +80,7 @@ def waist_mode(outcome):
 
 
 def folds(outcome):
-    """Returns rows of the second parameter, critical Ca and D there, as far as the run came."""
+    """Returns rows of second parameter, critical Ca, and D at the fold, up to the last point that the run reached."""
     names, at = ("second_parameter", "parameter", "taylor_surface"), outcome.series["fold"] > 0
     return numpy.array([outcome.series[name][at] for name in names])
 

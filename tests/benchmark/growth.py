@@ -60,7 +60,7 @@ def main():
         draw(axis, dense, chart["dense"] if dense else {}, arguments.least, [style.FAINT], "o--")
         axis.set(title=chart["title"], xlabel="control points")
         axis.legend(loc="upper left")
-    axes[0].set_ylim(top=axes[0].get_ylim()[1] * 1000)  # room for the legend
+    axes[0].set_ylim(top=axes[0].get_ylim()[1] * 1000)  # leaves space for the legend
     error = max(one["far error"] for one in trees)
     footer(figure, "$ build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json; "
            "tests/benchmark/growth.py growth.json\na capsule in shear on one core, tolerance 1e-5; far sum against the "

@@ -27,7 +27,7 @@ ADAPT = {"Adaptation/enabled": True, "Quadrature/tolerance": 1e-5, "Time/toleran
 
 
 def run(study, scene, settings):
-    """Returns the outcome of a run, or None if it did not come to its end, which is printed."""
+    """Returns the outcome of a run. If the run was not completed, prints this and returns None."""
     settings = scene | settings
     outcome = study.run(f"inputs/{settings.pop('deck')}.yaml", settings)
     if not outcome.done:
@@ -36,7 +36,8 @@ def run(study, scene, settings):
 
 
 def velocity(study, base, name, settings):
-    """Returns the nodes' velocities of the shape that a run ended with, with other settings, over rate x R_C."""
+    """Returns the velocities of the nodes, divided by rate x R_C, of the final shape of a run, computed with other
+    settings."""
     copy = base.directory.parent / "resumed" / f"{base.directory.name}_{name}"
     if not (copy / "done").exists():
         shutil.rmtree(copy, ignore_errors=True)
@@ -65,7 +66,8 @@ def ratio(error, tolerance):
 
 
 def print_errors(study, first, tolerances, scenes, cells):
-    """Prints a table of one row a scene and one column a tolerance; `cells` returns a row's texts, or None."""
+    """Prints a table with one row per scene and one column per tolerance. cells(scene) returns the texts of a row, or
+    None."""
     rows = study.map(lambda name: [name, *(cells(scenes[name]) or [""] * len(tolerances))], list(scenes))
     table([first, *(numpy.format_float_scientific(one, trim="-", exp_digits=1) for one in tolerances)], rows)
     print()
@@ -86,8 +88,8 @@ def of_velocity(study, key, tolerances, reference, scenes):
 
 
 def distance(one, other, k=32):
-    """Returns the largest distance of the nodes of one snapshot from the surface of another: to tangent planes of a
-    fine grid on each cell."""
+    """Returns the largest distance of the nodes of one snapshot from the surface of another, approximated by tangent
+    planes on a fine grid of each cell."""
     grid = other.sampled(other.points, k)
     nearest = scipy.spatial.cKDTree(grid.reshape(-1, 3)).query(one.points)[1]
     cell, t, s = numpy.unravel_index(nearest, grid.shape[:3])
@@ -123,9 +125,9 @@ def of_shape(study, key, tolerances, reference, scenes, also):
     print_errors(study, f"error/`{key}` (iterations of NOX) at", tolerances, scenes, cells)
 
 
-# without a linear system, and with one that the checkpoint holds the solution of
+# scenes without a linear system for the velocity, and scenes whose checkpoint contains the solution of this system
 WITHOUT = "capsule in shear", "adaptive mesh, ratio 0.2"
-TABLES = {  # name: function, and its arguments
+TABLES = {  # {name: (function, arguments)}
     "quadrature": (of_velocity, "Quadrature/tolerance", [1e-2, 1e-3, 1e-4, 1e-5], 1e-9, SCENES["deformed"]),
     "solvers": (of_velocity, "Solvers/tolerance", [1e-3, 1e-4, 1e-6, 1e-8], 1e-12,
                 {name: one for name, one in SCENES["deformed"].items() if name not in WITHOUT}),

@@ -35,7 +35,7 @@ def choice_of(parser, scenes):
 
 
 def table(head, rows):
-    """Prints a Markdown table; each row, a list of texts and numbers, as soon as it is there."""
+    """Prints a Markdown table. Each row, a list of texts and numbers, is printed as soon as it is available."""
     print("| " + " | ".join(head) + " |\n" + "|---" * len(head) + "|", flush=True)
     for row in rows:
         print("| " + " | ".join(f"{one:.3g}" if isinstance(one, float) else str(one) for one in row) + " |", flush=True)
@@ -61,12 +61,12 @@ def line(study, axes, name, deck, jobs, measures, x=None, **pen):
 
 
 def varied(given):
-    """Returns {value: settings} along the axis x of a map (scenes/atlas.yaml)."""
+    """Returns {value: settings} for the axis x of a map (scenes/atlas.yaml)."""
     return {value: {given["key"]: value} for value in given["values"]} if "key" in given else given["values"]
 
 
 def lines(study, axes, given, measures, x=None, pens=PENS):
-    """Draws a `line` of each of the `cases` of a map, {name: settings}. Returns the rows of all lines."""
+    """Draws one line() for each of the `cases` {name: settings} of a map. Returns the rows of all lines."""
     rows = []
     for (name, settings), pen in zip(given["cases"].items(), pens):
         jobs = {value: given["base"] | settings | more for value, more in varied(given).items()}
@@ -75,5 +75,5 @@ def lines(study, axes, given, measures, x=None, pens=PENS):
 
 
 def footer(figure, text, **look):
-    """Writes a text that may hold a command, after a dollar sign, below a figure."""
+    """Writes a text below a figure. What follows a dollar sign in the text is a command."""
     figure.supxlabel(text.replace("$ ", r"\$ "), x=0.01, ha="left", fontsize=7.5, **look)

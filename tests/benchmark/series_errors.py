@@ -32,13 +32,13 @@ TOLERANCES = {"Time": "tolerance", "Quadrature": "tolerance", "Adaptation": "sur
 
 
 def refined(section, key, value):
-    """Returns the value of a key in the finer run, or None if it is the same."""
+    """Returns the value of a key in the finer run; None if the finer run uses the same value."""
     return 2 * value if key in MESHES else value / 10 if TOLERANCES.get(section) == key else None
 
 
 def at_times(times, values, wanted, points):
-    """Returns a series at other times, by polynomials through this many rows where it is defined. Times outside these
-    rows give NaN."""
+    """Returns a series at the given times, by polynomials through `points` rows at which it is defined. The result is
+    NaN outside the range of these rows."""
     defined = ~numpy.isnan(values)
     times, values = times[defined], values[defined]
     found = numpy.full(len(wanted), numpy.nan)
@@ -74,7 +74,7 @@ def errors(first, fine):
 
 
 def errors_of(study, name):
-    """Returns the errors of a scene, whose two runs are made."""
+    """Makes the two runs of a scene and returns its errors."""
     deck = INPUTS / f"{SCENES[name]['deck']}.yaml"
     surface = "Particles/defaults/Surface" if "\n  Particles:" in deck.read_text() else "Surface"
     base, runs = {key.replace("Surface", surface): value for key, value in DEFAULTS.items()} | SCENES[name]["set"], []

@@ -19,19 +19,20 @@ BELOW = {"loc": "upper center", "ncol": 2, "bbox_to_anchor": (0.5, 0)}  # the le
 def made(study, mesh, settings):
     """Returns the outcome of a run; None if it failed."""
     outcome = study.run(f"inputs/spheroid_{mesh}.yaml", settings)
-    if not outcome.done:  # errors beyond what the deck as it stands expects are its end too
+    if not outcome.done:  # a missed expectation (exit code 1) is not a failure here
         print(f"  {outcome.message}", file=sys.stderr)
     return outcome if outcome.done else None
 
 
 def sizes(study, option, largest):
-    """Returns the outcomes of an option on its meshes, coarse to fine."""
+    """Returns the outcomes of an option on its meshes, from coarse to fine."""
     meshes = MESHES[option["mesh"]][:largest + 1]
     return [one for one in (made(study, option["mesh"], option["settings"] | mesh) for mesh in meshes) if one]
 
 
 def slope(points, errors):
-    """Returns the mean order in the number of control points, by least squares, and that of the finest pair."""
+    """Returns the mean convergence order in the number of control points, by least squares, and the order of the finest
+    pair of meshes."""
     x, y = numpy.log(points), numpy.log(errors)
     return -numpy.polyfit(x, y, 1)[0], -(y[-1] - y[-2]) / (x[-1] - x[-2])
 
@@ -41,7 +42,7 @@ def column(outcomes, key):
 
 
 def draw_convergence(axes, found, key, factor=1.0, options=OPTIONS, cut="", **more):
-    """Draws a line of each option: broken, with a mark of its own, if it is by a fixed rule."""
+    """Draws a line for each option. Options with a fixed quadrature rule have dashed lines and their own markers."""
     for name in options:
         option, outcomes = OPTIONS[name], [one for one in found[name] if key in one.final]
         look = {"color": style.RUNS[option["color"]], "linestyle": "--" if "mark" in option else "-", "ms": 4.5,
@@ -52,7 +53,7 @@ def draw_convergence(axes, found, key, factor=1.0, options=OPTIONS, cut="", **mo
 
 def figure_8(found):
     figure, axes = plt.subplots(figsize=(5.6, 4.2))
-    # the rule does not change the surface: one curve a surface
+    # the quadrature rule does not change the surface, so there is one curve per surface
     draw_convergence(axes, found, "normal_l2_error", options=list(OPTIONS)[:4], cut=", rules by tolerance")
     axes.plot(546, PAPER["table"][2][0], **STAR)
     axes.plot([700, 3000], [6e-4, 6e-4 * (3000 / 700) ** -PAPER["slopes"]["normal"][1]], color=style.FAINT,
@@ -91,7 +92,7 @@ def figure_10(found):
         for cell, values in zip(points[near], error[near]):
             mesh = axes.pcolormesh(cell[..., 0], cell[..., 2], values, shading="gouraud", cmap=style.FIELD,
                                    norm=plt.matplotlib.colors.LogNorm(1e-7, 1e-2), rasterized=True)
-            # the slim pieces of transformed elements would be all outline
+            # outlines would cover the narrow pieces of transformed elements
             if numpy.linalg.norm(numpy.cross(cell[-1, -1] - cell[0, 0], cell[-1, 0] - cell[0, -1])) > 4e-4:
                 edge = numpy.concatenate([cell[0], cell[:, -1], cell[-1, ::-1], cell[::-1, 0]])
                 axes.plot(edge[:, 0], edge[:, 2], color="white", linewidth=0.25, alpha=0.6)

@@ -24,7 +24,8 @@ def main():
 
 
 def made(load):
-    """Returns the directory of a run; the strong form ends with exit code 3, because it fails, which is shown."""
+    """Runs the deck if there are no results, and returns their directory. The strong form ends with exit code 3,
+    because the run fails; the figure shows this."""
     settings = {"Membrane/load": load, SIDE: 6, "Time/final time": 2, "Output/interval": 0.05}
     return tanktread.results_of(SHEAR, f"strong_form/{load}", settings, accepted=(0, 1, 3))
 
@@ -55,7 +56,7 @@ def draw_sections(axis, weak, strong):
                                            linewidths=width, label=f"{name} form, t = {shot.time:.4g}"))
     axis.set_aspect("equal", anchor="N")
     axis.autoscale_view()
-    axis.margins(y=0.15)  # room for the legend
+    axis.margins(y=0.15)  # leaves space for the legend
     axis.set(title="section in the x₁x₃ plane", xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$")
     axis.legend(loc="upper left")
 

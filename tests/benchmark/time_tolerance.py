@@ -16,7 +16,7 @@ from package import (RATIO, SHEAR, SIDE, answer, command_line, expect, interpola
                      style, table)
 
 BASE = {SIDE: 6, "Quadrature/tolerance": 1e-6}
-LONG = {"Output/interval": 1e3, "Time/steady tolerance": 1e-13}  # pictures and an early end would shorten steps
+LONG = {"Output/interval": 1e3, "Time/steady tolerance": 1e-13}  # snapshots and an early end would shorten steps
 RATIOS = [0.05, 0.2, 1, 2, 5, 10, 50]
 NAMES = ["tr-bdf2", "bdf3", "auto", "bs3", "rkc2"]
 SWEEP = [{"Time/tolerance": round(10 ** (-k / 4), 12)} for k in range(8, 25)]
@@ -40,14 +40,14 @@ SCHEMES = {f"ratio {ratio:g}": shear(ratio) for ratio in RATIOS} | {
 
 
 def many(study, scene, variants):
-    """Returns the outcomes of a scene with each of these settings in addition."""
+    """Returns the outcomes of a scene, one for each of the given additional settings."""
     deck, base = scene
     return study.all([(deck, base | LONG | variant) for variant in variants])
 
 
 def reference_of(study, scene, tolerance):
-    """Returns a run by an explicit scheme, and its difference to one by an implicit scheme, whose steps err by less
-    than their tolerance (4.31)."""
+    """Returns a run with an explicit scheme, and its difference from a run with an implicit scheme. In the implicit
+    run, the error of a step is kept below a fraction of the tolerance (4.31)."""
     first, second = many(study, scene, [{"Time/scheme": "bs3", "Time/tolerance": tolerance}, {
         "Time/scheme": "bdf3", "Time/newton iterations": 20, "Time/tolerance": 10 * tolerance}])
     expect(first.done and second.done, f"a reference of {scene[0]} fails: {first.message} {second.message}")
@@ -55,7 +55,7 @@ def reference_of(study, scene, tolerance):
 
 
 def error(outcome, reference):
-    """Returns the largest |D - reference's D| over the run, of the particle where it is largest."""
+    """Returns the largest |D - D of the reference| over the run; for several particles, the largest of their errors."""
     return max(interpolation.difference(outcome.series["time"], outcome.series[name], reference.series["time"], values)
                for name, values in reference.series.items() if name.split("/")[-1] == "taylor_inertia")
 

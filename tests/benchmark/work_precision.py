@@ -32,11 +32,11 @@ class Scene:
         vars(self).update({"base": {}, "levels": [1e-3, 1e-4, 1e-5], "pairs": None} | read(path))
         self.name, self.curves = pathlib.Path(path).stem, curves
         self.default = {choice: next(iter(options)) for choice, options in self.choices.items()}
-        # the choice that colours stand for: the one with most options, the scheme before others
+        # the choice that is shown by colours: the one with most options, where those of `time` count twice
         self.shape = max(self.choices, key=lambda choice: len(self.choices[choice]) * (1 if choice == "time" else 0.5))
 
     def combinations(self, differences, only):
-        """Yields the default, then every pick that differs from it in one choice, then in two."""
+        """Yields the default options, then all combinations that differ from them in one choice, then in two."""
         choices = [choice for choice in self.choices if not only or choice in only]
         for group in itertools.chain(*(itertools.combinations(choices, k) for k in range(differences + 1))):
             if len(group) < 2 or self.pairs is None or set(group) in map(set, self.pairs):
@@ -44,7 +44,8 @@ class Scene:
                     yield self.default | dict(zip(group, options))
 
     def errors(self, study):
-        """Returns the function outcome -> error. A curve of the literature is taken if its folder is given."""
+        """Returns the function that computes the error of an outcome. Uses a curve of the literature if its folder is
+        given."""
         if "final" in self.error:
             return lambda outcome: abs(outcome.final[self.error["final"]] - self.error.get("value", 0.0))
         series = self.error["series"]
@@ -58,7 +59,7 @@ class Scene:
         return lambda outcome: interpolation.difference(outcome.series["time"], outcome.series[series], t, values)
 
     def points(self, study, differences, only):
-        """Makes the runs and returns those that came to their end as Points, and rows of all for the table."""
+        """Makes the runs. Returns the completed runs as Points, and the rows of all runs for the table."""
         error_of, points, rows = self.errors(study), [], []
         for picked in self.combinations(differences, only):
             settings = dict(self.base)
@@ -81,19 +82,20 @@ class Scene:
 
 
 def kind(option):
-    """Returns an option without its number: `tr-bdf2 1e-4` is a `tr-bdf2`."""
+    """Returns an option without its number: `tr-bdf2` for `tr-bdf2 1e-4`."""
     name, _, number = option.rpartition(" ")
     return name if name and number[0].isdigit() else option
 
 
 def front(points, cost):
-    """Returns the points that no other beats in both, by rising cost."""
+    """Returns the Pareto front in order of increasing cost: the points for which no other point has both lower cost and
+    lower error."""
     ordered = sorted(points, key=lambda one: (getattr(one, cost), one.error))
     return [one for k, one in enumerate(ordered) if all(one.error < other.error for other in ordered[:k])]
 
 
 def draw(axis, points, cost, colors, families, numbers):
-    """Draws every run, lines through the runs of a family, and the front: filled, with its numbers."""
+    """Draws all runs, lines through the runs of each family, and the Pareto front as filled, numbered markers."""
     def plot(line, *words, **look):
         axis.loglog([getattr(one, cost) for one in line], [one.error for one in line], *words, **look)
 

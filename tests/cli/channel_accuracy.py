@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # label: long
-# Channels to the digits that inputs/manual/accuracy/channels.md promises: the empty constriction, a slender one, what is straight or nearly so, what passes a
-# mirrored channel that was meshed anew.
+# Tests of the accuracy that inputs/manual/accuracy/channels.md states: the empty constriction, a slender one, straight
+# and nearly straight channels, and particles in a channel and its mirror image, which has another mesh.
 import pathlib
 
 import h5py

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # ranks: 2
-# Decks that cover all pairs of choices. A pair is covered by a deck that runs and passes the checks, or the program rejects it with a sentence that has
-# a reason in REASONS. The program decides what it accepts, by --check, so that a pair which is accepted from now on counts as covered.
+# Decks that cover all pairs of choices. A pair is covered if a deck with it runs and passes the checks, or if the
+# program rejects it with a message whose reason is in REASONS. --check decides which pairs the program accepts, so that
+# a pair that becomes accepted counts as covered.
 #   combinations.py <tanktread> <source directory>             the decks that cover most pairs
 #   combinations.py <tanktread> <source directory> --long      all of them
 #   combinations.py <tanktread> <source directory> --list      prints the decks as choices, runs nothing
@@ -90,7 +91,7 @@ FIRST = 12  # number of decks in the short run
 CHECKS = ("series", "resume", "ranks", "order", "symmetry", "motions")
 SIDES = [6.5, 3.7, 3.9]  # side lengths of a lattice divided by the particle's radius
 OWN = re.compile(r"(.*/)?(wall_seconds|solver_iterations|velocity_iterations)")  # of the machine, or of sums in another order
-UNDEFINED = re.compile(r"(.*/)?(inclination|axis_1_x[123])")  # of equal semi-axes
+UNDEFINED = re.compile(r"(.*/)?(inclination|axis_1_x[123])")  # NaN if two semi-axes are equal
 # positions of a smallest distance: known only to the square root of the tolerance, or one of several
 NEAREST = re.compile(r"first_of_gap|second_of_gap|particle_at_wall|gap_x[123]|nearest_to_wall_x[123]")
 INVARIANT = re.compile(r"(.*/)?(volume|area|energy|membrane_dissipation|local_area_change|axis_[123]|surfactant_mass|smallest_concentration"

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 2
-# The command line does what it promises: every option, every exit code, where results go and what is stored with them.
+# Tests of the command line: all options and exit codes, the results directory and the files in it.
 import pathlib
 import re
 import shutil
@@ -79,7 +79,7 @@ def a_met_expectation_is_0_and_a_missed_one_1():
 
 def a_missed_expectation_under_mpirun_is_one_line():
     program = command(deck(SMALL), "--set", "Expect/volume/value=5", "--set", "Expect/volume/tolerance=1.0e-2", "--output", "out", "--quiet", ranks=2)
-    launcher = ["mpirun", "-q", "--mca", "odls_base_sigkill_timeout", "0"]  # as the help says
+    launcher = ["mpirun", "-q", "--mca", "odls_base_sigkill_timeout", "0"]  # the launcher that --help recommends
     result = subprocess.run(launcher + program[1:], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=600)
     check(result.returncode == 1 and result.stderr.startswith("tanktread: missed Expect/volume"), result.returncode, result.stderr)
     check(result.stderr.count("\n") == 1, result.stderr)
@@ -110,7 +110,8 @@ def an_expectation_binds_what_it_was_stated_for():
     check(len(missed(base, "--no-expect", code=0)[0]) == 2, "--no-expect")
     run(base, other, "--quiet", "--output", "out")
     check([one["not binding"] for one in summary("out")["expect"]] == 2 * ["the deck was changed: Flow/viscosity"], summary("out")["expect"])
-    run("--resume", "out", "--quiet", "--set", "Time/final time=0.06")  # it does not bind a run that goes on either
+    # the expectation does not bind the resumed run either
+    run("--resume", "out", "--quiet", "--set", "Time/final time=0.06")
 
 
 def an_expectation_compares_times_with_units():

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 1
-# Results are not lost: not to another run in their directory, not to a read error, not to files of other runs; and what is not written is said.
+# Tests that results are not lost, neither to another run in the same directory nor to a read error, that changed files
+# or files of another run are rejected, and that write errors are reported.
 import pathlib
 import shutil
 

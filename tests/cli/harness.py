@@ -81,8 +81,8 @@ def run(*arguments, code=0, ranks=1, timeout=600):
 
 
 def refused(words, *arguments, mistakes=1):
-    """Runs the program and fails the test unless it says one sentence for each mistake, of which the first holds the words, exits with code 2 and
-    writes nothing."""
+    """Runs the program. Fails the test unless it prints one sentence for each of `mistakes` mistakes, the first of
+    which contains all `words`, exits with code 2 and writes no results."""
     result = run(*arguments, "--output", "refused", code=2)
     lines = result.stderr.splitlines()
     check(len(lines) == mistakes, f"{len(lines)} lines on standard error:\n{result.stderr}")
@@ -103,7 +103,8 @@ def start(*arguments, ranks=1):
 
 
 def wait_within(process, results, whole):
-    """Waits until the run in the background, which writes to `results`, has probably done two fifths of its steps. `whole`: results of the same run."""
+    """Waits until the background run that writes to `results` has probably done two fifths of its steps. `whole`:
+    results of the same run without interruption."""
     while process.poll() is None and not pathlib.Path(results, "run.h5").exists():
         time.sleep(0.001)
     seconds = series(whole, "wall_seconds")
@@ -120,7 +121,7 @@ def package(name, *arguments):
 
     for module, _ in commands.COMMANDS.values():
         importlib.import_module(f"tanktread.{module}")
-    importlib.import_module("tanktread.figures.render").OVERSAMPLING = 1  # pictures of surfaces take a quarter of the time
+    importlib.import_module("tanktread.figures.render").OVERSAMPLING = 1  # renders surfaces in a quarter of the time
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as said:
         child = os.fork()
         if child == 0:
@@ -146,7 +147,8 @@ def package(name, *arguments):
 
 
 def shown(page):
-    """Returns the document that headless Chromium makes of a page, and the lines of its console. Returns (None, []) without Chromium, and says so."""
+    """Returns the document that headless Chromium makes of a page, and the lines of its console. If there is no
+    Chromium, prints this and returns (None, [])."""
     browser = shutil.which("chromium")
     if not browser:
         print("skipped a part: chromium is not installed")
@@ -173,14 +175,14 @@ def summary(results):
 
 
 def _outcome(test):
-    """Whether a test passes, and what is to be said of it."""
+    """Runs a test. Returns True if it passes, and the text to be printed."""
     with tempfile.TemporaryDirectory(prefix="tanktread-") as directory:
         os.chdir(directory)
         start = time.perf_counter()
         try:
             test()
             return True, f"passed {test.__name__.replace('_', ' ')} ({time.perf_counter() - start:.1f} s)"
-        except Exception as error:  # the rest of the script still runs
+        except Exception as error:  # the other tests of the script are run all the same
             said = str(error) if isinstance(error, Failed) else traceback.format_exc()
             return False, "FAILED " + test.__name__.replace("_", " ") + "\n" + said
         finally:

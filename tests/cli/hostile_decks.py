@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# Whatever a deck holds, --check ends soon: with the plan, or with a sentence for each mistake and exit code 2.
+# Tests that --check ends soon for any deck: with the plan, or with one sentence for each mistake and exit code 2.
 #
 # By hand: hostile_decks.py <tanktread> <source directory> --count 5000 --seed 7 makes other mutations of the shipped decks.
 import argparse

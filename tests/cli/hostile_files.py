@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# Every command of the Python package answers damaged files, NaN and missing series with one sentence and exit code 2, and takes spaces and umlauts.
+# Tests that every command of the Python package reports damaged files, NaN and missing series in one sentence with exit
+# code 2, and accepts file names with spaces and umlauts.
 import os
 import pathlib
 import shutil

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# A run starts from the end of another one, or from a file, and goes on without them.
+# Tests of runs that start from the end of another run or from a file, and that do not need it afterwards.
 import pathlib
 import shutil
 

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# What cmake --install puts in place: a program, the Python package that finds it, a manual page, completion, and a library that another project links.
+# Tests of the files that cmake --install installs: program, Python package, manual page, shell completion, and a
+# library to which another project links.
 import os
 import pathlib
 import subprocess
@@ -82,7 +83,8 @@ def _deck(flow, membrane, time, more=""):
 
 
 def _draws_to_its_center(of):
-    close(of["trap_force"][0], 0.2 * 4 * np.pi * 0.3, 1e-3, "force of the trap")  # k x area x distance
+    # modulus of the trap x area x distance
+    close(of["trap_force"][0], 0.2 * 4 * np.pi * 0.3, 1e-3, "force of the trap")
     check((np.diff(of["trap_potential"]) < 0).all() and of["centroid_x1"][-1] < 0.3, of["trap_potential"], of["centroid_x1"])
 
 
@@ -111,7 +113,7 @@ def _is_the_upper_of_a_mirrored_pair(of):
     _done(PROGRAM, "pair.yaml", "--output", "pair", "--quiet")
     with h5py.File("pair/run.h5") as file:
         pair = {f"upper/{name}": data[:] for name, data in file["series/upper"].items()}
-    of["centroid_x3"] -= 0.1  # height of the plane
+    of["centroid_x3"] -= 0.1  # subtracts the height of the plane
     for name in ("centroid_x1", "centroid_x3", "taylor_inertia", "energy"):
         # Quadrature/tolerance is 1e-4, and the far nodes of the two problems are the same, so that only rules for close panels differ.
         close(of[name][-1], pair[f"upper/{name}"][-1], 1e-5 * pair[f"upper/{name}"][-1], name)
@@ -142,7 +144,8 @@ def _series(results):
 
 
 def _adds_a_part(program, name, deck, setting, judge):
-    """Runs a deck with a key of the part, from start to end and with a stop in the middle; the two agree to the last bit."""
+    """Runs a deck with a key of a user-defined part, once from start to end and once with an interruption. Checks that
+    both runs are bitwise equal."""
     path = pathlib.Path(f"{name}.yaml")
     path.write_text(deck)
     key = setting.split("=")[0].rsplit("/", 1)[-1]

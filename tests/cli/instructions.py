@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# Kernels with the instructions that the environment asks for: the same results, or a sentence.
+# Tests of the environment variable that selects the instruction set of the kernels: the results are equal, and a wrong
+# value is reported.
 import os
 import re
 

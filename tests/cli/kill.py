@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 1
-# Killed at any moment, what a run has written opens and holds every finished step.
+# Tests that the files of a run that is killed at any moment can be read and contain every completed step.
 import pathlib
 import random
 import signal
@@ -22,12 +22,12 @@ SERIES = ["time", "taylor_inertia", "energy", "volume_error", "evaluations"]
 
 
 def _rows(results):
-    """Rows of the record; 0 before the first."""
+    """Returns the number of rows in the record; 0 if there is no record yet."""
     return len(series(results, "time")) if (pathlib.Path(results) / "run.h5").exists() else 0
 
 
 def _holds_the_beginning_of(whole, results):
-    """Every series of `results` is the beginning of that of `whole`, to the last bit."""
+    """Checks that every series of `results` is bitwise equal to the beginning of the series of `whole`."""
     rows = _rows(results)
     for name in SERIES if rows else []:
         part = series(results, name)
@@ -36,7 +36,7 @@ def _holds_the_beginning_of(whole, results):
 
 
 def _snapshots_are_whole(results):
-    """Every snapshot opens; nothing stands in the list of them that does not."""
+    """Checks that every snapshot can be opened, and that the list of snapshots contains no others."""
     import h5py
     import json
 

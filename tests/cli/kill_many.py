@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # label: long
 # ranks: 2
-# Sixty-four capsules, killed at any moment, go on where their last checkpoint stands: to the last bit on as many processes, to rounding on others.
-# A third argument is the number of kills (20).
+# Tests that a run with 64 capsules, killed at any moment, is resumed from its last checkpoint: bitwise equal on the
+# same number of ranks, equal up to rounding on other numbers. The third argument is the number of kills (20).
 import pathlib
 import random
 import signal
@@ -41,9 +41,9 @@ def what_is_killed_goes_on():
         process.communicate()
         if process.returncode != -signal.SIGKILL:
             continue  # it was done
-        time.sleep(1)  # mpirun is gone, its processes follow
+        time.sleep(1)  # mpirun has ended; its processes end shortly afterwards
         if not any(pathlib.Path(results).glob("snapshot_*.hdf")):
-            continue  # it had no snapshot yet
+            continue  # no snapshot had been written yet
         went_on = run("--resume", results, "--quiet", ranks=after, timeout=3600, code=None)
         check(went_on.returncode == 0, results, went_on.stderr)
         resumed += 1

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-# Scenes that repeat on a lattice: the same one by several cells and on several ranks, what a tilt that is put back leaves, resumed, and what a deck
-# may not ask for.
+# Tests of scenes on lattices: the same lattice described by other cells, several ranks, a tilt that is reduced by a
+# period, resumed runs, rejected decks.
 # ranks: 2
 import pathlib
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-# One rigid body in scenes that used to need something that deforms: steady attitudes and their rates, periodic orbits, the balance of power, a wall
-# that pushes, meshes that are refined, a body that moves as told in a flow that changes.
+# Tests of scenes with a single rigid body: steady orientations and their decay rates, periodic orbits, power balance,
+# repulsion by a wall, mesh refinement, and prescribed motion in a flow that varies in time.
 import numpy
 
 from harness import check, close, deck, main, run, series

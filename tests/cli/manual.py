@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # label: long
-# The manual is built without a warning, no link is dead, its search knows what a reader looks for, and a browser, where there is one, shows it.
+# Tests that the manual is built without warnings and has no dead links, and that its search finds important words. If a
+# browser is available, tests that it shows the pages.
 import html.parser
 import importlib.util
 import pathlib

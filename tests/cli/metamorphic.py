@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # ranks: 2
 # Tests that equivalent scenes give the same surface and series: moved, rotated, mirrored, in other units, in a moving
-# frame, with reordered control points, with
-# other far sums, on two ranks. The surface and the series are the same. metamorphic_all.py does that with every kind of particle.
+# frame, with reordered control points, with other far sums, on two ranks. metamorphic_all.py does the same for every
+# kind of particle.
 import pathlib
 
 import numpy

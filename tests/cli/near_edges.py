@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# A run near an edge of its method says so once, on standard error and in its summary; a healthy one is silent.
+# Tests that a run near a limit of the method warns once, on standard error and in its summary, and that other runs do
+# not warn.
 from harness import check, deck, main, run, summary
 
 DECK = """
@@ -14,7 +15,7 @@ LOW = ["Membrane/capillary number=0.02", "Surface/elements per side=6", "Time/fi
 
 
 def _said(*settings, code=0):
-    """The sentences of a run, and those of its summary."""
+    """Returns the warnings of a run on standard error, and the warnings in its summary."""
     words = [word for setting in settings for word in ("--set", setting)]
     told = [line for line in run(deck(DECK), *words, "--output", "out", "--overwrite", "--quiet", code=code).stderr.splitlines() if "warning:" in line]
     return told, summary("out")["warnings"] if code == 0 else None

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# The Python package is installed, has exact surfaces, gives results to pandas, xarray, meshio and VTK, and draws every figure.
+# Tests of the Python package: installation, exact surfaces, conversion for pandas, xarray, meshio and VTK, and all
+# figures.
 import importlib.util
 import os
 import pathlib
@@ -58,7 +59,7 @@ CHANNEL = TUBE.replace("radius: 0.4 }", "radius: 0.5, center: [-0.6, 0, 0] }").r
                        "Channel: { section: circle, radius: 1.0, profile: constriction, depth: 0.6, half length: 1.0, azimuthal elements: 12, axial elements: 24 }")
 
 
-figures.render.OVERSAMPLING = 1  # pictures of surfaces take a quarter of the time
+figures.render.OVERSAMPLING = 1  # renders surfaces in a quarter of the time
 
 
 def _run(name, text):
@@ -67,7 +68,7 @@ def _run(name, text):
 
 
 def _has(*packages):
-    """Whether optional packages are installed; says which one is missing where they are not."""
+    """Returns True if the optional packages are installed; otherwise prints which one is missing."""
     missing = [name for name in packages if importlib.util.find_spec(name) is None]
     if missing:
         print(f"skipped a part: python3-{missing[0]} is not installed")
@@ -107,7 +108,8 @@ def positions_are_those_of_the_nodes_and_of_the_sphere():
         cells = generator.integers(len(shot.cells), size=2000)
         x = shot.evaluate(shot.points, cells, *generator.random((2, 2000)))
         errors.append(abs(numpy.linalg.norm(x, axis=1) - 1).max())
-    check(errors[1] < errors[0] / 8, "not of order three or more", errors)  # splines of degree three; eight extraordinary points
+    # expected order: at least three, because of the eight extraordinary points
+    check(errors[1] < errors[0] / 8, "not of order three or more", errors)
     close(errors[1], 0, 2e-3, "distance from the sphere")
 
 
@@ -173,7 +175,7 @@ def a_mesh_is_written_and_read_back_with_its_area():
 
 
 def _made_up(name, sections, series, time=None):
-    """A record with these series only: what figures of long runs are drawn from."""
+    """Writes a record with the given series only, for figures that would need long runs."""
     pathlib.Path(name).mkdir()
     time = numpy.linspace(0, 10, 201) if time is None else time
     with h5py.File(f"{name}/run.h5", "w") as file:
@@ -187,7 +189,7 @@ def _made_up(name, sections, series, time=None):
 
 
 def _all_figures():
-    """Yields each figure and how it is drawn: the runs, options, and what replaces its long runs."""
+    """Yields each figure with its runs, its options, and the replacements of its long runs."""
     pathlib.Path("curve.csv").write_text("t,taylor_inertia\n" + "".join(f"{0.05 * k},{0.05 * k}\n" for k in range(5)))
     _run("one", CAPSULE), _run("two", PAIR), _run("tube", TUBE), _run("channel", CHANNEL)
     _run("wall", CAPSULE.replace("shape: sphere", "shape: sphere, center: [0, 0, 1.5]") + "  Wall: { point: [0, 0, 0], normal: [0, 0, 1] }\n")
@@ -214,7 +216,8 @@ def _all_figures():
                 ("drift", "turns", {}), ("stuck", ["channel"], {"elements": 40}))
 
 
-ELSEWHERE = {"growth_rates", "step", "viscosity", "tweezers", "treading", "recovery"}  # make many runs; see below
+# figures that make many runs; they are tested below
+ELSEWHERE = {"growth_rates", "step", "viscosity", "tweezers", "treading", "recovery"}
 
 
 def every_figure_is_drawn_and_takes_axes():

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# Snapshots are what VTKHDF 1.0 says of an unstructured grid, with Lagrange quadrilaterals in the order in which VTK numbers their points.
+# Tests that snapshots satisfy the specification VTKHDF 1.0 of unstructured grids, with Lagrange quadrilaterals in VTK's
+# order of points.
 import json
 import pathlib
 
@@ -29,7 +30,7 @@ LAGRANGE_QUADRILATERAL = 70
 
 
 def _grids(results):
-    """The group VTKHDF of each snapshot, in the order of the series."""
+    """Returns the group VTKHDF of each snapshot, in order of time."""
     series = json.loads((pathlib.Path(results) / "run.hdf.series").read_text())
     check(series["file-series-version"] == "1.0", series)
     times = [entry["time"] for entry in series["files"]]
@@ -40,7 +41,8 @@ def _grids(results):
 
 
 def _point_number(i, j, p):
-    """Number of the point (i, j) of a Lagrange quadrilateral of degree p: corners, sides, inner points."""
+    """Returns the index of the node (i, j) of a Lagrange quadrilateral of degree p: corners first, then sides, then
+    interior nodes."""
     on_i, on_j = i in (0, p), j in (0, p)
     if on_i and on_j:
         return (2 if j else 1) if i else (3 if j else 0)
@@ -52,7 +54,7 @@ def _point_number(i, j, p):
 
 
 def _cells(grid):
-    """Node numbers of each cell as an array [j, i]."""
+    """Returns the node numbers of each cell as an array [j, i]."""
     connectivity, offsets = grid["Connectivity"][()], grid["Offsets"][()]
     for a, b in zip(offsets[:-1], offsets[1:]):
         p = round((b - a) ** 0.5) - 1
@@ -84,7 +86,7 @@ def _check_layout(grid):
 
 
 def _coons(x):
-    """The inner points between the sides of a cell, as if it were a Coons patch."""
+    """Returns the interior points of a Coons patch with the sides of the cell."""
     p = x.shape[0] - 1
     s = (numpy.arange(p + 1) / p)[None, :, None]
     t = s.transpose(1, 0, 2)
@@ -123,7 +125,8 @@ def neighbours_share_the_points_of_their_sides():
     for grid in _grids("run"):
         sides = [tuple(side) for c in _cells(grid) for side in (c[0], c[:, -1], c[-1, ::-1], c[::-1, 0])]
         check(len(set(sides)) == len(sides), "a side that two cells run along the same way")
-        alike = [side for side in sides if side[::-1] in set(sides)]  # the others lie between cells of degree 3 and 4
+        # all other sides are between cells of degree 3 and cells of degree 4
+        alike = [side for side in sides if side[::-1] in set(sides)]
         check(len(alike) >= 0.7 * len(sides), f"only {len(alike)} of {len(sides)} sides have another cell beyond")
 
 

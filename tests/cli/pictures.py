@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# The figures of the package draw what a run wrote, and say in one sentence when they cannot.
+# Tests that the figures of the package draw the results of a run, or report in one sentence why they cannot.
 import pathlib
 import re
 import subprocess
@@ -17,7 +17,7 @@ from tanktread.figures import draw, register, render
 from tanktread.figures.series import unbroken
 from tanktread.interpolation import difference
 
-render.OVERSAMPLING = 1  # a quarter of the time
+render.OVERSAMPLING = 1  # renders surfaces in a quarter of the time
 
 DECK = """
 Tanktread:
@@ -31,7 +31,7 @@ Tanktread:
 
 
 def _command(name, *arguments, code=0):
-    """Runs a command of the package, tanktread-figure unless it is another one, and returns what it prints."""
+    """Runs a command of the package (default: tanktread-figure). Returns its output."""
     result = package(name, *arguments) if name in ("read", "report") else package("figure", name, *arguments)
     check(result.returncode == code and "Traceback" not in result.stderr, name, result.stdout, result.stderr)
     return result.stdout + result.stderr
@@ -55,7 +55,7 @@ def a_run_is_drawn():
 
 
 def options_are_read_as_what_they_choose_from():
-    """A number of a few is one of these numbers, and what is done by default can be switched off."""
+    """An option with a few allowed numbers is read as a number. An option that is on by default can be switched off."""
     of = lambda name, *words: register.parser_of(name).parse_args(["results", *words])
     check(of("channel", "--across", "3").across == 3, "the section across a channel")
     check(of("work").parts and not of("work", "--no-parts").parts, "the parts of the error")
@@ -103,20 +103,22 @@ def pictures_are_without_units():
         close(found.snapshots()[0].volume(), 32 * numpy.pi / 3, 0.05, "volume")
         check(found.label("traction") == label, found.label("traction"))
         traction = numpy.linalg.norm(found.snapshots()[0].scaled(found).fields["traction"], axis=1)
-        close(traction.mean(), {"drop": 2, "body": 1.5}[name], 0.02, name)  # 2 sigma/R, and 3 mu U/(2 R)
+        # exact tractions: 2 sigma/R (drop), 3 mu U/(2 R) (rigid sphere)
+        close(traction.mean(), {"drop": 2, "body": 1.5}[name], 0.02, name)
 
 
 def what_is_hidden_stays_hidden_and_colours_are_those_of_the_bar():
     deck(DECK.replace("shape: sphere", "shape: red cell").replace("final time: 0.2", "final time: 0.001"))
     run("deck.yaml", "--output", "cell", "--quiet")
     shot = tanktread.run("cell").snapshot_at(0)
-    view = draw.view_axes(-85, 15)  # the rim hides a part of the dimple
+    view = draw.view_axes(-85, 15)  # in this view, the rim of the cell hides a part of its dimple
     depth, found, corner, size = render.seen(shot, shot.points @ view[2], view, 100)
     hit = numpy.isfinite(depth)
     check(abs(found[hit][:, 0] * size - depth[hit]).max() < 1e-3, "a value that is not of the place that is seen")
     x = shot.sampled(shot.points, 40).reshape(-1, 3) @ view.T
     column, row = ((x[:, :2] - corner) * size).astype(int).T
-    slope = 3  # pixels of depth within a pixel, where the surface faces the eye by more than 0.3
+    # largest change of depth within one pixel, in pixels, where the cosine of normal and line of sight exceeds 0.3
+    slope = 3
     facing = (shot.sampled(shot.fields["Normals"], 40).reshape(-1, 3) @ view.T)[:, 2] > 0.3
     hidden = depth[column, row] - x[:, 2] * size
     check(hidden[facing].min() > -2 * slope, "a pixel shows what lies behind", hidden[facing].min())

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-# Scenes beside a plane wall: rigid spheres whose forces are known, what does not depend on where the wall is, on ranks and on units, resumed, and what a
-# deck may not ask for.
+# Tests of scenes next to a plane wall: known forces on rigid spheres, independence of the position of the wall, ranks
+# and units, resumed runs, rejected decks.
 # ranks: 2
 import numpy
 

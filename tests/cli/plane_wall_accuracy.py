@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # label: long
-# A sphere beside a plane wall to the digits that inputs/manual/accuracy/plane_wall.md promises, from a gap of 2 to 0.003 radii; how fast a capsule is driven away
-# from far.
+# Tests of the accuracy that inputs/manual/accuracy/plane_wall.md states for a sphere next to a plane wall, for gaps
+# from 2 to 0.003 radii, and of the migration of a capsule far from the wall.
 import numpy
 
 from harness import check, deck, main, run, series

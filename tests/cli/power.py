@@ -88,13 +88,15 @@ Tanktread:
 
 def the_large_pressure_in_a_drop_counts_for_nothing():
     deck(COUETTE, "couette.yaml")
-    run("couette.yaml", "--output", "couette", "--quiet")  # the pressure is a hundred times the viscous stress, and integrals err by 1e-4 of it
+    # the pressure is a hundred times the viscous stress; its integrals have a relative error of 1e-4
+    run("couette.yaml", "--output", "couette", "--quiet")
     lacks = numpy.abs(series("couette", "power_residual"))[1:]
     check(lacks.max() < 1e-3, "the quadrature of a uniform pressure counts as power", lacks)
 
 
 def a_parabolic_flow_does_the_same_work_on_a_rigid_body_as_on_a_very_viscous_drop():
-    """The traction of a rigid body (2.40), its density (2.23) and the velocity of a drop enter different terms of (6.11)."""
+    """The traction of a rigid body (2.40), its double-layer density (2.23) and the velocity of a drop enter different
+    terms of (6.11)."""
     text = """
 Tanktread:
   Flow: {type: parabolic, half width: 2.0, maximum velocity: 2.0}
@@ -148,7 +150,8 @@ def a_mesh_that_has_changed_has_a_velocity_of_its_own():
     run("spindle.yaml", "--output", "spindle", "--quiet")
     points, lacks = series("spindle", "n_control_points"), numpy.abs(series("spindle", "power_residual"))
     check(points[-1] > points[0], "no refinement to look at", points)
-    check(lacks.max() < 1e-3, "a row has the loads of one mesh and the velocity of another", lacks)  # 5e-3 with the velocity of the mesh before
+    # if the velocity of the previous mesh were used: 5e-3
+    check(lacks.max() < 1e-3, "a row has the loads of one mesh and the velocity of another", lacks)
 
 
 def mistakes_are_named():

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# A report is one page that needs no network. In a browser, if there is one, it turns, plays, and shows values and labels with units without an error.
+# Tests that a report is one page that needs no network. If a browser is available, tests that the page can be rotated
+# and played, and shows values and labels with units.
 import base64
 import gzip
 import html

@@ -36,7 +36,7 @@ def _run_file(results):
 
 
 def _same(a, b, tolerance):
-    """Fails the test unless the series and errors of two runs agree, except those of the work."""
+    """Fails the test unless the series and errors of two runs agree. Series that measure work are not compared."""
     import numpy
 
     with _run_file(a) as one, _run_file(b) as other:
@@ -114,7 +114,8 @@ def a_series_that_vanishes_has_no_relative_error():
     deck(DROP.replace("uniaxial extension", "simple shear"))
     run("deck.yaml", "--accuracy", "stresslet_12=1%", "--set", "Accuracy/levels=3", "--quiet", "--output", "plane")
     found = summary("plane")["accuracy"]["requests"][0]
-    check(found["met"] and 0 < found["allowed"] < 1e-7, found)  # 1e-10 of the largest series of this unit, the energy, 251
+    # allowed: 1e-10 of the largest series with this unit, which is the energy, 251
+    check(found["met"] and 0 < found["allowed"] < 1e-7, found)
 
 
 def what_is_not_met_is_said():
@@ -126,7 +127,7 @@ def what_is_not_met_is_said():
 
 
 def points_of_a_branch_have_no_error_of_position():
-    """Point k of two levels lies at two values of the parameter."""
+    """Point k of a branch has different parameter values on two levels, so that positions cannot be compared."""
     import tanktread
 
     deck(BRANCH)
@@ -139,7 +140,7 @@ def points_of_a_branch_have_no_error_of_position():
 def levels_that_a_deck_does_not_allow_are_failed_levels():
     deck(DROP.replace("final time: 1.0", "final time: 0.1") + "  Surface: {elements per side: 3}\n  Adaptation: {enabled: true, largest number of points: 100}\n")
     words = ("--accuracy", "taylor_inertia=5%", "--set", "Accuracy/levels=3", "--quiet", "--output", "few")
-    said = run("deck.yaml", *words, code=1).stderr.splitlines()[-1]  # meshes of 56, 98 and 152 points
+    said = run("deck.yaml", *words, code=1).stderr.splitlines()[-1]  # the levels have meshes of 56, 98 and 152 points
     check("level 2 failed: Adaptation/largest number of points must be above" in said, said)
     check(len(summary("few")["accuracy"]["levels"]) == 2, summary("few")["accuracy"])
     run("deck.yaml", *words, "--overwrite", "--set", "Adaptation/largest number of points=153", "--set", "Adaptation/surface tolerance=1e-9", code=1)
@@ -242,7 +243,7 @@ def two_ranks_agree():
     deck(DROP)
     for ranks in (1, 2):
         run("deck.yaml", "--accuracy", "taylor_inertia=1%", "--quiet", "--output", f"of_{ranks}", ranks=ranks)
-    _same("of_1", "of_2", 1e-9)  # errors are differences of series, which agree to 1e-10
+    _same("of_1", "of_2", 1e-9)  # tolerance: errors are differences of series that agree to 1e-10
 
 
 def resistance_has_errors():

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# The schema of decks knows every key of the manual and accepts every deck that ships; what --new prints is a deck.
+# Tests that the schema of decks contains all keys of the manual and accepts all decks in inputs/, and that --new prints
+# valid decks.
 import json
 import re
 
@@ -13,7 +14,7 @@ def _schema():
 
 
 def _below(schema, path):
-    """The part of the schema for a list; `<name>` stands for any."""
+    """Returns the schema of a section. `<name>` in the path stands for any name."""
     for part in filter(None, path.split("/")):
         schema = schema["properties"].get(part) or schema["additionalProperties"]
     return schema
@@ -43,7 +44,7 @@ def bounds_and_choices_are_those_of_the_rules():
 
 
 def _errors(value, schema, path=""):
-    """What of a deck the schema refuses."""
+    """Yields the errors of a deck according to the schema."""
     if schema in (True, None):
         return
     if "enum" in schema and value not in schema["enum"]:

@@ -27,14 +27,16 @@ def a_spheroid_relaxes_towards_its_stress_free_sphere():
 
 
 def a_shape_is_without_stress_on_its_own_file():
-    """A spheroid whose stress-free shape is its own stretched one starts where the stretched one ends with the spheroid as its."""
+    """If the stress-free shape is read from the surface file of a spheroid, a stretched spheroid has the same energy as
+    if the spheroid itself is the stress-free shape."""
     run(deck(DECK), "--set", "Membrane/stress-free shape=resting", "--set", "Time/final time=0.01", "--output", "own", "--quiet")
     close(series("own", "energy")[0], 0, 1e-12, "energy at rest")
     words = ["--set", "Membrane/stress-free shape=file", "--set", "Membrane/stress-free file=own/surface.iga", "--set", "Time/final time=0.01"]
     run(deck(DECK), *words, "--set", "Particle/initial shape/stretch=[1.2, 1, 1]", "--output", "filed", "--quiet")
     run(deck(DECK), "--set", "Membrane/stress-free shape=resting", "--set", "Time/final time=0.01", "--set",
         "Particle/initial shape/stretch=[1.2, 1, 1]", "--output", "stretched", "--quiet")
-    close(series("filed", "energy")[0] / series("stretched", "energy")[0], 1, 1e-4, "energy")  # what 0.01 has moved, digits of a file
+    # tolerance: motion during the time 0.01, and digits of the file
+    close(series("filed", "energy")[0] / series("stretched", "energy")[0], 1, 1e-4, "energy")
     run("--resume", "filed", "--quiet", "--set", "Time/final time=0.02")
 
 

@@ -102,7 +102,7 @@ def a_mesh_that_adapts_does_what_a_finer_one_does_with_fewer_points():
 
 
 def _pair(n, centers, **more):
-    """Returns the changes that replace the drop of _run by two drops."""
+    """Returns the path of a deck with two drops with n elements per side."""
     drop = {"shape": "sphere", "Membrane": {"law": "surface tension", "capillary number": 0.1}, "Surface": {"elements per side": n},
             "Interface": {"surfactant": {"elasticity number": 0.3, "diffusivity": 0.1}}}
     scene = {"Flow": {"type": "simple shear"}, "Particles": {"defaults": drop, **{k: {"center": c} for k, c in zip("ab", centers)}}}

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# The module tanktread runs decks and evaluates surfaces; a sweep makes its table whatever fails, and goes on where it was broken off.
+# Tests of the module tanktread, which runs decks and evaluates surfaces, and of sweeps: a sweep writes its table even
+# if runs fail, and an interrupted sweep is resumed.
 import csv
 import os
 import pathlib
@@ -61,7 +62,7 @@ def what_stays_in_a_constriction_is_told_from_what_creeps():
 def tumbling_is_told_from_treading_by_shape_and_membrane():
     from tanktread.studies import phases
     t = numpy.linspace(0, 40, 801)
-    shape = 360 * t / 22  # it turns over each eleven, of the sense of the phase
+    shape = 360 * t / 22  # the shape makes half a turn in a time of 11, in the same sense as the phase
     swung = 20 * numpy.sin(t)
 
     def told(inclination, phase):
@@ -242,7 +243,8 @@ def a_column_may_be_the_series_of_a_particle_and_a_mean_is_over_time():
     _sweep("study.yaml", "--jobs", "1")
     row, found = _rows()[0], tanktread.run(next(pathlib.Path("results/study/runs").glob("deck_*"))).series
     close(float(row["upper/area"]), found["upper/area"][-1], 1e-12, "the last value")
-    time, off = found["time"], numpy.diff(found["time"]) / numpy.sqrt(12)  # Gauss points of each interval: exact for the cubics that the mean is of
+    # two Gauss points per interval integrate the interpolating cubics exactly
+    time, off = found["time"], numpy.diff(found["time"]) / numpy.sqrt(12)
     between = [interpolated(time, found["upper/area"], (time[1:] + time[:-1]) / 2 + side * off, order=4) for side in (-1, 1)]
     close(float(row["mean"]), numpy.diff(time) @ (between[0] + between[1]) / 2 / time[-1], 1e-12, "the mean over time")
 
@@ -292,7 +294,8 @@ def a_sweep_that_is_killed_goes_on():
         before = len(list(pathlib.Path("results/study/runs").glob("*/outcome.json"))) if pathlib.Path("results").exists() else 0
         while process.poll() is None and len(list(pathlib.Path("results/study/runs").glob("*/outcome.json"))) < before + 1:
             time.sleep(0.02)
-        os.killpg(process.pid, number)  # the study and its runs, as a queue does; the study tells its runs once more
+        # sends the signal to the study and its runs, as a batch system does; the study sends it to its runs again
+        os.killpg(process.pid, number)
         process.wait()
     kept = {path: path.stat().st_mtime_ns for path in pathlib.Path("results/study/runs").glob("*/outcome.json") if '"code": 0' in path.read_text()}
     check(kept, "nothing was done before")

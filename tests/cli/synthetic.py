@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # label: long
-# Moduli from profiles with noise are unbiased, and scatter by what is stated; the law that made the data is never refused.
+# Tests fits to profiles with noise: the moduli are unbiased, their scatter agrees with the stated errors, and the law
+# of the data is never rejected.
 import os
 import re
 import subprocess
@@ -15,12 +16,13 @@ def moduli_from_noisy_profiles_scatter_by_their_stated_errors():
                             env=os.environ | {"TANKTREAD": str(PROGRAM)})
     check(result.returncode == 0, result.stdout, result.stderr)
     for far in re.findall(r"the emulator is (\S+) of the radius", result.stdout):
-        check(float(far) < 1e-4, f"the emulator is {far} of the radius from runs")  # a fiftieth of the smaller noise
+        check(float(far) < 1e-4, f"the emulator is {far} of the radius from runs")  # 1/50 of the smaller noise
     rows = ROW.findall(result.stdout)
     check(len(rows) == 4, result.stdout)
     for law, noise, bias, error, ratio, told, number, wrong in rows:
         check(abs(float(bias)) < 3.5 * float(error), law, noise, "bias", bias, error)
-        check(0.65 < float(ratio) < 1.4, law, noise, "spread over stated", ratio)  # three standard deviations of a spread from 40 samples
+        # the standard deviation of 40 samples is uncertain by 11 %; the bounds are three times this
+        check(0.65 < float(ratio) < 1.4, law, noise, "spread over stated", ratio)
         check(int(wrong) == 0, law, noise, "another law is preferred", wrong)
     check(int(rows[0][5]) > 0.6 * int(rows[0][6]), "the law is not told at the smaller noise", rows[0])
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # ranks: 2
-# A drop whose interface is viscous: its shape at rest in slow flows, the balance of power, schemes, surfactant, particles beside it, ranks, and what
-# a deck may not ask for.
+# Tests of drops with a viscous interface: steady shapes in slow flows, power balance, schemes, surfactant, several
+# particles, ranks, rejected decks.
 import math
 
 from harness import check, deck, main, refused, run, series

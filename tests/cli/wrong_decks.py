@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-# A mistake in the deck or on the command line is one sentence, exit code 2, and leaves nothing behind.
+# Tests that a mistake in the deck or on the command line gives one sentence and exit code 2, and that no files are
+# left.
 import math
 import os
 import pathlib
