@@ -1,8 +1,8 @@
-// The bare loop of the far sum by every way to 1/sqrt that the processor at hand has, in double and in single precision, beside the program's own far
-// sums: interactions a second, and for the program's the ratio to the fastest way that is exact to rounding, or to the one in single precision, which
-// knows places no better than that.
+// Interactions per second of minimal far-sum loops that compute 1/sqrt in all ways which this processor supports, in double and in single precision,
+// and of the program's far sums. The rate of the program's far sum in double precision is divided by the rate of the fastest loop that is exact to
+// rounding. Its rate in single precision is divided by the rate of the loop in single precision, whose positions are rounded to single precision.
 
-#define INSTRUCTIONS of_this_machine  // this file is compiled for the processor at hand
+#define INSTRUCTIONS of_this_machine  // this file is compiled for the instruction set of this processor
 
 #include <benchmark/benchmark.h>
 
@@ -62,7 +62,7 @@ struct Single {
 };
 #endif
 
-/// 8,192 nodes and 2,048 targets, in blocks as the program's far sum takes them.
+/// 8,192 nodes, and 2,048 targets in blocks of the size that the program's far sum uses.
 template <class Real>
 struct Places {
   static constexpr int n = 8192, blocks = 128;
@@ -96,9 +96,9 @@ void block_sum(int n, const Real* f, const Real* target, Real* u) {
   }
 }
 
-double fastest = 0, fastest_single = 0;  // of those that are exact to rounding; of those in single precision
+double fastest = 0, fastest_single = 0;  // largest rate of the loops that are exact to rounding, and of the loops in single precision
 
-/// Interactions a second of processor time, best of the repetitions, of sum(forces, targets of a block, values).
+/// Returns the interactions per second of processor time of sum(forces, targets of a block, values), the largest of all repetitions.
 template <class Real, class Sum>
 double rate(benchmark::State& state, const Sum& sum) {
   const Places<Real> places;

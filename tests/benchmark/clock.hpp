@@ -3,5 +3,5 @@
 
 #include <ctime>
 
-/// Seconds of processor time: a busy machine does not count.
+/// Returns the seconds of processor time, which do not depend on other processes of the machine.
 inline double now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }

@@ -25,7 +25,7 @@ namespace {
 
 using namespace tanktread;
 
-/// Interactions a second of the bare sum, best of the runs so far: what everything below is held against.
+/// Interactions per second of the minimal far sum, the largest rate of all runs so far. All other benchmarks are compared with this rate.
 double bare_rate = 0;
 
 void bare_far_sum(benchmark::State& state) {
@@ -65,10 +65,11 @@ struct Scene {
   }
 };
 
-/// Two shapes to evaluate in turns: the velocity of the latest one is kept.
+/// Returns two shapes that are evaluated alternately, because the velocity of the shape evaluated last is cached.
 std::array<Net, 2> in_turns(const Net& x) { return {x, Net((1 + 1e-6) * x)}; }
 
-/// Shares of the time of an apply, its far rate over the bare rate, and the whole over its own far sum.
+/// Measures Layer::apply: the time of each part, the rate of its far sum divided by the rate of the minimal far sum, and the total time divided by
+/// the time of the far sum.
 void single_layer(benchmark::State& state) {
   const Scene scene(static_cast<int>(state.range(0)));
   stokes::SingleLayer layer(scene.space, {});
@@ -90,7 +91,7 @@ void single_layer(benchmark::State& state) {
 }
 BENCHMARK(single_layer)->Arg(6)->Arg(12)->Arg(24)->Unit(benchmark::kMillisecond)->Iterations(30);
 
-/// The frozen rows of the Jacobian, relative to one apply at the bare rate.
+/// Measures the assembly of the frozen rows for the Jacobian. Unit: the time of one minimal far sum.
 void assembled_rows(benchmark::State& state) {
   const Scene scene(static_cast<int>(state.range(0)));
   stokes::SingleLayer layer(scene.space, {});
@@ -106,8 +107,8 @@ void assembled_rows(benchmark::State& state) {
 }
 BENCHMARK(assembled_rows)->Arg(6)->Arg(12)->Unit(benchmark::kMillisecond)->Iterations(10);
 
-/// One velocity evaluation of a capsule (4.2) in processor time, best of its repetitions: the whole over its far sum at the bare rate, the
-/// shares of the phases in what the whole took on average, and the tangent over one evaluation.
+/// Measures one velocity evaluation of a capsule (4.2) in processor time, the smallest of all repetitions: the total time divided by the time of the
+/// minimal far sum, the mean fraction of each phase, and the time of the membrane tangent divided by the time of the evaluation.
 void velocity_evaluation(benchmark::State& state) {
   const Scene scene(static_cast<int>(state.range(0)));
   coupling::Ranks ranks;
@@ -139,7 +140,8 @@ void velocity_evaluation(benchmark::State& state) {
 }
 BENCHMARK(velocity_evaluation)->Arg(6)->Arg(12)->Arg(24)->Unit(benchmark::kMillisecond)->Iterations(30);
 
-/// One velocity evaluation under Catmull-Clark over one under G1: the extra pieces at the extraordinary points. In turns, best of each.
+/// Measures the time of a velocity evaluation with the Catmull-Clark rule divided by its time with the G1 rule. Catmull-Clark has more elements at
+/// the extraordinary points. The two are evaluated alternately; the smallest time of each counts.
 void catmull_clark_over_g1(benchmark::State& state) {
   coupling::Ranks ranks;
   Phases phases[2];

@@ -25,15 +25,15 @@ namespace {
 
 using namespace tanktread;
 
-constexpr double asked = 1e-5;  // of the integrals; the default is less
+constexpr double asked = 1e-5;  // tolerance of the integrals, stricter than the default
 
-/// Bytes in use: of the heap, and mapped for large arrays.
+/// Returns the bytes in use: on the heap, and mapped for large arrays.
 double bytes() {
   const auto info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-/// Largest resident set of the process so far, in bytes; `restart` makes it count anew.
+/// Returns the largest resident set of the process so far, in bytes. `restart`: if true, resets this maximum first.
 double peak(bool restart) {
   if (restart) {
     malloc_trim(0);
@@ -47,7 +47,7 @@ double peak(bool restart) {
   return 1024 * kilobytes;
 }
 
-/// Error of the far sum by clusters in the single layer of this load, relative to the largest velocity, at a thousand targets.
+/// Returns the error of the far sum by clusters in the single layer of a load, at about a thousand targets, divided by the largest velocity.
 double far_error(const spline::Space& space, const Net& unstressed, const Net& x, const Net& load) {
   std::vector<int> sample;
   const int step = std::max(1, space.n_points / 1000);
@@ -65,7 +65,7 @@ double far_error(const spline::Space& space, const Net& unstressed, const Net& x
   return (u[1] - u[0]).rowwise().norm().maxCoeff() / u[0].rowwise().norm().maxCoeff();
 }
 
-/// A capsule half-way to its steady shape in shear, near enough.
+/// Measures the velocity evaluation of a capsule whose shape is roughly half-way between a sphere and its steady shape in shear.
 void growth(benchmark::State& state) {
   const spline::TMesh mesh = spline::cube(static_cast<int>(state.range(0)));
   const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
@@ -86,8 +86,8 @@ void growth(benchmark::State& state) {
   const double start = now();
   coupling::Capsule capsule(space, unstressed, unstressed, stokes::AmbientFlow(stokes::FlowOptions()), parameters, ranks, phases);
   const double setup = now() - start;
-  const Net shapes[2] = {x, (1 + 1e-6) * x};              // in turns: the velocity of the latest one is kept
-  benchmark::DoNotOptimize(capsule.velocity(shapes[1]));  // rules of the panels that targets lie on are made and kept
+  const Net shapes[2] = {x, (1 + 1e-6) * x};              // evaluated alternately, because the velocity of the last shape is cached
+  benchmark::DoNotOptimize(capsule.velocity(shapes[1]));  // computes and stores the singular quadrature rules, outside the measured time
   const long long far = capsule.kernel_evaluations().far;
   const Phases first = phases;
   const Phases layer_first = capsule.layer_phases();
@@ -106,7 +106,7 @@ void growth(benchmark::State& state) {
   counter("far interactions", static_cast<double>(far));
   counter("bytes kept", bytes() - before);
   counter("bytes peak", peak(false));
-  const auto split = [&](const Phases& all, const Phases& earlier, const char* prefix) {  // processor time in the proportions of wall clock
+  const auto split = [&](const Phases& all, const Phases& earlier, const char* prefix) {  // divides `best` in the ratio of the wall times
     for (const Phases::Phase& p : all.all()) counter(prefix + p.name + " s", best * (p.seconds - earlier.seconds(p.name)) / wall);
   };
   split(phases, first, "");

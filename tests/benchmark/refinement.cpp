@@ -1,4 +1,5 @@
-// One refinement of a surface of about 1,500 control points, all fields carried over, relative to one velocity evaluation on the same surface.
+// Time of one refinement of a surface with about 1,500 control points, including the transfer of all fields, divided by the time of one velocity
+// evaluation on the same surface.
 
 #include <benchmark/benchmark.h>
 
@@ -23,7 +24,8 @@ using namespace tanktread;
 
 constexpr auto rule = spline::ExtraordinaryRule::catmull_clark;
 
-/// Distinct elements anywhere, cut both ways (1/2), across s (1/4), across t (1/4).
+/// Returns marks on random elements, which may occur more than once. An element is marked along both directions with probability 1/2, along s only
+/// with probability 1/4, and along t only with probability 1/4.
 std::vector<spline::Mark> random_marks(const spline::TMesh& mesh, int count, std::mt19937& generator) {
   const unsigned elements = static_cast<unsigned>(spline::elements(mesh).tiles.size());
   std::vector<spline::Mark> marks;
@@ -34,7 +36,7 @@ std::vector<spline::Mark> random_marks(const spline::TMesh& mesh, int count, std
   return marks;
 }
 
-/// A cube of 10 elements a side, cut at random until it has 1,500 control points.
+/// A cube mesh with 10 elements per side, refined at random until it has 1,500 control points.
 struct Surface {
   std::mt19937 generator{7};
   spline::TMesh mesh;
@@ -59,8 +61,8 @@ struct Surface {
   }
 };
 
-/// Milliseconds of the parts, each the best of the repetitions. What refinement is: cuts and repair of the mesh, the new space, and the
-/// transfer of both surfaces and of three more fields. What the run then sets up anew is not part of it, and shown beside it.
+/// Measures the parts of a refinement in milliseconds, each the smallest of all repetitions: refinement and repair of the mesh, the new space, and
+/// the transfer of both surfaces and three more fields. The set-up of the operators on the new mesh is measured separately.
 void refinement(benchmark::State& state) {
   Surface surface;
   const auto marks = random_marks(surface.mesh, static_cast<int>(state.range(0)), surface.generator);
@@ -72,7 +74,7 @@ void refinement(benchmark::State& state) {
   coupling::Capsule capsule(surface.space, surface.unstressed, surface.unstressed, flow, parameters, ranks, phases);
   const std::vector<const Net*> fields = {&surface.unstressed, &surface.x, &surface.x, &surface.x, &surface.x};
   double mesh = 1e9, space = 1e9, transfer = 1e9, all = 1e9, evaluation = 1e9, setup = 1e9, residual = 0;
-  const Net shapes[2] = {surface.x, (1 + 1e-6) * surface.x};  // in turns: the velocity of the latest one is kept
+  const Net shapes[2] = {surface.x, (1 + 1e-6) * surface.x};  // evaluated alternately, because the velocity of the last shape is cached
   int points = 0, elements = 0, turn = 0;
   for (auto _ : state) {
     const double start = now();

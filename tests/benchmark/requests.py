@@ -64,7 +64,7 @@ class Scene:
         self.directory = folder / name
 
     def run(self, words, settings):
-        """Runs the program and returns how it ended."""
+        """Runs the program. Returns its exit code, last message and times as a dict."""
         sets = [word for key, value in settings.items() for word in ("--set", f"{key}={tanktread.text_of(value)}")]
         return self.study._make([str(self.study.program), *map(str, words), *sets, "--quiet"])
 

@@ -1,4 +1,4 @@
-// One velocity evaluation of a capsule in a tube (602 + 21 x 20 control points) over one of the same capsule without it, in the same run.
+// Time of one velocity evaluation of a capsule in a tube (602 + 21 x 20 control points) divided by the time for the same capsule without the tube.
 
 #include <benchmark/benchmark.h>
 
@@ -41,7 +41,7 @@ struct Capsule {
   double seconds(const stokes::AmbientFlow& flow, coupling::Ranks& ranks, Phases& phases, std::unique_ptr<coupling::Tube> tube,
                  long& iterations) const {
     coupling::Capsule capsule(space, unstressed, x, flow, parameters, ranks, phases, std::move(tube));
-    const Net shapes[2] = {x, (1 + 1e-6) * x};  // in turns: the velocity of the latest one is kept
+    const Net shapes[2] = {x, (1 + 1e-6) * x};  // evaluated alternately, because the velocity of the last shape is cached
     double best = 1e9;
     for (int k = 0; k < 12; ++k) {
       const double start = now();
@@ -53,7 +53,7 @@ struct Capsule {
   }
 };
 
-/// Best of twelve.
+/// Returns the smallest time of twelve calls of action().
 template <class Action>
 double milliseconds(const Action& action) {
   double best = 1e9;

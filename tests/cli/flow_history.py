@@ -66,7 +66,7 @@ def an_intrinsic_viscosity_is_that_of_the_flow_at_its_time():
     for name, prefix in ("only", ""), ("coupled", "ball/"):
         run(f"{name}.yaml", "--output", name, "--quiet")
         found = series(name, prefix + "intrinsic_viscosity")
-        check(abs(found[:-1] - 2.5).max() < 0.01 and numpy.isnan(found[-1]), f"{name}: {found}")  # the coarse mesh; at the end the flow is zero up to rounding
+        check(abs(found[:-1] - 2.5).max() < 0.01 and numpy.isnan(found[-1]), f"{name}: {found}")  # NaN: no flow at the end
 
 
 def a_run_goes_on_with_the_table_that_it_began_with():

@@ -162,7 +162,8 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    // Solves again if tractions on walls need a more accurate velocity. Beside rigid bodies, the loads of deformable particles need a solution here.
+    // Solves the linear system for the velocity again in two cases: if the series of tractions on walls need a more accurate velocity than the step,
+    // and if deformable particles and rigid bodies occur together, because the loads of the deformable particles then follow from this solution.
     const coupling::RigidParticles bodies = capsule_->rigid_at(state.x);
     const bool deforms = std::ranges::any_of(members_, [](const Member& member) { return !member.scene.particle.rigid(); });
     if ((deforms && !bodies.empty()) || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());

@@ -57,7 +57,7 @@ TEST(StrainEnergy, ModuliAreThoseOfSmallStrains) {
   for (const UserLaw& law : {own(neo_hookean), own(skalak, {{"C", 2.5}}), own(fung, {{"k", 0.7}})}) {
     const double e = 1e-5;
     EXPECT_NEAR(energy(law, 1 + e, 1 - e) / (2 * e * e), 1.3 * law.strain_energy->shear_modulus(), 1e-4);  // round-off over e^2
-    EXPECT_NEAR(principal_tensions(law, 1 + e, 1 + e)[0] / (2 * e), law.area_modulus(), 5e-4);             // of the order of e
+    EXPECT_NEAR(principal_tensions(law, 1 + e, 1 + e)[0] / (2 * e), law.area_modulus(), 5e-4);             // truncation error of order e
     EXPECT_NEAR(principal_tensions(law, 1, 1)[0], 0, 1e-15);
     EXPECT_EQ(energy(law, 1, 1), 0);
   }

@@ -166,7 +166,7 @@ TEST(Integrators, EverySolverOfCrankNicolsonFindsTheSameSteps) {
   const double plain = error_at_one(options, 0.02, 2);
   for (const char* solver : {"anderson", "newton-krylov"}) {
     options.nonlinear_solver = solver;
-    options.newton_tolerance = 1e-5;                          // of the tolerance 1e-4
+    options.newton_tolerance = 1e-5;                          // relative to Time/tolerance, which is 1e-4
     EXPECT_NEAR(error_at_one(options, 0.02, 2), plain, 1e-7) << solver;  // fifty steps, each with an error of 1e-9
   }
 }

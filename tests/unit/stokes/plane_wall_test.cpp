@@ -20,7 +20,7 @@ namespace plane_wall_test {
 
 const PlaneWall level(Vec3(0.3, 0.2, -0.4), Vec3(0, 0, 1)), oblique(Vec3(0.1, -0.2, 0.3), Vec3(1, -2, 2));
 
-/// Returns the velocity at x0 due to the images of one node at y with the strength `carried`.
+/// Returns the velocity at x0 due to the images of one node at y. `carried`: source strength of the node.
 Vec3 image(ImageSum::Kind kind, const PlaneWall& wall, const std::vector<double>& carried, const Vec3& y, const Vec3& x0) {
   ImageSum sum(kind, wall, {});
   const std::vector<double> node[3] = {{y[0]}, {y[1]}, {y[2]}};
@@ -93,7 +93,8 @@ TEST(PlaneWall, StressIsThatOfTheKernel) {
   }
 }
 
-/// The wall takes up the whole force if it is parallel to the wall: 8 pi times the force is the integral of the velocity gradient over the wall.
+/// If a point force is parallel to the wall, the force of the fluid on the wall equals this force. The integral of the velocity gradient over the
+/// wall is therefore 8 pi times the force.
 TEST(PlaneWall, TakesTheForce) {
   const Vec3 y = above(level, 0, 0, 0.5);
   constexpr double e = 1e-4;

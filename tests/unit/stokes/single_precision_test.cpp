@@ -57,8 +57,8 @@ double largest_error(const Scene& scene, int power, const double* single, const 
   return largest;
 }
 
-// The bounds are 4 rounding errors of single precision, and 16 for a stresslet, which contains the fifth power of a rounded value. Without the stored
-// remainders of the positions the errors are a hundred times larger.
+// The bounds are 4 rounding errors of single precision, and 16 for a stresslet, which contains the fifth power of a rounded value. The kernel
+// stores the rounding errors of the positions in addition to the rounded positions; without them, the errors are a hundred times larger.
 TEST(SinglePrecision, ErrsByRoundingHoweverCloseANodeIsAndInAnyUnit) {
   const double rounding = 0x1p-24;
   for (const double unit : {1e-9, 1e-6, 1., 1e9}) {

@@ -80,8 +80,8 @@ TEST(Resolution, AFieldThatVariesLikeThePlaceHasNoErrorAtExtraordinaryPoints) {
       most = std::max({most, element[0].errors.*which, element[1].errors.*which});
     return most;
   };
-  EXPECT_LT(largest(16, &Errors::fields), largest(8, &Errors::fields) / 6);  // by about 8 at an extraordinary point
-  EXPECT_GT(largest(16, &Errors::load), largest(8, &Errors::load) / 3);      // with the fourth differences along the surface
+  EXPECT_LT(largest(16, &Errors::fields), largest(8, &Errors::fields) / 6);  // expected factor at an extraordinary point: 8
+  EXPECT_GT(largest(16, &Errors::load), largest(8, &Errors::load) / 3);      // estimate without the correction for the parametrisation
 }
 
 TEST(Resolution, WhatMergingWouldLeaveIsTheErrorOfTheMeshBefore) {

@@ -204,7 +204,7 @@ TEST(Capsule, ViscosityRatioChangesTheVelocityAsTheBoundaryIntegralEquationSays)
     }
 }
 
-// A drop in a pure rotation: a rigid motion carries no stress, whatever the viscosity inside.
+// A drop in a rigidly rotating fluid. A rigid motion causes no viscous stress, so the velocity does not depend on the viscosity ratio.
 TEST(Capsule, RigidMotionDoesNotFeelTheViscosityInside) {
   Fixture f("linear");
   Mat3 spin = Mat3::Zero();

@@ -278,7 +278,7 @@ TEST(RigidTractions, AFarDropChangesNothing) {
   EXPECT_LT((moved.motion(0).velocity - alone.motion(0).velocity).norm() + (moved.motion(2).velocity - alone.motion(1).velocity).norm(), 1e-6);
 }
 
-/// Velocity and stresslet of a body beside a drop, in a flow.
+/// Motion and stresslet of a rigid body next to a drop in a linear flow, and the velocity of the drop.
 struct BesideDrop {
   Eigen::Matrix<double, 12, 1> of_body;
   Vec3 of_drop;
