@@ -81,8 +81,8 @@ def one_particle_is_a_list_of_one():
 
 def gaps_reach_beyond_the_nearest_cells():
     """The long axis of the body points to its image one cell along x1 and two cells along x3. Up to the discretisation
-    error at the tips, the tips have the distance |[2, 0, 4]| - 2 x 2.1. The gap to the images in the nearest cells is
-    half as large again."""
+    error at the tips, the tips have the distance |[2, 0, 4]| - 2 x 2.1 = 0.272. The smallest gap to an image in an
+    adjacent cell is 0.532."""
     text = """
 Tanktread:
   Flow: {type: quiescent}
