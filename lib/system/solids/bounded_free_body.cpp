@@ -8,7 +8,7 @@
 namespace tanktread::coupling {
 
 BoundedFreeBody::BoundedFreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
-                               double viscosity, const Rigid& driven)
+                                 double viscosity, const Rigid& driven)
     : LoneRigidBody(surface, centre, radius, flow, driven), body_(body), viscosity_(viscosity) {
   if (body.tube()) modes_.emplace(body, surface, centre, false);
 }

@@ -245,6 +245,11 @@ SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {
   return body;
 }
 
+stokes::Evaluations RigidTractions::kernel_evaluations() const {
+  const stokes::Evaluations own = layer_.evaluations() + residual_.evaluations();
+  return walls_.tube ? own + walls_.tube->kernel_evaluations() : own;
+}
+
 bool RigidTractions::inside(const Net& x) const {
   return (!walls_.tube || walls_.tube->gap() > 0) && stokes::contains(walls_.medium.get(), collocation_ * x);
 }

@@ -126,7 +126,7 @@ class RigidTractions {
   int solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
   void forget_recycled() const;  ///< discards the data of earlier solves that the iterative solvers of this equation and of the tube's wall keep
   Tube* tube() const { return walls_.tube; }
-  stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + residual_.evaluations(); }
+  stokes::Evaluations kernel_evaluations() const;  ///< of the layers of the bodies and of the tube
 
  private:
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
