@@ -66,9 +66,8 @@ double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(
 
 bool sums_by_tree(double nodes, const quadrature::Options& options) {
   if (options.far_sum != "auto") return options.far_sum == "tree";
-  if (options.rule == "desingularised")
-    return false;  // This rule subtracts the singularity by two identities (see Layer), which must be summed over
-                   // all pairs of nodes and targets. Clusters would save little.
+  if (options.rule == "desingularised") return false;  // This rule subtracts the singularity by two identities (see Layer), which must be summed over
+                                                       // all pairs of nodes and targets. Clusters would save little.
   return nodes > nodes_worth_a_tree(options.tolerance);
 }
 

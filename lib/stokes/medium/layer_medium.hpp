@@ -1,5 +1,5 @@
 #pragma once
-// What the surroundings of the surfaces, such as a wall or periodic images, change in a layer.
+// Contribution of the surroundings of the surfaces, such as a wall or periodic images, to a layer.
 
 #include <span>
 #include <vector>
