@@ -13,7 +13,7 @@
 #include "deck/words.hpp"
 #include "scene/searches.hpp"
 #include "scene/tube.hpp"
-#include "surface/channel.hpp"
+#include "surface/walls/channel.hpp"
 #include "system/ranks.hpp"
 #include "system/solvers/frozen_operator.hpp"
 

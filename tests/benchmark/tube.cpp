@@ -10,7 +10,7 @@
 #include "spline/extraction.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/shapes.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/capsule.hpp"
 #include "system/ranks.hpp"
 #include "tests/benchmark/clock.hpp"

@@ -14,7 +14,7 @@
 #include "stokes/flow/duct_flow.hpp"
 #include "stokes/kernels/kernels.hpp"
 #include "surface/symmetry.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/channel_flow.hpp"
 #include "system/solids/particle_sources.hpp"

@@ -10,7 +10,7 @@
 #include "spline/t_mesh.hpp"
 #include "surface/closest_points.hpp"
 #include "surface/shapes.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 
 namespace tanktread::surface {
 namespace {

@@ -9,7 +9,7 @@
 #include "membrane/laws.hpp"
 #include "spline/extraction.hpp"
 #include "surface/shapes.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/capsule.hpp"
 
 namespace tanktread::coupling {
