@@ -254,7 +254,7 @@ class Run {
     for (double next = scene_.next_snapshot(time); next <= state_.time && next > time; next = scene_.next_snapshot(time)) time = next;
     const motion::DenseOutput dense(before, state_);
     motion::State& state = pictured_.emplace().state;
-    state.time = time, state.x = dense.place(time), state.history = {dense.slope(time)};
+    state.time = time, state.x = dense.shape(time), state.history = {dense.slope(time)};
   }
 
   void record() {

@@ -109,7 +109,7 @@ void LayerSurface::set_symmetry(const surface::Symmetry& symmetry) {
   placed_.resize(0, 3);
 }
 
-bool LayerSurface::place(const Net& x) {
+bool LayerSurface::set_shape(const Net& x) {
   if (x.rows() == placed_.rows() && x == placed_) return false;
   placed_ = x;
   panels.bezier(x, bezier);
@@ -130,7 +130,7 @@ const std::vector<int>& LayerSurface::near(const Vec3& target, std::span<const S
   return near_;
 }
 
-void LayerSurface::place(TreeSum& tree, std::span<const Vec3> targets) const {
+void LayerSurface::set_sources_of(TreeSum& tree, std::span<const Vec3> targets) const {
   std::vector<int> starts{0};
   std::vector<double> place[3];
   for (const int e : fundamental_.element) {
@@ -138,7 +138,7 @@ void LayerSurface::place(TreeSum& tree, std::span<const Vec3> targets) const {
     for (int c = 0; c < 3; ++c) place[c].insert(place[c].end(), node[c].begin() + first, node[c].begin() + last);
     starts.push_back(starts.back() + last - first);
   }
-  tree.place(place, starts, targets, images_.reflections);
+  tree.set_sources(place, starts, targets, images_.reflections);
 }
 
 }  // namespace tanktread::stokes

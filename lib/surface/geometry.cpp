@@ -44,7 +44,7 @@ Point point(const spline::Space& space, const Net& net, const spline::Site& site
 }
 
 Vec3 value(const spline::Space& space, const Net& net, const spline::Site& site) {
-  return place(ElementPoints(space, net, site.element).patch(), site.s, site.t);
+  return position(ElementPoints(space, net, site.element).patch(), site.s, site.t);
 }
 
 double mean_curvature(const spline::Space& space, const Net& net, const spline::Site& site) {

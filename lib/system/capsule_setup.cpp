@@ -13,7 +13,7 @@ namespace {
 /// Returns the parameters with the space and the block of rows of every particle filled in, and with the trivial symmetry if none is set.
 CapsuleParameters completed(CapsuleParameters parameters, const spline::Space& space) {
   if (parameters.particles.size() == 1) parameters.particles.front().space = &space;
-  place(parameters.particles);
+  set_blocks(parameters.particles);
   for (Particle& one : parameters.particles)
     one.by_traction = one.rigid && parameters.solvers.rigid_bodies == "first kind";
   if (parameters.symmetry.fundamental().empty()) parameters.symmetry = surface::Symmetry(space.n_points);

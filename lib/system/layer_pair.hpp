@@ -22,7 +22,7 @@ class LayerPair {
   void repeat(const stokes::PeriodicCell& cell);
 
   /// Sets the control net x of all particles for both layers.
-  void place(const Net& x);
+  void set_shape(const Net& x);
 
   /// Computes rows `own` of D v - A f/mu at the points, with the control values v of a velocity and f of a load, and the viscosity mu. `u`: shape
   /// (number of points, 3).

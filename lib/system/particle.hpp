@@ -53,7 +53,7 @@ struct CellShift {
 };
 
 /// Sets the block of each particle: its rows in nets that stack all particles in this order.
-void place(std::span<Particle> particles);
+void set_blocks(std::span<Particle> particles);
 
 /// Returns the distinct materials of the particles and, if there are several, the index of the material of each element.
 membrane::Materials materials(std::span<const Particle> particles);

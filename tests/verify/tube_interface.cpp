@@ -29,7 +29,7 @@ Interface interface(const Sphere& sphere, const Duct& duct, double ratio) {
   parameters.quadrature.tolerance = 1e-7;
   coupling::Tube tube(duct.wall, *duct.flow, sphere.space, parameters, phases);
   tube.particles().set_reference(sphere.net);
-  tube.place(sphere.net);
+  tube.set_shape(sphere.net);
 
   const Eigen::Index n = sphere.net.rows();
   std::vector<int> all(static_cast<std::size_t>(n));

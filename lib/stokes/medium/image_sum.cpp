@@ -16,7 +16,7 @@ void ImageSum::share(int part, int parts) {
   placed_ = false;
 }
 
-void ImageSum::place(const std::vector<double> (&node)[3]) {
+void ImageSum::set_sources(const std::vector<double> (&node)[3]) {
   for (auto& component : node_) component.resize(node[0].size());
   for (std::size_t k = 0; k < node[0].size(); ++k) {
     const Vec3 x = wall_.in_axes({node[0][k], node[1][k], node[2][k]});
@@ -32,7 +32,7 @@ bool ImageSum::want(std::vector<Vec3> targets, std::vector<int> wanted) {
   if (!tree_) return true;
   std::vector<Vec3> at;
   for (const Vec3& x : targets_) at.push_back(below(x));
-  tree_->place(node_, indices(node_[0].size() + 1), at);
+  tree_->set_sources(node_, indices(node_[0].size() + 1), at);
   tree_->want(wanted_);
   return true;
 }

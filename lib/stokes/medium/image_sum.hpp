@@ -27,10 +27,10 @@ class ImageSum {
   void share(int part, int parts);
 
   /// Sets the positions of the nodes.
-  void place(const std::vector<double> (&node)[3]);
+  void set_sources(const std::vector<double> (&node)[3]);
 
   /// Sets all targets, and the indices of the targets (`wanted`) at which sum() returns the sums. Returns true if the targets, the indices or the
-  /// nodes set by place() have changed since the last call.
+  /// nodes set by set_sources() have changed since the last call.
   bool want(std::vector<Vec3> targets, std::vector<int> wanted);
 
   /// Returns the sums at the targets selected by want(), one row per target, in the order of `wanted`. `carried`: source strengths of the nodes, with

@@ -48,13 +48,13 @@ void reflect(ChebyshevBox& box, const surface::Reflection& image) {
 TreeSum::TreeSum(double tolerance, Precision precision)
     : precision_(precision), sources_(allowance * tolerance, source_leaf, 1), target_tree_(allowance * tolerance, target_leaf, far_block) {}
 
-void TreeSum::place(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
+void TreeSum::set_sources(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
                     std::span<const surface::Reflection> reflections) {
-  sources_.place(x, starts);
+  sources_.set_sources(x, starts);
   std::vector<double> at[3];
   for (int c = 0; c < 3; ++c)
     for (const Vec3& target : targets) at[c].push_back(target[c]);
-  target_tree_.place(at, indices(targets.size() + 1));
+  target_tree_.set_sources(at, indices(targets.size() + 1));
   const Clusters& tree = target_tree_;
 
   const int n = static_cast<int>(targets.size()), n_clusters = static_cast<int>(tree.all().size());

@@ -25,11 +25,11 @@ class TreeSum {
   /// Sets the positions x of the nodes, and all n targets. The nodes starts[g] .. starts[g + 1] - 1 (group g) always stay in the same cluster. The
   /// sums have n rows for the targets, followed by n rows for each entry of `reflections`: row i + n k belongs to target i reflected by reflections[k
   /// - 1]. The clusters of reflected targets are the reflections of the clusters of targets.
-  void place(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
+  void set_sources(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
              std::span<const surface::Reflection> reflections = {});
 
-  /// Sets the lattice vectors by which the sources are displaced; include 0 for the sources themselves. Must be called before place(). If there are
-  /// other lattice vectors than 0, place() must be called without `reflections`.
+  /// Sets the lattice vectors by which the sources are displaced; include 0 for the sources themselves. Must be called before set_sources(). If there are
+  /// other lattice vectors than 0, set_sources() must be called without `reflections`.
   void repeat(std::vector<Vec3> images) { images_ = std::move(images); }
 
   /// Sets the rows that later sums compute. A row does not depend on which other rows are computed.

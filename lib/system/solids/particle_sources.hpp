@@ -28,7 +28,7 @@ struct SourceTargets {
 ///
 /// with the single layer G_C of the particles divided by 8 pi. LayerPair is the counterpart for points on the particles.
 ///
-/// Order of calls: set() after construction, or set_reference() and set_contrasts(); place() for each shape; then add_velocity() for any f and v. If
+/// Order of calls: set() after construction, or set_reference() and set_contrasts(); set_shape() for each shape; then add_velocity() for any f and v. If
 /// several f and v have equal targets, call prepared() once for each shape and pass its result. Nets of particles have one row per control point.
 /// Uses no MPI.
 class ParticleSources {
@@ -46,7 +46,7 @@ class ParticleSources {
   void set(const Net& unstressed, std::span<const Particle> particles);  ///< sets the reference and the contrasts of these particles
 
   /// Sets the control net x of the particles.
-  void place(const Net& x);
+  void set_shape(const Net& x);
 
   /// Prepares `rows` of the targets at the points `at`, for the current shape.
   SourceTargets prepared(const Net& at, std::span<const int> rows, int first_image_row = std::numeric_limits<int>::max());

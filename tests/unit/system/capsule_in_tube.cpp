@@ -108,7 +108,7 @@ TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
 
     EXPECT_EQ(fresh.capsule->velocity(fresh.x), v);
     const Net f = fresh.capsule->evaluate(fresh.x)->load();
-    fresh.capsule->tube()->place(fresh.x);
+    fresh.capsule->tube()->set_shape(fresh.x);
     const Tube::Response again = fresh.capsule->tube()->respond(f, v);
     EXPECT_EQ(response.wall_traction, again.wall_traction);
     EXPECT_EQ(response.pressure_drop, again.pressure_drop);
