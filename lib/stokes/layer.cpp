@@ -154,7 +154,10 @@ void Layer::place_tree(const LayerTargets& targets) {
   if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;
   tree_at_ = std::move(at);
   tree_rows_.assign(targets.far_rows.begin(), targets.far_rows.end());
-  medium_->wraps() ? tree_->set_sources(medium_->nodes(sources_), indices(n_nodes() + 1), tree_at_) : sources_.surface.set_sources_of(*tree_, tree_at_);
+  if (medium_->wraps())
+    tree_->set_sources(medium_->nodes(sources_), indices(n_nodes() + 1), tree_at_);
+  else
+    sources_.surface.set_sources_of(*tree_, tree_at_);
   std::vector<int> wanted;
   const std::size_t reflections = medium_->wraps() ? 0 : sources_.surface.reflections().size();
   for (std::size_t g = 0; g <= reflections; ++g)

@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces that carry the density of a layer: quadrature weights and densities at their nodes, and integrals over one of their panels.
+// Surfaces with the density of a layer: quadrature weights and densities at their nodes, and integrals over one of their panels.
 
 #include <optional>
 #include <span>
@@ -25,8 +25,8 @@ enum class Measure { reference, current, by_element };
 using NodeVectors = std::vector<double>[3];
 
 /// Surfaces with the density of a single or double layer, in free space: the far nodes with their weights, and the integrals of the free-space kernel
-/// over one panel. The order of calls is set_reference() (if a measure needs it), set_shape(), set_density(), then the sums and integrals. A Layer adds
-/// the panels up; a LayerMedium adds what the boundaries of the fluid change.
+/// over one panel. The order of calls is set_reference() (if a measure needs it), set_shape(), set_density(), then the sums and integrals. A Layer
+/// adds the panels up; a LayerMedium adds what the boundaries of the fluid change.
 class LayerSources {
  public:
   /// Arguments as for Layer.

@@ -123,7 +123,7 @@ std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at
 std::vector<Crossing> crossings(const Patch& patch, const Vec3& centre) {
   std::vector<Crossing> result;
   Grid<double> above = sample(patch, 1);
-  const double in_plane = 1e-13 * (position(patch, 0, 0) - centre).norm();  // sampled points nearer to the plane than this count as points of the plane
+  const double in_plane = 1e-13 * (position(patch, 0, 0) - centre).norm();  // sampled points nearer to the plane count as points of the plane
   for (auto& line : above)
     for (double& height : line)
       if (height -= centre[1]; std::abs(height) < in_plane) height = 0;

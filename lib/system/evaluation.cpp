@@ -18,6 +18,12 @@ void Evaluation::solve(double error) {
   known_ = std::move(known);
 }
 
+void Evaluation::solve_again() {
+  known_ = velocity_;
+  solved_ = false;
+  solve(error_);
+}
+
 void Evaluation::require_solution() {
   if (!solved_) solve();
 }

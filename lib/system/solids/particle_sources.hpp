@@ -28,8 +28,8 @@ struct SourceTargets {
 ///
 /// with the single layer G_C of the particles divided by 8 pi. LayerPair is the counterpart for points on the particles.
 ///
-/// Order of calls: set() after construction, or set_reference() and set_contrasts(); set_shape() for each shape; then add_velocity() for any f and v. If
-/// several f and v have equal targets, call prepared() once for each shape and pass its result. Nets of particles have one row per control point.
+/// Order of calls: set() after construction, or set_reference() and set_contrasts(); set_shape() for each shape; then add_velocity() for any f and v.
+/// If several f and v have equal targets, call prepared() once for each shape and pass its result. Nets of particles have one row per control point.
 /// Uses no MPI.
 class ParticleSources {
  public:

@@ -181,6 +181,7 @@ Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd&
 void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
                            std::optional<Surroundings> around) {
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
+  ++n_solves_;
   set_shape(x, centres, std::move(around));
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
   const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);

@@ -78,13 +78,13 @@ class RigidTractions {
     std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
   };
 
-  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, call Tube::set_shape(x) before. `around`: interactions
-  /// with deformable particles and with images on a lattice; not set if there are neither. Collective.
+  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, call Tube::set_shape(x) before. `around`:
+  /// interactions with deformable particles and with images on a lattice; not set if there are neither. Collective.
   void set_shape(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
 
   /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles at the net x. `driven`: prescribed force
-  /// and torque, or prescribed motion, of each body. `flow`: ambient flow. `centres`, `around`: as for set_shape(). Results are kept until the next call.
-  /// Collective.
+  /// and torque, or prescribed motion, of each body. `flow`: ambient flow. `centres`, `around`: as for set_shape(). Results are kept until the next
+  /// call. Collective.
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
              std::optional<Surroundings> around = {});
 
@@ -110,6 +110,9 @@ class RigidTractions {
 
   /// Returns the results for the bodies in the order of the particles. Their moments lack the collocation-error correction that moment() adds.
   const std::vector<SolvedBody>& bodies() const { return bodies_; }
+
+  /// Returns the number of calls of solve() so far, which shows whether the results are still those of an earlier call.
+  int n_solves() const { return n_solves_; }
 
   /// Returns int f r dG of body p for the latest solve. Unless there is a tube, its symmetric traceless part is corrected for the collocation error.
   /// This takes five additional solves, one for each unit strain. Collective.
@@ -145,6 +148,7 @@ class RigidTractions {
   Eigen::SparseMatrix<double> collocation_;  // collocation matrix R
   membrane::MassMatrix mass_;
   bool repeats_ = false;
+  int n_solves_ = 0;
   Krylov krylov_;
   double tolerance_;
   std::optional<Surroundings> around_;  // surroundings passed to set_shape() last

@@ -20,14 +20,14 @@ namespace plane_wall_test {
 
 const PlaneWall level(Vec3(0.3, 0.2, -0.4), Vec3(0, 0, 1)), oblique(Vec3(0.1, -0.2, 0.3), Vec3(1, -2, 2));
 
-/// Returns the velocity at x0 due to the images of one node at y with the strength `carried`.
-Vec3 image(ImageSum::Kind kind, const PlaneWall& wall, const std::vector<double>& carried, const Vec3& y, const Vec3& x0) {
+/// Returns the velocity at x0 due to the images of one node at y with the strengths `strengths`.
+Vec3 image(ImageSum::Kind kind, const PlaneWall& wall, const std::vector<double>& strengths, const Vec3& y, const Vec3& x0) {
   ImageSum sum(kind, wall, {});
   const std::vector<double> node[3] = {{y[0]}, {y[1]}, {y[2]}};
   sum.set_sources(node);
   sum.want({x0}, {0});
   std::vector<std::vector<double>> each;
-  for (const double q : carried) each.push_back({q});
+  for (const double q : strengths) each.push_back({q});
   return sum.sum(each).row(0).transpose();
 }
 
