@@ -153,7 +153,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.loads = loads(own, body, all.wall.get());
     check_periods(own, particle.loads);
     particle.radius = body.radius;
-    if (own.particle.rigid()) particle.rigid = rigid(own, body);
+    if (own.particle.rigid()) particle.rigid = rigid(own, body), particle.by_traction = scene.by_tractions();
     particle.interface_motion = own.interface_motion();
     const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);
     particle.interface_speed = own.interface.relaxation * (own.flow.type == "duct" ? own.speed() : rate * body.radius);

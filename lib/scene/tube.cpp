@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/words.hpp"
+#include "scene/memory.hpp"
 #include "surface/clearance.hpp"
 #include "surface/closest_points.hpp"
 #include "surface/geometry.hpp"

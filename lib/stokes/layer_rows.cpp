@@ -263,11 +263,11 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
     const int spare = static_cast<int>(wanted.size());
     row_of_point.assign(static_cast<std::size_t>(sources_.surface.n_points), spare);
     for (int k = 0; k < spare; ++k) row_of_point[wanted[k]] = k;
-    std::vector<int> carriers;
-    for (const int point : wanted) carriers.insert(carriers.end(), panels_of[point].begin(), panels_of[point].end());
-    sort_and_drop_repeated(carriers);
+    std::vector<int> with_wanted;
+    for (const int point : wanted) with_wanted.insert(with_wanted.end(), panels_of[point].begin(), panels_of[point].end());
+    sort_and_drop_repeated(with_wanted);
     rows.basis.clear(panels);
-    for (const int e : carriers) rows.basis.add(panels, e, row_of_point, spare);
+    for (const int e : with_wanted) rows.basis.add(panels, e, row_of_point, spare);
     rows.add(some, spare);
     for (std::size_t l = 0; l < some.size(); ++l)
       for (std::size_t j = near.first[first + l]; j < near.first[first + l + 1]; ++j)

@@ -194,8 +194,8 @@ TEST(RigidParticles, StayAsTheyAre) {
 }
 
 struct ByTractions : Bodies {
-  ByTractions(const std::vector<One>& bodies, int n, const Mat3& gradient) : Bodies(bodies, n, gradient) {
-    parameters.solvers.rigid_bodies = "first kind";
+  ByTractions(const std::vector<One>& bodies, int n, const Mat3& gradient, bool by_tractions = true) : Bodies(bodies, n, gradient) {
+    for (Particle& one : parameters.particles) one.by_traction = one.rigid && by_tractions;
   }
 };
 
@@ -286,9 +286,8 @@ struct BesideDrop {
   BesideDrop(bool by_tractions, int n, double viscosity_ratio) {
     const Rigid pulled{false, {}, Vec3(3, -2, 1), Vec3(1, 0, -1)};
     ByTractions scene({{Vec3(0, 0, 2), Vec3(1, 1.1, 0.9), std::nullopt, viscosity_ratio, 6}, {Vec3(2.4, 0.2, 2.3), Vec3(1, 0.9, 1.1), pulled}}, n,
-                      some_gradient());
+                      some_gradient(), by_tractions);
     scene.parameters.quadrature.tolerance = 1e-6, scene.parameters.solvers.tolerance = 1e-8;
-    if (!by_tractions) scene.parameters.solvers.rigid_bodies = "second kind";
     Capsule system = scene.system();
     const auto found = system.evaluate(scene.rest);
     const RigidMotion motion = found->rigid().motion(1);
