@@ -16,7 +16,8 @@ ParticleSources::ParticleSources(const spline::Space& space, double viscosity, c
       viscosity_(viscosity),
       quadrature_(quadrature),
       how_(how),
-      collocation_(collocation_matrix(space)) {
+      collocation_(collocation_matrix(space)),
+      contrasts_(Eigen::VectorXd::Zero(space.n_points)) {
   if (cell) cell_ = *cell, single_layer.repeat(*cell_, how_);
 }
 

@@ -41,8 +41,9 @@ class ParticleSources {
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
   /// Sets the viscosity contrast at each control point: 1 - lambda of a deformable particle. The contrast of a rigid body is 0 if its unknown is the
-  /// traction (2.40). It is -1 if the unknown is the density w of (2.23), which then takes the place of v.
+  /// traction (2.40). It is -1 if the unknown is the density w of (2.23), which then takes the place of v. All contrasts are 0 before the first call.
   void set_contrasts(const Eigen::VectorXd& contrasts);
+  void set_contrasts(double equal) { set_contrasts(Eigen::VectorXd::Constant(space_.n_points, equal)); }
   void set(const Net& unstressed, std::span<const Particle> particles);  ///< sets the reference and the contrasts of these particles
 
   /// Sets the control net x of the particles.

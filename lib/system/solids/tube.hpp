@@ -26,7 +26,6 @@ struct BetweenSites;
 
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
-  double viscosity_ratio = 1;        ///< lambda, if equal for all particles; otherwise see particles()
   surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; Symmetry() if there is none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
@@ -70,7 +69,7 @@ class Tube {
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
-  /// Returns the particles as sources of flow. Their unstressed net must be set before set_shape().
+  /// Returns the particles as sources of flow. Their unstressed net, and their contrasts if they are not 0, must be set before set_shape().
   ParticleSources& particles();
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: x1 coordinate of the origin of the frame of

@@ -62,7 +62,6 @@ struct Confined {
       parameters.particles.front().interface_speed = 1;
     }
     in_tube.viscosity = 1.3;
-    in_tube.viscosity_ratio = viscosity_ratio;
     capsule = std::make_unique<Capsule>(space, unstressed, unstressed, stokes::AmbientFlow(flow, duct), parameters, ranks, phases,
                                         std::make_unique<Tube>(*wall, *duct, space, in_tube, phases));
   }

@@ -46,10 +46,10 @@ struct Fixture {
     options.azimuthal_elements = 12, options.axial_elements = 10;
     flow = std::make_shared<stokes::DuctFlow>(options, viscosity, 1.3);
     TubeParameters parameters;
-    parameters.viscosity = viscosity, parameters.viscosity_ratio = ratio;
+    parameters.viscosity = viscosity;
     parameters.quadrature.tolerance = 1e-6;
     tube = std::make_unique<Tube>(surface::tube_wall(flow->outline(), options, 2 * pi), *flow, space, parameters, phases);
-    tube->particles().set_reference(x);
+    tube->particles().set_reference(x), tube->particles().set_contrasts(1 - ratio);
     tube->set_shape(x);
   }
 };
@@ -124,7 +124,7 @@ TEST(Tube, ServesAnotherMeshOfTheParticle) {
   const spline::Space space = spline::space(finer, spline::ExtraordinaryRule::g1);
   const Net x = surface::resting_shape(space, finer, s.shape);
   Tube other(*s.tube, space);
-  other.particles().set_reference(x);
+  other.particles().set_reference(x), other.particles().set_contrasts(1 - 5);
   other.set_shape(x);
   const auto work = [](Tube& tube, const Net& net) {  // for a constant load and a rigid velocity; independent of the mesh
     const Net load = Eigen::RowVector3d(1, 0.5, 0).replicate(net.rows(), 1);
