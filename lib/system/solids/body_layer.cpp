@@ -16,7 +16,7 @@ Flat flat(const Net& net) { return {net.data(), net.size()}; }
 
 std::vector<Particle> without_others(std::span<const Particle> bodies) {
   std::vector<Particle> placed(bodies.begin(), bodies.end());
-  set_shape(placed);
+  set_blocks(placed);
   return placed;
 }
 
