@@ -229,6 +229,19 @@ TEST(RigidTractions, PairsInStrainMoveAndResistAsTheyShould) {
   EXPECT_NEAR(system.evaluate(free.rest)->stresslet()(0, 0) / (20 * pi * viscosity / 3), 1.17172019, 3e-5);  // 1.8e-4 without the correction
 }
 
+TEST(RigidTractions, AStressletIsThatOfItsEvaluationAfterAnotherShapeWasSolved) {
+  ByTractions pair({{Vec3::Zero(), Vec3::Ones(), Rigid{}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}}, 3, some_gradient());
+  pair.parameters.quadrature.tolerance = 1e-5;
+  Capsule system = pair.system();
+  const auto here = system.evaluate(pair.rest);
+  const Mat3 stresslet = here->stresslet(1);
+  Net apart = pair.rest;
+  apart.bottomRows(apart.rows() / 2).rowwise() += Eigen::RowVector3d(0, 2, 0);
+  const Mat3 there = system.evaluate(apart)->stresslet(1);
+  EXPECT_GT((there - stresslet).norm(), 1e-2 * stresslet.norm());
+  EXPECT_LT((here->stresslet(1) - stresslet).norm(), 1e-12 * stresslet.norm());
+}
+
 TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
   const Vec3 away(0.5, 0.4, 2.6);
   const Rigid told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
