@@ -57,7 +57,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   const RigidSolution solution = rigid_solution(scene, body, tractions, phases);
   stop_where_told();
   const double seconds = ranks.seconds_since(start);
-  const stokes::Evaluations kernel = ranks.of_all(tractions.kernel_evaluations() + (around ? around->kernel_evaluations() : stokes::Evaluations()));
+  const stokes::Evaluations kernel = ranks.of_all(tractions.kernel_evaluations());
   Columns row;
   ProgressRow now{.wall_seconds = seconds};
   now.counts.solver_iterations = solution.iterations;

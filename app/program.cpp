@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -21,6 +20,7 @@
 #include "app/runs.hpp"
 #include "accuracy/ladder.hpp"
 #include "base/errors.hpp"
+#include "base/timing.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
@@ -238,7 +238,6 @@ RunRequest run_request(const Arguments& arguments, const std::string& deck, cons
 /// Runs the deck on finer and finer levels until the errors requested by the section Accuracy are reached. With `--check`, only prints the predicted
 /// errors and levels. Returns the exit code.
 int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, const Registry& registry, bool speaks) {
-  const auto start = std::chrono::steady_clock::now();
   const RunRequest whole = run_request(arguments, deck.effective(), registry);
   if (!arguments.check) check_vacant(whole);
   accuracy::Task task{scene.accuracy, scene.expect, deck.values(), deck.effective(), whole.output, whole.resume, whole.overwrite, whole.quiet,
@@ -253,15 +252,16 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
     prepare(level, arguments, of_level);
     return level.effective();
   };
-  program.run = [&](const std::string& text, const std::filesystem::path& directory, bool resume, std::optional<double> limit) {
+  program.run = [&, start = Phases::Clock::now()](const std::string& text, const auto& directory, bool resume, std::optional<double> limit) {
     Scene of_level = scene_of(text, {}, arguments, registry);
-    of_level.output.limit(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), limit);
+    of_level.output.limit(start, limit);
     RunRequest request = run_request(arguments, text, registry);
     request.output = directory, request.resume = resume, request.overwrite = true, request.quiet = true, request.of_ladder = true;
     return simulate(of_level, request);
   };
   if (!arguments.check) return accuracy::climb(task, program);
-  for (const std::string& line : accuracy::forecast(task, program)) std::cout << (speaks ? line + "\n" : "");
+  for (const std::string& line : accuracy::forecast(task, program))
+    if (speaks) std::cout << line << "\n";
   return done;
 }
 

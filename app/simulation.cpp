@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <optional>
@@ -255,7 +254,7 @@ class Run {
     for (double next = scene_.next_snapshot(time); next <= state_.time && next > time; next = scene_.next_snapshot(time)) time = next;
     const motion::DenseOutput dense(before, state_);
     motion::State& state = pictured_.emplace().state;
-    state.time = time, state.x = dense.place(time), state.history = {dense.slope(time)};
+    state.time = time, state.x = dense.shape(time), state.history = {dense.slope(time)};
   }
 
   void record() {
@@ -335,9 +334,9 @@ class Run {
     if (scene_.has_gaps()) end_at_contact();
     if (coupling::any_told_to_stop(told_to_stop())) return by_signal;
     if (scene_.output.too_late(ranks_.seconds_since(start_))) return by_clock;
-    const double before = std::nextafter(state_.time, 0);  // so that a jump now counts as later: the velocities are those before it
-    const bool flow_changes = scene_.flow.history && std::isfinite(scene_.flow.history->next_kink(before));
-    if (scene_.time.steady_tolerance && !flow_changes && row_.largest("shape_velocity") < *scene_.time.steady_tolerance) return steady;
+    const auto tolerance = scene_.time.steady_tolerance;
+    const bool flow_changes = scene_.flow.history && scene_.flow.history->lasts(state_.time);
+    if (tolerance && !flow_changes && row_.largest("shape_velocity") < *tolerance) return steady;
     if (scene_.time.end_when_past && least_way(scene_, particle_->body(), row_) > *scene_.time.end_when_past) return past;
     return {};
   }

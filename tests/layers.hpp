@@ -13,11 +13,11 @@ struct SingleLayer : Layer {
   SingleLayer(const spline::Space& space, const quadrature::Options& options) : Layer(Kernel::single_layer, space, space.collocation, options) {}
 
   void apply(const Net& x, const Net& f, Measure measure, std::span<const int> sites, Net& u) {
-    place(x, measure);
+    set_shape(x, measure);
     Layer::apply(f, sites, u);
   }
   void assemble(const Net& x, Measure measure, std::span<const int> sites, auto&&... of) {
-    place(x, measure);
+    set_shape(x, measure);
     Layer::assemble(sites, of...);
   }
 };
@@ -27,11 +27,11 @@ struct DoubleLayer : Layer {
       : Layer(Kernel::double_layer, space, space.collocation, options, std::move(factor)) {}
 
   void apply(const Net& x, const Net& v, std::span<const int> sites, Net& u) {
-    place(x);
+    set_shape(x);
     Layer::apply(v, sites, u);
   }
   void assemble(const Net& x, std::span<const int> sites, auto&& a) {
-    place(x);
+    set_shape(x);
     Layer::assemble(sites, a);
   }
 };

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "surface/outline.hpp"
+#include "surface/walls/outline.hpp"
 
 namespace tanktread {
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/columns.hpp"
+#include "base/errors.hpp"
 #include "deck/section.hpp"
 
 namespace tanktread::deck {
@@ -87,14 +88,21 @@ class Parts<Made(On...)> {
     return std::move(list.chosen);
   }
 
-  /// Returns the function that makes the part of this name, with the options that the deck sets in the section of the part, or with default options
-  /// if this section is missing. Returns an empty function if no part has this name.
-  Maker read(Section& section, const std::string& name) const {
-    const auto part = std::ranges::find(all_, name, &Part::name);
-    if (part == all_.end()) return {};
-    Reader reader{*part, {}};
-    section.section(name, reader, part->meaning);
-    return std::move(reader.make);
+  /// Returns the function that makes the part `chosen`, with the options that the deck sets in the section of this part, or with default options if
+  /// this section is missing. Returns an empty function if no part has this name. `key`: key of `section` whose value is `chosen`. Throws UserError
+  /// if the deck has a section of another part.
+  Maker read(Section& section, const std::string& chosen, const char* key) const {
+    Maker make;
+    for (const Part& part : all_) {
+      if (part.name != chosen && section.given(part.name))
+        throw UserError(section.path(part.name) + " belongs to " + section.path(key) + " `" + part.name + "`, but " + section.path(key) + " is `" +
+                        chosen + "`.");
+      if (part.name != chosen && !section.documenting()) continue;
+      Reader reader{part, {}};
+      section.section(part.name, reader, part.meaning);
+      if (part.name == chosen) make = std::move(reader.make);
+    }
+    return make;
   }
 
  private:

@@ -80,11 +80,11 @@ Net AreaConstraint::taken(const Eigen::VectorXd& at_points) const {
 
 void AreaConstraint::bring(Net& x, const Net& like, double time) {
   const Eigen::VectorXd wanted = rows(like).t;
-  place(x);
+  set_shape(x);
   for (int k = 0; k < 2; ++k) {
     factor(time);
     x -= taken(now_.t - wanted);
-    place(x);
+    set_shape(x);
   }
 }
 

@@ -30,9 +30,9 @@ class AreaConstraint {
 
   /// Evaluates at the shape x, for the operator P (4.25): the value t of the area condition at every Gauss point and the scaled gradient D of t,
   /// which are stored in `now_`. The matrix of factor() is then out of date.
-  void place(const Net& x) { now_ = rows(x), time_ = 0; }
+  void set_shape(const Net& x) { now_ = rows(x), time_ = 0; }
 
-  /// Factors the matrix 1 + time D m D' of the operator P (4.25). D: gradient of the area conditions at the shape set by place(). m: mobility.
+  /// Factors the matrix 1 + time D m D' of the operator P (4.25). D: gradient of the area conditions at the shape set by set_shape(). m: mobility.
   /// `time`: step factor of the implicit scheme.
   void factor(double time);
 
@@ -41,7 +41,7 @@ class AreaConstraint {
 
   /// Moves the shape x so that the area at every Gauss point nearly equals the area in the shape `like`. Takes two steps with the operator P (4.25),
   /// for which `time` is the argument of factor(). The remaining area error is of second order in the initial error. Afterwards, t and D are
-  /// evaluated at the new x, as by place(x).
+  /// evaluated at the new x, as by set_shape(x).
   void bring(Net& x, const Net& like, double time);
 
  private:

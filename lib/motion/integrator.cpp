@@ -104,7 +104,7 @@ double step_towards(double time, double limit, double step) {
 DenseOutput::DenseOutput(const State& before, const State& after)
     : start_(before.time), step_(after.time - before.time), x0_(before.x), x1_(after.x), v0_(before.history.front()), v1_(after.history.front()) {}
 
-Net DenseOutput::place(double time) const {
+Net DenseOutput::shape(double time) const {
   const double s = (time - start_) / step_, r = 1 - s;
   return r * r * (1 + 2 * s) * x0_ + s * s * (1 + 2 * r) * x1_ + step_ * s * r * (r * v0_ - s * v1_);
 }

@@ -91,8 +91,8 @@ class DenseOutput {
   /// `before`, `after`: states at the start and the end of the step. Both must have their slopes in history.front() and be on the same mesh.
   DenseOutput(const State& before, const State& after);
 
-  Net place(double time) const;
-  Net slope(double time) const;  ///< time derivative of place(), accurate to third order in the step
+  Net shape(double time) const;
+  Net slope(double time) const;  ///< time derivative of shape(), accurate to third order in the step
 
  private:
   double start_, step_;

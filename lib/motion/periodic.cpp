@@ -100,10 +100,10 @@ Net ReturnMap::operator()(const Net& x) {
     while (late - early > 1e-14 * late) {
       const double middle = 0.5 * (early + late);
       if (middle <= early || middle >= late) break;
-      (ahead(within.place(middle)) < 0 ? early : late) = middle;
+      (ahead(within.shape(middle)) < 0 ? early : late) = middle;
     }
     period_ = late;
-    found = turned_back(dynamics_, within.place(late), options_.turn);
+    found = turned_back(dynamics_, within.shape(late), options_.turn);
     return true;
   });
   if (found.size() == 0)

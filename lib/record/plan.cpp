@@ -295,7 +295,7 @@ Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
     lines.emplace_back("mesh", mesh_line(one));
     return lines;
   }
-  const bool first_kind = one.solvers.rigid_bodies == "first kind";
+  const bool first_kind = one.by_tractions();
   const char* by_traction = responds ? "its traction, by GMRES preconditioned with factors of the bodies, for each velocity (2.40)"
                                      : "its traction, in a factored system for each velocity (2.40)";
   return {{"body", formatted("rigid, %s: no membrane, no moving mesh; ", one.particle.motion == Motion::free ? "free" : "with prescribed motion") +

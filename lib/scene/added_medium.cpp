@@ -18,14 +18,8 @@ void DomainOptions::declare_medium(deck::Section& section) {
   std::ranges::copy(registered->names(), std::back_inserter(kinds));
   section.key("kind", kind, kinds,
               "`lattice`: fluid and particles are periodic. Other kinds: boundaries of the fluid that this program adds");
-  medium.reset();
-  for (const std::string& name : registered->names()) {
-    if (name != kind && section.given(name))
-      throw UserError(section.path(name) + " belongs to Domain/kind `" + name + "`, but Domain/kind is `" + kind + "`.");
-    if (name != kind && !section.documenting()) continue;
-    const auto make = registered->read(section, name);
-    if (name == kind) medium = make();
-  }
+  const auto make = registered->read(section, kind, "kind");
+  medium = make ? make() : nullptr;
   for (const char* key : {"periodic", "side lengths", "lattice vectors"})
     if (medium && section.given(key))
       throw UserError(section.path(key) + " belongs to Domain/kind `lattice`, but Domain/kind is `" + kind + "`.");

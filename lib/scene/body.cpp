@@ -175,9 +175,9 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
   if (scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
   if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, loads(scene, body, body.wall.get()));
-  const auto plates = scene.wall.planes();
+  const auto walls = scene.wall.planes();
   return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, loads(scene, body, nullptr),
-                            plates.empty() ? scene.domain.medium.get() : &plates.front(), scene.domain.cell());
+                            walls.empty() ? scene.domain.medium.get() : &walls.front(), scene.domain.cell());
 }
 
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall) {

@@ -13,7 +13,7 @@
 #include "spline/t_mesh.hpp"
 #include "stokes/flow/flow_options.hpp"
 #include "surface/symmetry.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/capsule.hpp"
 #include "system/ranks.hpp"
 #include "system/symmetry.hpp"

@@ -127,13 +127,12 @@ namespace {
 /// Throws UserError if a load changes when its particle is displaced by a period of the lattice.
 void check_periods(const Scene& scene, const coupling::LoadList& loads) {
   const auto cell = scene.domain.cell();
-  for (const auto& load : loads) {
-    if (!cell) return;
-    const Eigen::MatrixXd change = load->rigid_conditions().leftCols<3>() * cell->vectors().leftCols(cell->n());
-    if (change.size() > 0 && change.norm() > 1e-9 * cell->vectors().norm())
-      throw UserError("Membrane/loads" + (scene.name.empty() ? "" : " of Particles/" + scene.name) +
-                      " and Domain contradict each other: a load that depends on the position of the particle is not the same in all cells.");
-  }
+  const auto changes = [&](const auto& load) {
+    return (load->rigid_conditions().template leftCols<3>() * cell->vectors().leftCols(cell->n())).norm() > 1e-9 * cell->vectors().norm();
+  };
+  if (cell && std::ranges::any_of(loads, changes))
+    throw UserError("Membrane/loads" + (scene.name.empty() ? "" : " of Particles/" + scene.name) +
+                    " and Domain contradict each other: a load that depends on the position of the particle is not the same in all cells.");
 }
 
 }  // namespace
@@ -154,7 +153,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.loads = loads(own, body, all.wall.get());
     check_periods(own, particle.loads);
     particle.radius = body.radius;
-    if (own.particle.rigid()) particle.rigid = rigid(own, body);
+    if (own.particle.rigid()) particle.rigid = rigid(own, body), particle.by_traction = scene.by_tractions();
     particle.interface_motion = own.interface_motion();
     const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);
     particle.interface_speed = own.interface.relaxation * (own.flow.type == "duct" ? own.speed() : rate * body.radius);

@@ -3,19 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <span>
-
-#include <Teuchos_ParameterList.hpp>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/units.hpp"
 #include "deck/words.hpp"
+#include "scene/memory.hpp"
 #include "scene/searches.hpp"
 #include "scene/tube.hpp"
-#include "surface/channel.hpp"
-#include "system/ranks.hpp"
-#include "system/solvers/frozen_operator.hpp"
 
 namespace tanktread {
 
@@ -70,32 +65,6 @@ struct Kinds {
   }
 };
 
-constexpr double most_bytes = 64e9;  // largest size of the assembled operators of one surface, summed over all ranks
-constexpr double doubles = 72;       // bytes of a 3 x 3 block of doubles
-constexpr double most_vector_bytes = 4e9;  // largest size of the vectors of an iterative solver, on one rank
-
-/// Return the numbers of control points: points() of the particle, wall_points() of the tube wall.
-double points(const Scene& scene) {
-  const auto& imported = scene.particle.shape.imported;
-  return imported ? imported->space.n_points : scene.surface.n_points();
-}
-
-double wall_points(const Scene& scene) {
-  const int of_tube = scene.tube.axial_elements.value_or(surface::TubeOptions::default_axial_elements);
-  const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : of_tube;
-  return scene.tube.azimuthal_elements * (along + 3.0);
-}
-
-/// Returns the bytes of all assembled operators of the particle per pair of control points. A layer operator has 3 x 3 doubles per pair, and a frozen
-/// operator six numbers of 16 bits. An operator with the option `auto` is not counted, because it is not assembled if it is too large.
-double bytes_a_pair(const Scene& scene) {
-  if (scene.particle.rigid()) return doubles * coupling::Ranks().size() * (scene.tube.present ? 2 : 1);  // LU factors; in a tube, also the matrix
-  const bool viscous = scene.particle.viscosity_ratio != 1;
-  const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
-  return doubles * ((viscous + scene.viscous_membrane()) * (scene.solvers.double_layer == "assembled") + (scene.interface_motion() == "relaxed")) +
-         coupling::FrozenOperator::bytes_a_pair * frozen;
-}
-
 /// Throws UserError if the viscosity ratio is too large. The system for the velocity loses one digit to round-off per factor of ten in the ratio. The
 /// solver stagnates at a ratio of 1e15 times the tolerance in a tube, and at higher ratios without a tube.
 void check_viscosity_ratio(const Scene& scene) {
@@ -105,48 +74,6 @@ void check_viscosity_ratio(const Scene& scene) {
         formatted("Particle/viscosity ratio must be at most %.3g, 1e14 times Solvers/tolerance, because rounding errors grow with it, but "
                   "is %.3g; for a rigid particle give Particle/motion `free`.",
                   most, ratio));
-}
-
-/// Throws UserError if the assembled operators for `n_points` control points are too large. The message begins "<keys> must <must>", where `keys` are
-/// the keys of the deck that determine this number.
-void check_bytes(const std::string& keys, const std::string& must, double n_points, double bytes) {
-  if (bytes * n_points * n_points > most_bytes)
-    throw UserError(
-        keys + " must " + must +
-        formatted(": the assembled boundary-integral operators of %.0f control points take %.0f GB, more than the limit of %.0f GB.",
-                  n_points, bytes * n_points * n_points / 1e9, most_bytes / 1e9));
-}
-
-void check_size(const Scene& scene) {
-  const double bytes = bytes_a_pair(scene), most = std::floor(std::sqrt(most_bytes / bytes));
-  const std::string few = formatted("give at most %.0f control points", most);
-  if (scene.particle.shape.imported)
-    check_bytes("Particle/file", few, points(scene), bytes);
-  else if (scene.surface.polar())
-    check_bytes("Surface/azimuthal elements and Surface/meridional elements", few, points(scene), bytes);
-  else
-    check_bytes("Surface/elements per side",
-                formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *scene.surface.elements_per_side),
-                points(scene), bytes);
-  if (!scene.tube.present || (scene.tube.channel && coupling::WallSolver{scene.solvers.wall}.may_iterate(scene.tube.period > 0))) return;
-  check_bytes(scene.tube.list() + "/azimuthal elements and " + scene.tube.list() + "/axial elements",
-              formatted("give at most %.0f control points", most_wall_points()), wall_points(scene), doubles * coupling::Ranks().size());
-}
-
-/// Throws UserError if the vectors that each rank stores for an iterative solver, and the matrix of their inner products, are too large.
-void check_vectors(const Scene& scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
-  const double unknowns = 3 * (points(scene) + (scene.tube.present ? wall_points(scene) : 0));
-  double vectors = 1;
-  std::string keys;
-  for (const char* key : {"Num Blocks", "Block Size", "Num Recycled Blocks", "Deflation Blocks", "Adaptive Block Size"}) {
-    if (!list || !list->isType<int>(key)) continue;
-    vectors *= std::max(1, list->get<int>(key));
-    keys += (keys.empty() ? std::string() : " and ") + path + "/Belos/" + key;
-  }
-  const double most = std::floor((std::sqrt(unknowns * unknowns + 4 * most_vector_bytes / 8) - unknowns) / 2);
-  if (vectors > most)
-    throw UserError(keys + formatted(" may ask for at most %.0f vectors, which with %.0f unknowns take %.0f GB on each rank, but %.0f are asked for.",
-                                     most, unknowns, most_vector_bytes / 1e9, vectors));
 }
 
 /// Throws UserError if a key lacks another key that it requires, or has no meaning in combination with another key.
@@ -176,15 +103,6 @@ void check_motion(const Scene& scene) {
       throw UserError(formatted("Periodic/period must be a multiple of the period of Flow/history, %.10g, but is %.10g.", 1 / *history->frequency,
                                 scene.periodic.period));
   }
-}
-
-/// Throws UserError if the scene has no rigid bodies for the first-kind equation, or if the matrix of this equation is too large.
-void check_first_kind(const Scene& scene) {
-  double n_points = 0;
-  for (const Scene& one : scene.alone())
-    if (one.particle.rigid()) n_points += points(one);
-  if (n_points == 0) throw UserError("Solvers/rigid bodies `first kind` is for rigid bodies, but every Particle deforms.");
-  check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
 }
 
 /// Checks each of several particles as a separate scene, and checks that the particles can be combined in one scene. Throws UserError with the name
@@ -277,37 +195,9 @@ void Scene::declare(deck::Section& root) {
   if (!root.documenting()) take_posts(*this);
 }
 
-std::vector<Scene> Scene::alone() const {
-  Scene common = *this;
-  common.solvers.rigid_bodies = by_tractions() ? "first kind" : "second kind";
-  if (particles.empty()) return {common};
-  std::vector<ParticleKind>().swap(common.particles);  // frees the memory, which clear() would keep in each copy
-  std::vector<Scene> scenes(particles.size(), common);
-  for (std::size_t p = 0; p < particles.size(); ++p) static_cast<ParticleKind&>(scenes[p]) = particles[p];
-  return scenes;
-}
-
-/// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for several bodies of
-/// up to 1500 control points, all with adaptive meshes, or for the only particle in a duct, of up to 2000. For a film of a tenth of the radius,
-/// `first kind` needs a third of the points of `second kind`. With 1538 points both take the same time for a sphere of 0.8 tube radii, and the
-/// pressure drop has errors of 2e-8 and 1e-5.
-bool Scene::by_tractions() const {
-  if (solvers.rigid_bodies != "auto" || !runs_in_time()) return solvers.rigid_bodies == "first kind";
-  const ParticleKind* first = particles.empty() ? this : particles.data();
-  const std::span kinds(first, std::max<std::size_t>(1, particles.size()));
-  const bool alone = tube.present && kinds.size() == 1 && solvers.tube == "schur";
-  double bodies = 0, points = 0;
-  for (const ParticleKind& kind : kinds) {
-    if (!kind.particle.rigid()) continue;
-    if (!kind.adaptation.enabled && !alone) return false;
-    ++bodies, points += kind.particle.shape.imported ? kind.particle.shape.imported->space.n_points : kind.surface.n_points();
-  }
-  return alone ? bodies > 0 && points <= 2000 : bodies > 1 && points <= 1500;
-}
-
 void Scene::check() const {
   quadrature.check();
-  if (solvers.rigid_bodies == "first kind" && name.empty()) check_first_kind(*this);
+  if (solvers.rigid_bodies == coupling::BodyEquation::first_kind && name.empty()) check_first_kind(*this);
   Rejections found;
   reject_power(found);
   if (!particles.empty()) return check_several(*this), found.throw_if_any();
@@ -334,9 +224,7 @@ void Scene::check() const {
   modulus();
   time_options().check();
   check_adaptation(*this);
-  check_size(*this);
-  check_vectors(*this, "Solvers", solvers.belos);
-  for (const coupling::IterativeOptions* system : solvers.systems()) check_vectors(*this, system->path, system->belos);
+  check_memory(*this);
 }
 
 std::string Scene::interface_motion() const {
@@ -344,11 +232,6 @@ std::string Scene::interface_motion() const {
 }
 
 double Scene::radius() const { return particle.shape.equivalent_radius(); }
-
-double Scene::least_radius() const {
-  const auto radius_of = [](const ParticleKind& kind) { return kind.particle.shape.equivalent_radius(); };
-  return particles.empty() ? radius() : radius_of(std::ranges::min(particles, {}, radius_of));
-}
 
 double Scene::speed() const { return flow.speed(radius()); }
 
@@ -379,8 +262,6 @@ double Scene::next_snapshot(double now) const {
   const double interval = snapshot_interval(), next = (std::floor(now / interval * (1 + 1e-12)) + 1) * interval;
   return next < time.final_time * (1 - 1e-12) ? next : time.final_time;
 }
-
-double most_wall_points() { return std::floor(std::sqrt(most_bytes / (doubles * coupling::Ranks().size()))); }
 
 bool may_change_on_resume(const std::string& path) {
   if (path == "Tube/contact gap" || path == "Channel/contact gap" || path == "Wall/contact gap" || path == "Contact/limit") return true;

@@ -188,10 +188,6 @@ struct Scene : ParticleKind {
   double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, but at most the final time
 };
 
-/// Returns the largest number of control points that the wall of a tube may have. Each rank stores the factors of the wall, and the factors of all
-/// ranks together must fit into the allowed memory.
-double most_wall_points();
-
 /// Returns true if the key at this path may change when a run is resumed, because the data of the checkpoint do not depend on it.
 bool may_change_on_resume(const std::string& path);
 

@@ -130,9 +130,9 @@ bool holds_centre(const Scene& scene) {
 
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state) {
   const Mat3 gradient = flow.gradient(place);
-  const Vec3 off = geometry.measures(state.x).centroid - place, carried = gradient * off;
+  const Vec3 off = geometry.measures(state.x).centroid - place, slope_off = gradient * off;
   state.x.rowwise() -= off.transpose();
-  for (Net& slope : state.history) slope.rowwise() -= carried.transpose();
+  for (Net& slope : state.history) slope.rowwise() -= slope_off.transpose();
   for (motion::Place& earlier : state.places) {
     earlier.x.rowwise() -= (exponential(gradient * (earlier.time - state.time)) * off).transpose();
   }

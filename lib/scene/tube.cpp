@@ -6,6 +6,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/words.hpp"
+#include "scene/memory.hpp"
 #include "surface/clearance.hpp"
 #include "surface/closest_points.hpp"
 #include "surface/geometry.hpp"
@@ -145,7 +146,6 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   if (!body.wall) return {};
   coupling::TubeParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
-  parameters.viscosity_ratio = scene.particle.viscosity_ratio;
   if (scene.tube.channel) parameters.symmetry = body.symmetry;
   parameters.holds_pressure_drop = scene.flow.held == "pressure drop";
   parameters.quadrature = scene.quadrature;

@@ -27,7 +27,7 @@ void Layer::set_reference(const Net& unstressed, std::vector<bool> present) { so
 void Layer::use(std::unique_ptr<LayerMedium> medium) {
   medium_ = std::move(medium);
   sources_.surface.repeat();
-  sources_.place_again();
+  sources_.renew_shape();
 }
 
 void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
@@ -52,11 +52,11 @@ void Layer::share(int part, int parts, std::vector<int> everybody) {
   tree_rows_.clear();
 }
 
-void Layer::place(const Net& x, Measure measure) {
+void Layer::set_shape(const Net& x, Measure measure) {
   const auto clock = sources_.phases.time("setup");
-  if (!sources_.place(x, measure)) return;
+  if (!sources_.set_shape(x, measure)) return;
   tree_rows_.clear();
-  medium_->place(sources_);
+  medium_->set_sources(sources_);
   if (tree_) tree_->repeat(medium_->far_images());
 }
 
@@ -154,7 +154,10 @@ void Layer::place_tree(const LayerTargets& targets) {
   if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;
   tree_at_ = std::move(at);
   tree_rows_.assign(targets.far_rows.begin(), targets.far_rows.end());
-  medium_->wraps() ? tree_->place(medium_->nodes(sources_), indices(n_nodes() + 1), tree_at_) : sources_.surface.place(*tree_, tree_at_);
+  if (medium_->wraps())
+    tree_->set_sources(medium_->nodes(sources_), indices(n_nodes() + 1), tree_at_);
+  else
+    sources_.surface.set_sources_of(*tree_, tree_at_);
   std::vector<int> wanted;
   const std::size_t reflections = medium_->wraps() ? 0 : sources_.surface.reflections().size();
   for (std::size_t g = 0; g <= reflections; ++g)

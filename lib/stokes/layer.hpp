@@ -89,7 +89,7 @@ class Layer {
   bool by_clusters() const { return tree_.has_value(); }
 
   /// Sets the shape x, which is kept for any number of densities. `measure`: area to which the density of a single layer refers.
-  void place(const Net& x, Measure measure = Measure::current);
+  void set_shape(const Net& x, Measure measure = Measure::current);
 
   /// Computes rows `sites` of u for the density with control values f. `u`: shape (number of all sites, 3).
   void apply(const Net& f, std::span<const int> sites, Net& u);

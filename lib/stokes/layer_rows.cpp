@@ -19,9 +19,8 @@ namespace {
 /// not requested, add to a spare row.
 template <class Real>
 struct FarBasis {
-  std::vector<int> panels,
-      index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1 if it
-              ///< has no stored values
+  std::vector<int> panels, index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1 if it
+                                   ///< has no stored values
   std::vector<Real> values;
   std::vector<int> rows;
   std::vector<std::size_t> first_value, first_row;
@@ -39,8 +38,7 @@ struct FarBasis {
     first_value.push_back(values.size());
     first_row.push_back(rows.size());
     values.resize(values.size() + static_cast<std::size_t>(padded) * t.n_nodes, Real(0));
-    for (int a = 0; a < m;
-         ++a)  // plain loops instead of a matrix product, because their order of summation does not depend on memory alignment
+    for (int a = 0; a < m; ++a)  // plain loops instead of a matrix product, because their order of summation does not depend on memory alignment
       for (int b = 0; b < t.n_bernstein; ++b) {
         const Real share = static_cast<Real>(all.extraction(e)[t.n_bernstein * a + b]);
         const double* from = &t.value[static_cast<std::size_t>(t.n_nodes) * b];
@@ -104,9 +102,8 @@ class Layer::RowSums {
   RowSums(Layer& layer, const Net* at) : layer_(layer), sources_(layer.sources_), at_(at) {}
 
   FarBasis<Real> basis;
-  std::vector<Real>
-      sums;  ///< sums[m (6 row + c) + l], with m = assembly_block: integral of kernel entry c (11, 12, 13, 22, 23, 33) times the basis
-             ///< function of control point `row`, at target l
+  std::vector<Real> sums;  ///< sums[m (6 row + c) + l], with m = assembly_block: integral of kernel entry c (11, 12, 13, 22, 23, 33) times the basis
+                           ///< function of control point `row`, at target l
 
   void add(std::span<const int> targets, int rows) {
     sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
@@ -140,8 +137,7 @@ class Layer::RowSums {
       for (const int e : surface.near(x0, own))
         if (basis.index[e] >= 0) add_panel(e, surface.near_field.rule(e, x0, own), nullptr, x0, l);
       for (SelfPair& pair : own)
-        if (basis.index[pair.panel] >= 0)
-          add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
+        if (basis.index[pair.panel] >= 0) add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
     }
   }
 
@@ -267,11 +263,11 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
     const int spare = static_cast<int>(wanted.size());
     row_of_point.assign(static_cast<std::size_t>(sources_.surface.n_points), spare);
     for (int k = 0; k < spare; ++k) row_of_point[wanted[k]] = k;
-    std::vector<int> carriers;
-    for (const int point : wanted) carriers.insert(carriers.end(), panels_of[point].begin(), panels_of[point].end());
-    sort_and_drop_repeated(carriers);
+    std::vector<int> with_wanted;
+    for (const int point : wanted) with_wanted.insert(with_wanted.end(), panels_of[point].begin(), panels_of[point].end());
+    sort_and_drop_repeated(with_wanted);
     rows.basis.clear(panels);
-    for (const int e : carriers) rows.basis.add(panels, e, row_of_point, spare);
+    for (const int e : with_wanted) rows.basis.add(panels, e, row_of_point, spare);
     rows.add(some, spare);
     for (std::size_t l = 0; l < some.size(); ++l)
       for (std::size_t j = near.first[first + l]; j < near.first[first + l + 1]; ++j)

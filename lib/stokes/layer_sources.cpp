@@ -31,12 +31,12 @@ void LayerSources::set_reference(const Net& unstressed, std::vector<bool> presen
   node_weights(surface.panels, reference_.bezier, reference_.weight);
   reference_.present = std::move(present);
   surface.self_field.forget_weights();
-  place_again();
+  renew_shape();
 }
 
-bool LayerSources::place(const Net& x, Measure measure) {
+bool LayerSources::set_shape(const Net& x, Measure measure) {
   assert((measure == Measure::current || !reference_.weight.empty()) && "set_reference() comes first");
-  if (!surface.place(x) && measure == measure_) return false;
+  if (!surface.set_shape(x) && measure == measure_) return false;
   measure_ = measure;
   if (!single() || desingularised()) node_normals(surface.panels, surface.bezier, normal);
   if (single()) weight = reference_.weight, weight.resize(static_cast<std::size_t>(n_nodes()));

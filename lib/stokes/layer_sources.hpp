@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces that carry the density of a layer: quadrature weights and densities at their nodes, and integrals over one of their panels.
+// Surfaces with the density of a layer: quadrature weights and densities at their nodes, and integrals over one of their panels.
 
 #include <optional>
 #include <span>
@@ -25,8 +25,8 @@ enum class Measure { reference, current, by_element };
 using NodeVectors = std::vector<double>[3];
 
 /// Surfaces with the density of a single or double layer, in free space: the far nodes with their weights, and the integrals of the free-space kernel
-/// over one panel. The order of calls is set_reference() (if a measure needs it), place(), set_density(), then the sums and integrals. A Layer adds
-/// the panels up; a LayerMedium adds what the boundaries of the fluid change.
+/// over one panel. The order of calls is set_reference() (if a measure needs it), set_shape(), set_density(), then the sums and integrals. A Layer
+/// adds the panels up; a LayerMedium adds what the boundaries of the fluid change.
 class LayerSources {
  public:
   /// Arguments as for Layer.
@@ -48,9 +48,9 @@ class LayerSources {
   void set_reference(const Net& unstressed, std::vector<bool> present);
   const std::vector<double>& reference_bezier() const { return reference_.bezier; }  ///< Bezier points of the unstressed surface
 
-  /// Sets the shape x and the area to which densities refer. Returns false if both are the current ones and place_again() was not called since.
-  bool place(const Net& x, Measure measure);
-  void place_again() { measure_.reset(); }  ///< makes the next place() compute everything anew
+  /// Sets the shape x and the area to which densities refer. Returns false if both are the current ones and renew_shape() was not called since.
+  bool set_shape(const Net& x, Measure measure);
+  void renew_shape() { measure_.reset(); }  ///< makes the next set_shape() compute everything anew
 
   /// Evaluates a field, given by its control values, at the far nodes.
   void values(const Net& field, NodeVectors& value);

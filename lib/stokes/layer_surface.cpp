@@ -66,9 +66,8 @@ double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(
 
 bool sums_by_tree(double nodes, const quadrature::Options& options) {
   if (options.far_sum != "auto") return options.far_sum == "tree";
-  if (options.rule == "desingularised")
-    return false;  // This rule subtracts the singularity by two identities (see Layer), which must be summed over
-                   // all pairs of nodes and targets. Clusters would save little.
+  if (options.rule == "desingularised") return false;  // This rule subtracts the singularity by two identities (see Layer), which must be summed over
+                                                       // all pairs of nodes and targets. Clusters would save little.
   return nodes > nodes_worth_a_tree(options.tolerance);
 }
 
@@ -110,7 +109,7 @@ void LayerSurface::set_symmetry(const surface::Symmetry& symmetry) {
   placed_.resize(0, 3);
 }
 
-bool LayerSurface::place(const Net& x) {
+bool LayerSurface::set_shape(const Net& x) {
   if (x.rows() == placed_.rows() && x == placed_) return false;
   placed_ = x;
   panels.bezier(x, bezier);
@@ -131,7 +130,7 @@ const std::vector<int>& LayerSurface::near(const Vec3& target, std::span<const S
   return near_;
 }
 
-void LayerSurface::place(TreeSum& tree, std::span<const Vec3> targets) const {
+void LayerSurface::set_sources_of(TreeSum& tree, std::span<const Vec3> targets) const {
   std::vector<int> starts{0};
   std::vector<double> place[3];
   for (const int e : fundamental_.element) {
@@ -139,7 +138,7 @@ void LayerSurface::place(TreeSum& tree, std::span<const Vec3> targets) const {
     for (int c = 0; c < 3; ++c) place[c].insert(place[c].end(), node[c].begin() + first, node[c].begin() + last);
     starts.push_back(starts.back() + last - first);
   }
-  tree.place(place, starts, targets, images_.reflections);
+  tree.set_sources(place, starts, targets, images_.reflections);
 }
 
 }  // namespace tanktread::stokes

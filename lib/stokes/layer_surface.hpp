@@ -39,7 +39,7 @@ class LayerSurface {
   const std::vector<surface::Reflection>& reflections() const { return images_.reflections; }
 
   /// Sets the control net x of the surface. If it is the current net, does nothing and returns false; otherwise returns true.
-  bool place(const Net& x);
+  bool set_shape(const Net& x);
 
   Vec3 site(int i) const { return value(i, bezier); }  ///< returns the position of site i
   /// Returns the value at site i of the field with the Bezier points `of`.
@@ -54,7 +54,7 @@ class LayerSurface {
 
   /// Sets the sources of `tree` to the far nodes of the fundamental panels, and its targets to all targets and their symmetry images. All ranks that
   /// share the sums must pass equal targets, so that clusters do not depend on which rank computes which rows.
-  void place(TreeSum& tree, std::span<const Vec3> targets) const;
+  void set_sources_of(TreeSum& tree, std::span<const Vec3> targets) const;
 
   quadrature::Options options;
   int n_points, n_sites;  ///< numbers of control points (n_points) and of targets on the surfaces (n_sites)

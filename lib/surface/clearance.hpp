@@ -2,7 +2,7 @@
 // Smallest distance of a surface to the wall of a tube.
 
 #include "base/types.hpp"
-#include "surface/outline.hpp"
+#include "surface/walls/outline.hpp"
 #include "surface/patch.hpp"
 
 namespace tanktread::surface {

@@ -229,7 +229,7 @@ Eigen::Vector4d newton_step(const Jet& x, const Jet& y) {
 ClosestPoints nearest_points(const Patch& first, const Patch& second, const ClosestPoints& near) {
   const auto jets = [&](const Eigen::Vector4d& u) { return std::pair(jet(first, u[0], u[1]), jet(second, u[2], u[3])); };
   const auto points = [&](const Eigen::Vector4d& u) -> ClosestPoints {
-    const Vec3 x = place(first, u[0], u[1]), y = place(second, u[2], u[3]);
+    const Vec3 x = position(first, u[0], u[1]), y = position(second, u[2], u[3]);
     return {x, y, (y - x).norm(), {spline::Site{near.sites[0].element, u[0], u[1]}, spline::Site{near.sites[1].element, u[2], u[3]}}};
   };
   const Eigen::Vector4d start(near.sites[0].s, near.sites[0].t, near.sites[1].s, near.sites[1].t);

@@ -112,7 +112,7 @@ std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at
     at = (at + step).cwiseMax(0).cwiseMin(1);
     if (step.norm() < converged) break;
   }
-  const Vec3 y = place(patch, at[0], at[1]) - centre;
+  const Vec3 y = position(patch, at[0], at[1]) - centre;
   if (!(std::abs(y[1]) < 1e-9 * y.norm())) return {};
   return Crossing{at, std::hypot(y[0], y[2])};
 }
@@ -123,7 +123,7 @@ std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at
 std::vector<Crossing> crossings(const Patch& patch, const Vec3& centre) {
   std::vector<Crossing> result;
   Grid<double> above = sample(patch, 1);
-  const double in_plane = 1e-13 * (place(patch, 0, 0) - centre).norm();  // sampled points nearer to the plane than this count as points of the plane
+  const double in_plane = 1e-13 * (position(patch, 0, 0) - centre).norm();  // sampled points nearer to the plane count as points of the plane
   for (auto& line : above)
     for (double& height : line)
       if (height -= centre[1]; std::abs(height) < in_plane) height = 0;
@@ -174,7 +174,7 @@ std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre
   // O(d^3)
   constexpr double slack = 1e-7;
   if ((at.array() < -slack).any() || (at.array() > 1 + slack).any()) return {};
-  const Vec3 y = place(patch, at[0], at[1]) - centre;
+  const Vec3 y = position(patch, at[0], at[1]) - centre;
   if (!(std::abs(y[1]) < 1e-9 * y.norm())) return {};
   return std::hypot(y[0], y[2]);
 }
@@ -245,7 +245,7 @@ Vec3 lowest(const Patches& surface, int c) {
   for (const auto& [bound, e] : bounds) {
     if (bound >= best[c]) break;
     const Vec2 at = summit(surface[e], c, -1, start(surface[e], c, -1)).second;
-    if (const Vec3 there = place(surface[e], at[0], at[1]); there[c] < best[c]) best = there;
+    if (const Vec3 there = position(surface[e], at[0], at[1]); there[c] < best[c]) best = there;
   }
   return best;
 }

@@ -44,7 +44,7 @@ Point point(const spline::Space& space, const Net& net, const spline::Site& site
 }
 
 Vec3 value(const spline::Space& space, const Net& net, const spline::Site& site) {
-  return place(ElementPoints(space, net, site.element).patch(), site.s, site.t);
+  return position(ElementPoints(space, net, site.element).patch(), site.s, site.t);
 }
 
 double mean_curvature(const spline::Space& space, const Net& net, const spline::Site& site) {
@@ -170,7 +170,7 @@ Measures measures(const spline::Space& space, const Net& net) { return Geometry(
 double volume(const spline::Space& space, const Net& net) { return Geometry(space).volume(net); }
 
 Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v) {
-  Vec3 mean, first = Vec3::Zero(), carried = Vec3::Zero();
+  Vec3 mean, first = Vec3::Zero(), flux_moment = Vec3::Zero();
   const Net here = about_mean(x, mean);
   double volume = 0, flux = 0;
   for (const DegreeGroup& of_degree : map.groups())
@@ -179,10 +179,10 @@ Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v) {
       kernel::transport(degree, points_of(map, here, group), points_of(map, v, group), part);
       for (std::size_t l = 0; l < group.size(); ++l) {
         volume += part.volume[l], flux += part.flux[l];
-        for (int c = 0; c < 3; ++c) first[c] += part.first[c][l], carried[c] += part.carried[c][l];
+        for (int c = 0; c < 3; ++c) first[c] += part.first[c][l], flux_moment[c] += part.flux_moment[c][l];
       }
     });
-  return (carried - flux / volume * first) / volume;
+  return (flux_moment - flux / volume * first) / volume;
 }
 
 }  // namespace tanktread::surface

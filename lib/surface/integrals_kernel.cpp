@@ -186,7 +186,7 @@ struct Of {
 
   static void transport(const Lanes& points, const Lanes& velocities, Transport& result) {
     static const Table<p, n_transport> table;
-    Register v[n_transport][n_transport][3], volume_sum{}, flux_sum{}, first[3]{}, carried[3]{};
+    Register v[n_transport][n_transport][3], volume_sum{}, flux_sum{}, first[3]{}, flux_moment[3]{};
     node_values(table, velocities, v);
     each_node<p, n_transport, true>(table, points, [&](int qs, int qt, const Register(&x)[3], const Register(&a1)[3], const Register(&a2)[3]) {
       Register normal[3];
@@ -198,14 +198,14 @@ struct Of {
       flux_sum += flux;
       for (int c = 0; c < 3; ++c) {
         first[c] += outward * x[c];
-        carried[c] += flux * x[c];
+        flux_moment[c] += flux * x[c];
       }
     });
     store(volume_sum / 3, result.volume);
     store(flux_sum, result.flux);
     for (int c = 0; c < 3; ++c) {
       store(first[c] / 4, result.first[c]);
-      store(carried[c], result.carried[c]);
+      store(flux_moment[c], result.flux_moment[c]);
     }
   }
 };

@@ -30,10 +30,10 @@ struct Moments {
 };
 void moments(int degree, const Lanes& x, Moments& result);
 
-/// Integrals of v.n (`flux`) and x_i v.n (`carried`) over each element, for a velocity v, and contributions of each element to `volume` and `first`
-/// as in Moments. Exact, with (4p - 1)/2 + 1 Gauss points per direction (p: degree).
+/// Integrals of v.n (`flux`) and x_i v.n (`flux_moment`) over each element, for a velocity v, and contributions of each element to `volume` and
+/// `first` as in Moments. Exact, with (4p - 1)/2 + 1 Gauss points per direction (p: degree).
 struct Transport {
-  double volume[most_lanes], first[3][most_lanes], flux[most_lanes], carried[3][most_lanes];
+  double volume[most_lanes], first[3][most_lanes], flux[most_lanes], flux_moment[3][most_lanes];
 };
 void transport(int degree, const Lanes& x, const Lanes& v, Transport& result);
 

@@ -128,7 +128,7 @@ class Samples {
     const auto [found, fresh] = known_.try_emplace(vertex);
     if (fresh) {
       spline::Site site = locate_(spline::place(lattice_, vertex));
-      const auto on = [&](const Patches& patches) { return place(patches[site.element], site.s, site.t); };
+      const auto on = [&](const Patches& patches) { return position(patches[site.element], site.s, site.t); };
       found->second = {on(rest_), on(now_), Vec3::Zero(), {}};
       // At a pole, moves the site off the pole, because a load per area is defined there only as a limit.
       if (on_pole(lattice_, vertex)) site.t = std::clamp(site.t, 1e-5, 1 - 1e-5);

@@ -58,7 +58,7 @@ CoordinateJet jet(const Patch& patch, int c, double s, double t) {
   return Factors(patch.degree, s, t).of(patch.points + c * patch.n_bezier());
 }
 
-Vec3 place(const Patch& patch, double s, double t) {
+Vec3 position(const Patch& patch, double s, double t) {
   const int p = patch.degree;
   double b[max_degree + 1], c[max_degree + 1];
   spline::bernstein(p, s, b);

@@ -37,7 +37,7 @@ CoordinateJet jet(const Patch& patch, int c, double s, double t);
 double jacobian(const Jet& jet);
 
 /// Returns the position only.
-Vec3 place(const Patch& patch, double s, double t);
+Vec3 position(const Patch& patch, double s, double t);
 
 /// Returns the mean curvature chi = 1/2 div n, positive on a sphere.
 double mean_curvature(const Jet& jet);

@@ -68,7 +68,7 @@ Quality quality(const BezierMap& map, const Net& net, std::span<const int> eleme
       if (here.jacobian_ratio < result.jacobian_ratio) {
         result.jacobian_ratio = here.jacobian_ratio;
         result.folded_element = e;
-        result.folded_place = place({group.degree, bezier}, rule.s[here.point], rule.t[here.point]);
+        result.folded_place = position({group.degree, bezier}, rule.s[here.point], rule.t[here.point]);
       }
       if (here.aspect_ratio > result.aspect_ratio) {
         result.aspect_ratio = here.aspect_ratio;

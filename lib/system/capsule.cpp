@@ -117,7 +117,7 @@ std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocit
 /// (explicit_velocity), the projection onto constant volumes (constrain), and the solution of the linear system for the velocity (solve_velocity), if
 /// one is needed (has_velocity_system).
 Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
-  bodies_.rigid.place(x);
+  bodies_.rigid.fit_to(x);
   if (!admits(x)) return not_a_number(x);
   push_bodies(x);
   const bool deforms = !bodies_.tractions || !bodies_.tractions->alone();
@@ -128,7 +128,7 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
   Net v = explicit_velocity(x, f, {}, &e.response_);
   if (!bodies_.tractions) bodies_.rigid.add_load_correction(v), bodies_.rigid.subtract_prescribed(v);
   volumes_.constrain(v, volume);
-  membranes_.place_viscous(x);
+  membranes_.set_viscous_shape(x);
   if (bodies_.tractions) v = solve_tractions(e, x, volume, symmetric(v));
   else if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, e.error_);
   e.unknowns_ = v;
@@ -173,7 +173,7 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std
 
 /// Sets the tube to the shape x. Returns whether all collocation sites of the shape are inside the tube.
 bool Capsule::inside_tube(const Net& x) {
-  place_tube(x);
+  set_tube_shape(x);
   const Net at_sites = targets_.at_sites() * x;
   if (duct_.tube->fixed()) return !layout_.any(!duct_.tube->inside(at_sites, layout_.points()));
   const surface::Outline& outline = duct_.tube->wall().outline;
@@ -213,12 +213,12 @@ Net Capsule::defect_here(const Net& x, const Net& u) {
   Evaluation e(*this, x);
   Net f = membrane_load(e, x, &volume);
   volumes_.constrain(inside, volume);
-  membranes_.place_viscous(x);
+  membranes_.set_viscous_shape(x);
   if (viscous()) f += membranes_.viscous_load(x, inside);
   Net residual = explicit_velocity(x, f, layers_.has_double() ? inside : Net(), nullptr) - inside;
   if (layers_.has_double()) {
     const auto clock = phases_.time("velocity system");
-    layers_.place_double(x);
+    layers_.set_double_shape(x);
     residual += targets_.control_values(layers_.apply_double(inside));
   }
   volumes_.constrain(residual, volume);
@@ -232,7 +232,7 @@ void Capsule::freeze(const Net& at) {
   ++counts_.assemblies;
   frozen_.assemble(at, x);
   if (!duct_.tube) return;
-  place_tube(x);
+  set_tube_shape(x);
   duct_.tube->freeze();
 }
 
@@ -285,7 +285,7 @@ void Capsule::forget_recycled() const {
 }
 
 void Capsule::restore_volume(Net& x) {
-  bodies_.rigid.place(x);
+  bodies_.rigid.fit_to(x);
   if (parameters_.volume.constraint != "exact") return;
   const auto clock = phases_.time("volume");
   volumes_.restore(x, [&](const Net& b) { return jacobian_.inflation(symmetric(membranes_.solved(b))); });
@@ -306,8 +306,8 @@ double Capsule::norm(const Net& displacement) const {
 
 stokes::Evaluations Capsule::kernel_evaluations() const {
   stokes::Evaluations sum = layers_.evaluations() + frozen_.evaluations();
-  if (duct_.tube) sum += duct_.tube->kernel_evaluations();
-  if (bodies_.tractions) sum += bodies_.tractions->kernel_evaluations();
+  if (bodies_.tractions) sum += bodies_.tractions->kernel_evaluations();  // with those of the tube
+  else if (duct_.tube) sum += duct_.tube->kernel_evaluations();
   if (surroundings_.solids) sum += surroundings_.solids->evaluations();
   return sum;
 }

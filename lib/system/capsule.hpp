@@ -133,7 +133,7 @@ class Capsule : public Dynamics {
   /// Returns the rigid bodies among the particles, at their positions in x.
   RigidParticles rigid_at(Net x) const {
     RigidParticles rigid = bodies_.rigid;
-    rigid.place(x);
+    rigid.fit_to(x);
     return rigid;
   }
 
@@ -195,7 +195,7 @@ class Capsule : public Dynamics {
   bool has_forces() const { return work_of_forces_[0].size() > 0 || work_of_forces_[1].size() > 0; }
   bool deform_cell(double time);
   Vec3 cell_origin(const Net& x) const;
-  void place_tube(const Net& x);
+  void set_tube_shape(const Net& x);
   void place_among_solids(const Net& x);
   void make_solid_response();
   bool inside_tube(const Net& x);

@@ -39,9 +39,9 @@ std::vector<CellShift> Capsule::move_into_cell(Net& x, Net* v) {
   return shifts;
 }
 
-void Capsule::place_tube(const Net& x) {
+void Capsule::set_tube_shape(const Net& x) {
   if (duct_.net.rows() == x.rows() && duct_.net == x && duct_.origin == duct_.origin_of_net) return;
-  duct_.tube->place(x, duct_.origin);
+  duct_.tube->set_shape(x, duct_.origin);
   duct_.net = x, duct_.origin_of_net = duct_.origin;
 }
 
@@ -84,7 +84,7 @@ void Capsule::make_solid_response() {
 }
 
 void Capsule::place_among_solids(const Net& x) {
-  surroundings_.solids->place(x, targets_.values() * x, targets_.own());
+  surroundings_.solids->set_shape(x, targets_.values() * x, targets_.own());
 }
 
 /// Evaluates the shape with each particle replaced by its image in the cell of a lattice. Converts the velocities to those of the particles.

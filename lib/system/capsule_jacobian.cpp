@@ -48,7 +48,7 @@ CapsuleJacobian::CapsuleJacobian(const CapsuleParameters& parameters, const stok
 void CapsuleJacobian::linearise(const Net& x, const std::vector<Net>& sums) {
   membranes_.linearise(x, sums);
   frozen_.turn_to(x);
-  if (area_) area_->place(x);
+  if (area_) area_->set_shape(x);
   if (interface_) {
     interface_->linearise(x, volumes_.gradient(x));
   } else if (parameters_.constrained() && (flows_by_system() || std::ranges::any_of(parameters_.particles, keeps_area))) {

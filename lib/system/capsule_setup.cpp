@@ -13,9 +13,7 @@ namespace {
 /// Returns the parameters with the space and the block of rows of every particle filled in, and with the trivial symmetry if none is set.
 CapsuleParameters completed(CapsuleParameters parameters, const spline::Space& space) {
   if (parameters.particles.size() == 1) parameters.particles.front().space = &space;
-  place(parameters.particles);
-  for (Particle& one : parameters.particles)
-    one.by_traction = one.rigid && parameters.solvers.rigid_bodies == "first kind";
+  set_blocks(parameters.particles);
   if (parameters.symmetry.fundamental().empty()) parameters.symmetry = surface::Symmetry(space.n_points);
   return parameters;
 }
@@ -44,7 +42,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& r
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
       jacobian_(parameters_, surroundings_.flow, flow_at_targets(), targets_, membranes_, volumes_, frozen_, duct_.tube.get(), interface_.get(),
                 counts_) {
-  if (parameters.solvers.rigid_bodies == "first kind" && !bodies_.rigid.empty())
+  if (std::ranges::any_of(particles(), &Particle::by_traction))
     bodies_.tractions =
         std::make_unique<RigidTractions>(space, membranes_.unstressed(), rest, particles(), parameters.viscosity, parameters.quadrature,
                                          parameters.solvers, parameters.medium, duct_.tube.get(), layout_.points(), ranks);

@@ -18,6 +18,12 @@ void Evaluation::solve(double error) {
   known_ = std::move(known);
 }
 
+void Evaluation::solve_again() {
+  known_ = velocity_;
+  solved_ = false;
+  solve(error_);
+}
+
 void Evaluation::require_solution() {
   if (!solved_) solve();
 }
@@ -77,7 +83,7 @@ const Tube::Response& Evaluation::response() {
   if (!response_) find_unknowns();
   Net inside = x_;
   system_->move_into_cell(inside);
-  system_->place_tube(inside);
+  system_->set_tube_shape(inside);
   if (!response_) response_ = system_->duct_.tube->respond(load_, unknowns_);
   return *response_;
 }
@@ -102,7 +108,7 @@ Tube::Checks Evaluation::checks() {
 
 const Net& Evaluation::viscous_work() {
   if (viscous_work_.size() == 0) {
-    system_->membranes_.place_viscous(x_);
+    system_->membranes_.set_viscous_shape(x_);
     viscous_work_ = system_->membranes_.viscous_work(solved_fluid_velocity());
   }
   return viscous_work_;

@@ -66,6 +66,7 @@ class Evaluation {
 
  private:
   friend class Capsule;
+  void solve_again();       // solves with the same allowed error, so that RigidTractions has the results for this shape
   void require_solution();  // solves for the unknowns if they are not known; a solution with any allowed error is kept
   void find_unknowns();
   const Net& solved_fluid_velocity();  // fluid velocity from a solve at this shape. It is never a copy of the velocity of `near_`
@@ -82,6 +83,7 @@ class Evaluation {
   std::vector<Net> load_sums_;
   std::optional<Tube::Response> response_;
   std::optional<RigidParticles> rigid_;
+  int traction_solve_ = 0;  // RigidTractions::n_solves() after the solve of this evaluation
 };
 
 }  // namespace tanktread::coupling

@@ -39,7 +39,7 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
     std::vector<int> own;
     for (const int i : drop.points) own.push_back(i - block.first_point);
     stokes::Layer layer(stokes::Layer::Kernel::single_layer, *particle.space, particle.space->collocation, parameters.quadrature);
-    layer.place(block.rows(initial));
+    layer.set_shape(block.rows(initial));
     layer.assemble(own, drop.layer);
   }
 }

@@ -20,9 +20,9 @@ void LayerPair::repeat(const stokes::PeriodicCell& cell) {
   if (double_layer) double_layer->repeat(cell);
 }
 
-void LayerPair::place(const Net& x) {
-  single_layer.place(x, measure);
-  if (double_layer) double_layer->place(x);
+void LayerPair::set_shape(const Net& x) {
+  single_layer.set_shape(x, measure);
+  if (double_layer) double_layer->set_shape(x);
 }
 
 void LayerPair::apply(const Net& f, const Net& v, double viscosity, std::span<const int> own, Net& u) {

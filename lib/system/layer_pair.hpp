@@ -9,8 +9,8 @@
 
 namespace tanktread::coupling {
 
-/// The single layer and the double layer of (2.22) of all particles at given points, in a medium or on a lattice. A
-/// medium that changes the kernels is set here for the velocity of the particles, the residual of rigid bodies and the power balance alike.
+/// The single layer and the double layer of (2.22) of all particles at given points, in a medium or on a lattice. A medium that
+/// changes the kernels is set here for the velocity of the particles, the residual of rigid bodies and the power balance alike.
 class LayerPair {
  public:
   /// `points`: points on the particles. `unstressed`: control net of the unstressed surfaces, to which the loads of membranes refer. `medium`:
@@ -22,7 +22,7 @@ class LayerPair {
   void repeat(const stokes::PeriodicCell& cell);
 
   /// Sets the control net x of all particles for both layers.
-  void place(const Net& x);
+  void set_shape(const Net& x);
 
   /// Computes rows `own` of D v - A f/mu at the points, with the control values v of a velocity and f of a load, and the viscosity mu. `u`: shape
   /// (number of points, 3).

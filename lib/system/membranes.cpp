@@ -47,7 +47,7 @@ Net Membranes::strong_load(const Net& x) const {
   return t;
 }
 
-void Membranes::place_viscous(const Net& x) {
+void Membranes::set_viscous_shape(const Net& x) {
   if (viscous_) viscous_->update(x, layout_.elements());
 }
 

@@ -7,7 +7,7 @@
 
 namespace tanktread::coupling {
 
-void place(std::span<Particle> particles) {
+void set_blocks(std::span<Particle> particles) {
   std::vector<const spline::Space*> spaces;
   for (const Particle& particle : particles) spaces.push_back(particle.space);
   const std::vector<spline::Block> blocks = spline::blocks(spaces);

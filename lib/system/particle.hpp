@@ -33,7 +33,8 @@ struct Particle {
   membrane::Material material;
   stokes::Measure measure = stokes::Measure::reference;  ///< surface area to which the load (force per area) refers: unstressed (3.7) or current
                                                          ///< (3.6); not used for rigid bodies
-  bool by_traction = false;  ///< whether the unknown on a rigid body is its traction (2.40) rather than the density w of a double layer (2.23)
+  bool by_traction = false;  ///< whether the unknown on a rigid body is its traction (2.40) rather than the density w of a double layer (2.23). Equal
+                             ///< for all rigid bodies, and false for other particles
   std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface: "material", "normal" or "relaxed"
   double interface_speed = 0;                 ///< speed of the mesh relaxation of a drop, length/time
   bool interface_turns = true;                ///< true if the mesh of an elongated drop turns with its shape; false: it never turns as a whole
@@ -53,7 +54,7 @@ struct CellShift {
 };
 
 /// Sets the block of each particle: its rows in nets that stack all particles in this order.
-void place(std::span<Particle> particles);
+void set_blocks(std::span<Particle> particles);
 
 /// Returns the distinct materials of the particles and, if there are several, the index of the material of each element.
 membrane::Materials materials(std::span<const Particle> particles);

@@ -49,15 +49,15 @@ Net ParticleLayers::apply_single(const Net& x, const Net& f) {
   if (f.isZero(0)) return u;
   {
     const auto clock = phases_.time("single layer");
-    pair_.single_layer.place(x, pair_.measure);
+    pair_.single_layer.set_shape(x, pair_.measure);
     pair_.single_layer.apply(f, targets_.own(), u);
   }
   targets_.gather(pair_.single_layer.shared(), u);
   return u;
 }
 
-void ParticleLayers::place_double(const Net& x) {
-  if (pair_.double_layer) pair_.double_layer->place(x);
+void ParticleLayers::set_double_shape(const Net& x) {
+  if (pair_.double_layer) pair_.double_layer->set_shape(x);
 }
 
 Net ParticleLayers::apply_double(const Net& v) {
@@ -76,8 +76,8 @@ void ParticleLayers::assemble(const Net& x, bool single) {
   };
   // With rigid bodies, the solver may take many iterations, because films between them are thin. Assembling the matrix (72 n^2 bytes) is then faster.
   const bool many_iterations = parameters_.any_rigid() && 72 * n * n < most_bytes;
-  if (auto& layer = pair_.double_layer) layer->place(x), assemble(*layer, layer->by_clusters() && !many_iterations, double_rows_);
-  if (single) pair_.single_layer.place(x, pair_.measure), assemble(pair_.single_layer, pair_.single_layer.by_clusters(), single_rows_);
+  if (auto& layer = pair_.double_layer) layer->set_shape(x), assemble(*layer, layer->by_clusters() && !many_iterations, double_rows_);
+  if (single) pair_.single_layer.set_shape(x, pair_.measure), assemble(pair_.single_layer, pair_.single_layer.by_clusters(), single_rows_);
 }
 
 /// Returns the product of the assembled rows of all ranks with a field.

@@ -71,8 +71,8 @@ class ParticleLayers {
   /// Returns A f on the surface x. Skips the sum if f is zero.
   Net apply_single(const Net& x, const Net& f);
 
-  void place_double(const Net& x);  ///< sets the surface of the double layer, if there is one
-  Net apply_double(const Net& v);   ///< returns D v, with D on the surface that place_double() set
+  void set_double_shape(const Net& x);  ///< sets the surface of the double layer, if there is one
+  Net apply_double(const Net& v);   ///< returns D v, with D on the surface that set_double_shape() set
 
   /// Sets the surface x for apply(), and assembles the rows of the layers if the options ask for it. `single`: whether apply() will need A.
   void assemble(const Net& x, bool single);

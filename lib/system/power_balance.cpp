@@ -146,7 +146,7 @@ Net PowerBalance::residual_velocity(Evaluation& e, Net v, const RigidParticles& 
   const Net inside = density(v, rigid);
   const Solids::Flow by_solids = capsule_.solids() ? e.solid_flow().flow : Solids::Flow();
   const Net at = values_ * x;
-  layers_.place(x);
+  layers_.set_shape(x);
   return values_ * v - flow.velocities(at) - ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
     Net part = u;
     layers_.apply(load, inside, viscosity_, own, u);

@@ -22,7 +22,7 @@ struct Powers {
   double storing = 0;      ///< rate of change of the energy stored in the membranes
   double membranes = 0;    ///< dissipation in the membranes
   double fluids = 0;       ///< dissipation in the fluids minus dissipation in the ambient flow, computed as the remainder of the balance (6.12)
-  double residual = 0;    ///< power of the residual velocity of the boundary integral equation at 2 x 2 Gauss points per element (6.13)
+  double residual = 0;     ///< power of the residual velocity of the boundary integral equation at 2 x 2 Gauss points per element (6.13)
 
   void add_columns(Columns& to) const;
 };

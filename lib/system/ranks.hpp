@@ -33,6 +33,9 @@ class Session {
 /// points, and `replicate` distributes them to all ranks by a Tpetra import. Only treecode sums (TreeSum) are divided in another way: every rank
 /// computes some terms of each row, and the results are summed over the ranks (see Layer::share). Treecode sums on different numbers of ranks
 /// therefore differ by round-off.
+///
+/// Which call to use: filled() for a net whose rows this rank owns; divided() for rows of other matrices, divided evenly among the ranks;
+/// assembled() for sums to which every rank adds; add() for sums in place; of_all() and gathered() for a few numbers.
 class Ranks {
  public:
   Ranks();

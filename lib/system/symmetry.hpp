@@ -16,7 +16,7 @@
 #include "stokes/medium/medium.hpp"
 #include "stokes/medium/periodic_images.hpp"
 #include "surface/symmetry.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 
 namespace tanktread::coupling {
 

@@ -10,7 +10,7 @@
 #include "spline/extraction.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/shapes.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/capsule.hpp"
 #include "system/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
@@ -76,7 +76,6 @@ void velocity_evaluation_in_a_tube(benchmark::State& state) {
   const auto duct = std::make_shared<const stokes::DuctFlow>(options, 1.0, 1.0);
   const surface::TubeWall wall = surface::tube_wall(duct->outline(), options, 2 * 3.14159265358979);
   coupling::TubeParameters parameters;
-  parameters.viscosity_ratio = capsule.parameters.particles.front().viscosity_ratio;
   stokes::FlowOptions shear, in_duct;
   in_duct.type = "duct";
   in_duct.mean_velocity = 1;
@@ -87,9 +86,9 @@ void velocity_evaluation_in_a_tube(benchmark::State& state) {
                                             std::make_unique<coupling::Tube>(wall, *duct, capsule.space, parameters, phases), with);
     state.counters["tube ms"] = 1e3 * confined;
     coupling::Tube tube(wall, *duct, capsule.space, parameters, phases);
-    tube.particles().set_reference(capsule.unstressed);
-    const Net f = capsule.x, on_wall = (tube.place(capsule.x), tube.particle_on_wall(f));
-    state.counters["place ms"] = milliseconds([&] { tube.place(capsule.x); });
+    tube.particles().set_reference(capsule.unstressed), tube.particles().set_contrasts(1 - capsule.parameters.particles.front().viscosity_ratio);
+    const Net f = capsule.x, on_wall = (tube.set_shape(capsule.x), tube.particle_on_wall(f));
+    state.counters["shape ms"] = milliseconds([&] { tube.set_shape(capsule.x); });
     state.counters["load on wall ms"] = milliseconds([&] { tube.particle_on_wall(f); });
     state.counters["velocity on wall ms"] = milliseconds([&] { tube.particle_on_wall({}, f); });
     state.counters["wall solve ms"] = milliseconds([&] { tube.solve_wall(on_wall); });

@@ -159,7 +159,7 @@ void keeps_tolerances_across_gaps(const Particle& p, double single_allowed, doub
       for (Eigen::Index k = 0; k < at.rows(); ++k) exact.row(k) = reference.layer(single, at.row(k).transpose(), {});
       for (const double tolerance : tolerances) {
         CrossLayer layer(p.space, {.tolerance = tolerance}, single ? CrossLayer::Kernel::single_layer : CrossLayer::Kernel::double_layer);
-        layer.place(p.x);
+        layer.set_shape(p.x);
         single ? layer.apply(p.f, at, all, u) : layer.apply(p.f, nearby, at, all, u);
         const double error = largest_error(u, exact);
         std::printf("%s layer across a gap of %.0e, requested %.0e  error %.1e\n", single ? "single" : "double", gap, tolerance, error);

@@ -306,7 +306,7 @@ TEST(CrossLayer, KeepsTheRequestedToleranceAsATargetApproachesTheSurface) {
     for (const double tolerance : {1e-5, 1e-8}) {
       stokes::CrossLayer forces(scene.space, {.tolerance = tolerance}, Kernel::single_layer),
           stresses(scene.space, {.tolerance = tolerance}, Kernel::double_layer);
-      forces.place(scene.x), stresses.place(scene.x);
+      forces.set_shape(scene.x), stresses.set_shape(scene.x);
       Net u(12, 3);
       forces.apply(scene.f, points.at, all, u);
       const double single = largest_error(u, one), twofold = largest_error(double_layer(stresses, scene.f, points.v, points, all), two);

@@ -47,7 +47,7 @@ double work(const Body& on, const Body& from, int order) {
       strengths.push_back(rule.weights[q] * p.jacobian * surface::value(on.space, on.density, site));
     }
   CrossLayer layer(from.space, {.tolerance = 1e-12}, CrossLayer::Kernel::single_layer);
-  layer.place(from.x);
+  layer.set_shape(from.x);
   const auto n = static_cast<Eigen::Index>(places.size());
   const Net at = Eigen::Map<const Net>(places.front().data(), n, 3);
   std::vector<int> all(places.size());

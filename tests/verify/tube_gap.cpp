@@ -28,7 +28,7 @@ Net layer(const spline::Space& space, const Net& x, CrossLayer::Kernel kernel, d
   quadrature::Options options;
   options.tolerance = tolerance;
   CrossLayer layer(space, options, kernel);
-  layer.place(x);
+  layer.set_shape(x);
   std::vector<int> all(static_cast<std::size_t>(at.rows()));
   std::iota(all.begin(), all.end(), 0);
   Net u(at.rows(), 3);

@@ -25,11 +25,10 @@ Interface interface(const Sphere& sphere, const Duct& duct, double ratio) {
   coupling::Ranks ranks;
   Phases phases;
   coupling::TubeParameters parameters;
-  parameters.viscosity_ratio = ratio;
   parameters.quadrature.tolerance = 1e-7;
   coupling::Tube tube(duct.wall, *duct.flow, sphere.space, parameters, phases);
-  tube.particles().set_reference(sphere.net);
-  tube.place(sphere.net);
+  tube.particles().set_reference(sphere.net), tube.particles().set_contrasts(1 - ratio);
+  tube.set_shape(sphere.net);
 
   const Eigen::Index n = sphere.net.rows();
   std::vector<int> all(static_cast<std::size_t>(n));

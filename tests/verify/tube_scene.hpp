@@ -108,7 +108,7 @@ struct RigidSphere {
 
  private:
   Resistance resistance(const coupling::Rigid& driven, const stokes::AmbientFlow& in) {
-    tube->place(sphere.net);
+    tube->set_shape(sphere.net);
     tractions->solve(sphere.net, {&sphere.centre, 1}, {&driven, 1}, in);
     return {tractions->bodies().front().force[0] / (6 * std::numbers::pi * radius),
             tractions->pressure_correction() - tube->pressure_of(tractions->unknowns())};

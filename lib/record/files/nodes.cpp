@@ -65,7 +65,7 @@ LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net) {
     const surface::ElementPoints points(space, net, static_cast<int>(e));
     for (const auto& [i, j] : node_order(p)) {
       sites.push_back({static_cast<int>(e), double(i) / p, double(j) / p});
-      places.push_back(surface::place(points.patch(), sites.back().s, sites.back().t));
+      places.push_back(surface::position(points.patch(), sites.back().s, sites.back().t));
     }
     mesh.offsets.push_back(static_cast<std::int64_t>(places.size()));
   }

@@ -1,6 +1,7 @@
 #include "record/files/options.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 #include "deck/section.hpp"
 
@@ -27,7 +28,8 @@ void Options::declare(deck::Section& section) {
               "deck can read this file by Particle/file");
 }
 
-void Options::limit(double past, std::optional<double> most) {
+void Options::limit(Phases::Clock::time_point start, std::optional<double> most) {
+  const double past = std::chrono::duration<double>(Phases::Clock::now() - start).count();
   if (wall_clock_limit) wall_clock_limit = std::max(0., *wall_clock_limit - past);
   if (most) wall_clock_limit = std::min(*most, wall_clock_limit.value_or(*most));
 }

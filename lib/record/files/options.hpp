@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "base/timing.hpp"
 #include "deck/forward.hpp"
 
 namespace tanktread::output {
@@ -17,8 +18,8 @@ struct Options {
   bool power_balance = false;              ///< true if each row of the series holds the power balance
   bool surface_text = false;               ///< true if the final surface is written as Bezier-extraction text, `surface.iga`
 
-  /// Reduces `wall_clock_limit` by the seconds that have passed, and to at most `most`, for one of several runs that have the limit in common.
-  void limit(double past, std::optional<double> most);
+  /// Reduces `wall_clock_limit` by the seconds since `start`, and to at most `most`, for one of several runs that have the limit in common.
+  void limit(Phases::Clock::time_point start, std::optional<double> most);
   /// Returns true if a run that has taken this many seconds of real time has passed `wall_clock_limit`.
   bool too_late(double seconds) const { return wall_clock_limit && seconds > *wall_clock_limit; }
 

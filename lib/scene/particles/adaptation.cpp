@@ -35,7 +35,7 @@ struct Subject {
 /// Returns the result with the body `target`, for which all nets of the particle and of the state are transferred to the space of `target`. `move`
 /// transfers one net of this particle.
 template <class Move>
-Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& move) {
+Adapted transferred(const Subject& of, std::unique_ptr<Body> target, const Move& move) {
   Adapted result{std::move(target), of.state};
   result.body->rest = move(of.body.rest);
   result.body->initial = move(of.body.initial);
@@ -83,7 +83,7 @@ Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   auto target = on_mesh(of, std::move(mesh));
   const spline::Transfer transfer(of.body.nested(), target->nested());
   const double residual = std::max(transfer(of.body.unstressed).residual, transfer(of.x).residual);
-  Adapted result = carried(of, std::move(target), [&](const Net& field) { return transfer(field).net; });
+  Adapted result = transferred(of, std::move(target), [&](const Net& field) { return transfer(field).net; });
   settle(result, residual, of.body.radius);
   return result;
 }
@@ -214,7 +214,7 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
     });
     const double change = *std::max_element(defect.begin(), defect.end());
     if (change <= scene.adaptation.coarsening_tolerance) {
-      Adapted result = carried(of, std::move(target), [&](const Net& field) { return projection(field).net; });
+      Adapted result = transferred(of, std::move(target), [&](const Net& field) { return projection(field).net; });
       result.finer = false;
       settle(result, change, body.radius);
       return result;

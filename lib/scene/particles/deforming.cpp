@@ -15,6 +15,7 @@
 #include "scene/particles/gaps.hpp"
 #include "scene/particles/limiter.hpp"
 #include "scene/particles/particle_system.hpp"
+#include "scene/particles/rows.hpp"
 #include "scene/particles/surroundings.hpp"
 #include "scene/series/surface_fields.hpp"
 #include "scene/solids.hpp"
@@ -164,28 +165,16 @@ class Deforming : public ParticleSystem {
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
     // Solves the linear system for the velocity again in two cases: if the series of tractions on walls need a more accurate velocity than the step,
     // and if deformable particles and rigid bodies occur together, because the loads of the deformable particles then follow from this solution.
-    const coupling::RigidParticles bodies = capsule_->rigid_at(state.x);
-    const bool deforms = std::ranges::any_of(members_, [](const Member& member) { return !member.scene.particle.rigid(); });
-    if ((deforms && !bodies.empty()) || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
+    const auto rigid = [](const Member& member) { return member.scene.particle.rigid(); };
+    const bool mixed = std::ranges::any_of(members_, rigid) && !std::ranges::all_of(members_, rigid);
+    if (mixed || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.counts = capsule_->counts();
-    std::vector<Columns> columns(members_.size());
-    std::vector<std::unique_ptr<ParticleRow>> rows;
-    for (std::size_t p = 0; p < members_.size(); ++p) rows.push_back(particle_row(p, *here, bodies, state, whole_state.x, columns[p]));
-    add_treading(state.x, v, rows);
+    ParticleRows rows(members_, *capsule_, *fields_, *here, state, whole_state.x, ranks_);
     const std::vector<RecordedParticle> recorded = recorded_particles(members_, state.x, v);
-    Together whole;
-    Columns row, of_particles;
-    for (std::size_t p = 0; p < members_.size(); ++p) {
-      ParticleRow& now = *rows[p];
-      if (!members_[p].scene.particle.rigid()) advance_phase(p, state.x, progress.step.step, now);
-      now.add_columns(members_[p].scene, columns[p]);
-      if (!recorded.empty()) add_series(members_[p].scene, state.time, recorded[p], columns[p]);
-      finish(columns[p]);
-      of_particles.append(columns[p], members_[p].column({}));
-      whole.energy += now.energy, whole.n_points += now.n_points, whole.stresslet += now.stresslet;
-      whole.velocity += now.velocity / static_cast<double>(members_.size());
-    }
+    const Columns of_particles = rows.columns(progress.step.step, recorded);
+    Together whole = rows.together();
+    Columns row;
     for (const coupling::Contact& contact : contacts_.all) whole.stresslet += stresslet_between(contact, state.x);
     progress.add_columns(scene_, row);
     whole.add_columns(scene_, row);
@@ -213,7 +202,6 @@ class Deforming : public ParticleSystem {
 
  private:
   const surface::Geometry& geometry(const Member& member) const { return all_ ? *member.geometry : capsule_->geometry(); }
-  const membrane::Membrane& membrane(const Member& member) const { return all_ ? *member.membrane : capsule_->membrane(); }
 
   /// Returns the number of control points of all particles on their current meshes.
   Eigen::Index n_points() const {
@@ -263,60 +251,6 @@ class Deforming : public ParticleSystem {
 
   /// Returns the largest error of the slope (the velocity of the control points) that the tolerance allows.
   double accuracy() const { return scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate()); }
-
-  /// Returns the data of particle p for a row, except what add_treading() sets. Adds the columns of the particle's surface fields to `to`.
-  std::unique_ptr<ParticleRow> particle_row(std::size_t p, coupling::Evaluation& here, const coupling::RigidParticles& bodies,
-                                            const motion::State& state, const Net& y, Columns& to) {
-    const Member& member = members_[p];
-    if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, here, bodies));
-    const Net x = member.own(state.x), slope = member.own(state.history.front());
-    DeformingRow now = deforming_row(member.scene, *member.body, geometry(member), membrane(member), x, slope, ranks_);
-    now.volume_error = capsule_->volume_error(now.measures.volume, p);
-    now.stresslet = here.stresslet(p);
-    now.energy += here.load_energy(p);
-    if (member.scene.viscous_membrane()) now.dissipation = here.membrane_dissipation(p);
-    now.intrinsic_viscosity = intrinsic_viscosity(capsule_->flow(), scene_.flow.viscosity, now);
-    fields_->add_to(p, y, now, to);
-    return std::make_unique<DeformingRow>(now);
-  }
-
-  /// Sets velocity and tank-treading in the rows of the deforming particles, from the fluid velocity v on their surfaces. Each particle is evaluated
-  /// by one rank.
-  void add_treading(const Net& x, const Net& v, const std::vector<std::unique_ptr<ParticleRow>>& rows) const {
-    const auto found = ranks_.divided<Eigen::MatrixXd>(static_cast<int>(rows.size()), 5, [&](std::span<const int> mine, Eigen::MatrixXd& to) {
-      for (const int k : mine) {
-        const Member& member = members_[k];
-        if (member.scene.particle.rigid()) continue;
-        ParticleRow& now = *rows[k];
-        tanktread::add_treading(member.scene, *member.body, geometry(member), member.own(x), member.own(v), now);
-        to.row(k) << now.velocity.transpose(), now.treading.velocity, now.treading.frequency;
-      }
-    });
-    for (Eigen::Index p = 0; p < found.rows(); ++p)
-      if (!members_[p].scene.particle.rigid())
-        rows[p]->velocity = found.row(p).head<3>().transpose(), rows[p]->treading = {found(p, 3), found(p, 4)};
-  }
-
-  /// Advances the phase angle of particle p, the angle of the material point Member::followed about the centroid, over the last step. Sets it in the
-  /// row.
-  void advance_phase(std::size_t p, const Net& x, double step, ParticleRow& now) {
-    Member& member = members_[p];
-    const Body& body = *member.body;
-    std::optional<double> angle;
-    if (!capsule_->particles()[p].slides())
-      angle = angle_in(body.plane, surface::value(body.nested(), member.own(x), member.followed) - now.centre);
-    member.phase_angle.advance(step, now.treading.frequency, angle);
-    now.phase = member.phase_angle.degrees;
-  }
-
-  RigidRow rigid_row(std::size_t p, coupling::Evaluation& here, const coupling::RigidParticles& bodies) {
-    const Member& member = members_[p];
-    const coupling::RigidParticles& rigid = here.rigid();
-    RigidRow now = tanktread::rigid_row(member.scene, *member.body, capsule_->flow(), geometry(member), member.own(here.x()),
-                                        rigid.motion(p), Eigen::Quaterniond(bodies.turn(p)), here.stresslet(p), ranks_);
-    now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
-    return now;
-  }
 
   /// Adapts the mesh of particle p if the indicator requires it.
   void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {

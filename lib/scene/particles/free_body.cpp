@@ -42,9 +42,7 @@ class Free : public ParticleSystem {
   void forget_recycled() override { tractions_.forget_recycled(); }
   bool adapt(motion::State&, RunTotals&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
-  stokes::Evaluations kernel_evaluations() const override {
-    return tractions_.kernel_evaluations() + (tube_ ? tube_->kernel_evaluations() : stokes::Evaluations());
-  }
+  stokes::Evaluations kernel_evaluations() const override { return tractions_.kernel_evaluations(); }
 
   coupling::OperationCounts counts() const override {
     coupling::OperationCounts sum = before_;
@@ -101,7 +99,7 @@ class Free : public ParticleSystem {
     const Vec3& centre = scene.particle.shape.center;
     if (scene.tube.present || scene.medium())
       return std::make_unique<coupling::BoundedFreeBody>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
-                                                        rigid(scene, body));
+                                                         rigid(scene, body));
     return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, rigid(scene, body));
   }
 

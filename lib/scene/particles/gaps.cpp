@@ -173,7 +173,7 @@ std::vector<Net> own_nets(const std::vector<Member>& members, const Net& x) {
 void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, double reach, std::vector<double>& widths) {
   for (int e = 0; e < surface.size(); ++e)
     for (int k = 0; k < 9; ++k) {
-      const double height = wall.height(surface::place(surface[e], k % 3 / 2., k / 3 / 2.));
+      const double height = wall.height(surface::position(surface[e], k % 3 / 2., k / 3 / 2.));
       if (height <= reach) widths[e] = std::min(widths[e], std::max(height, 0.));
     }
 }
@@ -313,7 +313,7 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
   const motion::AdaptationOptions& options = members[p].scene.adaptation;
   double longest = 0;  // longest diagonal of all elements of the surface, length
   for (int e = 0; e < own.size(); ++e)
-    longest = std::max(longest, (surface::place(own[e], 0, 0) - surface::place(own[e], 1, 1)).norm());
+    longest = std::max(longest, (surface::position(own[e], 0, 0) - surface::position(own[e], 1, 1)).norm());
   const double reach = std::pow(longest / *options.film_resolution, 2) / options.radius;
   std::vector<surface::Patches> placed;
   for (std::size_t q = 0; q < members.size(); ++q)

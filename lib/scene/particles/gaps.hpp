@@ -7,7 +7,7 @@
 
 #include "scene/member.hpp"
 #include "scene/series/diagnostics.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/contact.hpp"
 #include "system/ranks.hpp"
 

@@ -54,12 +54,12 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Rig
   RigidSolution s;
   {
     const auto clock = phases.time("tractions");
-    if (tube) tube->place(body.rest);
+    if (tube) tube->set_shape(body.rest);
     if (scene.reciprocal_forces()) {
       tractions.solve(body.rest, {&centre, 1}, {&driven, 1}, body.flow);
       s.density = tractions.unknowns();
     } else {
-      tractions.place(body.rest, {&centre, 1});
+      tractions.set_shape(body.rest, {&centre, 1});
       s.density = tractions.density(coupling::rigid_velocity(tractions.sites(), driven.motion, centre) - body.flow.velocities(tractions.sites()));
     }
   }

@@ -249,7 +249,7 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
   double most = -2;
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
     const surface::ElementPoints element(space, x, e);
-    const auto of = [&](const spline::Site& site) { return ahead(plane, surface::place(element.patch(), site.s, site.t) - from); };
+    const auto of = [&](const spline::Site& site) { return ahead(plane, surface::position(element.patch(), site.s, site.t) - from); };
     spline::Site start;
     double nearest = -2;
     for (int k = 0; k < intervals * intervals; ++k) {
@@ -362,7 +362,7 @@ double normal_velocity(const Scene& scene, const Body& body, const surface::Geom
     map.points(element, x, points);
     map.points(element, slope, velocities);
     const surface::Jet at = surface::jet({map.degree(element), points}, s, t);
-    const Vec3 v = surface::place({map.degree(element), velocities}, s, t) - frame;
+    const Vec3 v = surface::position({map.degree(element), velocities}, s, t) - frame;
     largest = std::max(largest, std::abs(v.dot(at.s.cross(at.t).normalized())));
   }
   return largest / unit_speed(scene, body);

@@ -6,7 +6,7 @@
 
 #include "stokes/flow/duct_flow.hpp"
 #include "stokes/kernels/cauchy_kernel.hpp"
-#include "surface/outline.hpp"
+#include "surface/walls/outline.hpp"
 
 namespace tanktread::stokes {
 

@@ -5,7 +5,7 @@
 
 #include "base/types.hpp"
 #include "stokes/flow/duct_flow.hpp"
-#include "surface/channel.hpp"
+#include "surface/walls/channel.hpp"
 
 namespace tanktread::stokes {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "base/types.hpp"
-#include "surface/outline.hpp"
+#include "surface/walls/outline.hpp"
 
 namespace tanktread::stokes {
 

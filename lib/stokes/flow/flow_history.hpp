@@ -50,6 +50,9 @@ struct FlowHistory {
 
   /// Returns the first time of the table after `time`, or infinity.
   double next_kink(double time) const;
+
+  /// Returns whether the table has this time or a later one, so that the flow may still change: velocities at a jump are those before it.
+  bool lasts(double time) const { return type == "table" && times->back() >= time; }
 };
 
 }  // namespace tanktread::stokes

@@ -56,23 +56,12 @@ void FlowOptions::declare(deck::Section& section) {
               "velocity of Flow/type `parabolic` on its axis or mid-plane; 1 if not given");
   section.key("half width", half_width, deck::positive(), "length",
               "distance from the axis or mid-plane at which the velocity of Flow/type `parabolic` vanishes");
-  if (registered) declare_registered(section);
+  const auto make = registered ? registered->read(section, type, "type") : UserFlows::Maker();
+  user = make ? make() : nullptr;
   if (section.given("history") || section.documenting()) {
     history.emplace();
     section.section("history", *history, "time dependence of the ambient flow; the flow is steady without this section");
     if (section.documenting()) history.reset();
-  }
-}
-
-/// Reads the section `Flow/<type>` of the chosen registered type, and rejects the sections of all other registered types.
-void FlowOptions::declare_registered(deck::Section& section) {
-  user.reset();
-  for (const std::string& name : registered->names()) {
-    if (name != type && section.given(name))
-      throw UserError(section.path(name) + " belongs to Flow/type `" + name + "`, but Flow/type is `" + type + "`.");
-    if (name != type && !section.documenting()) continue;
-    const auto make = registered->read(section, name);
-    if (name == type) user = make();
   }
 }
 

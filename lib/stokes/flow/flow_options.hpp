@@ -61,7 +61,6 @@ struct FlowOptions {
   double speed(double radius) const;
 
  private:
-  void declare_registered(deck::Section& section);
   double rate_between_plates() const;
 };
 

@@ -16,7 +16,7 @@ void ImageSum::share(int part, int parts) {
   placed_ = false;
 }
 
-void ImageSum::place(const std::vector<double> (&node)[3]) {
+void ImageSum::set_sources(const std::vector<double> (&node)[3]) {
   for (auto& component : node_) component.resize(node[0].size());
   for (std::size_t k = 0; k < node[0].size(); ++k) {
     const Vec3 x = wall_.in_axes({node[0][k], node[1][k], node[2][k]});
@@ -32,18 +32,18 @@ bool ImageSum::want(std::vector<Vec3> targets, std::vector<int> wanted) {
   if (!tree_) return true;
   std::vector<Vec3> at;
   for (const Vec3& x : targets_) at.push_back(below(x));
-  tree_->place(node_, indices(node_[0].size() + 1), at);
+  tree_->set_sources(node_, indices(node_[0].size() + 1), at);
   tree_->want(wanted_);
   return true;
 }
 
 /// Rotates the source strengths into the wall's axes.
-void ImageSum::turn(const Charges& carried, std::vector<double> (&own)[6]) const {
+void ImageSum::turn(const Charges& strengths, std::vector<double> (&own)[6]) const {
   const Mat3& axes = wall_.axes();
   const int in = kind_ == Kind::forces ? 3 : 6;
-  const auto& q = carried.q;
-  for (int c = 0; c < in; ++c) own[c].resize(static_cast<std::size_t>(carried.n));
-  for (int k = 0; k < carried.n; ++k) {
+  const auto& q = strengths.q;
+  for (int c = 0; c < in; ++c) own[c].resize(static_cast<std::size_t>(strengths.n));
+  for (int k = 0; k < strengths.n; ++k) {
     if (kind_ == Kind::forces) {
       const Vec3 f = axes * Vec3(q[0][k], q[1][k], q[2][k]);
       for (int c = 0; c < 3; ++c) own[c][k] = f[c];
@@ -56,9 +56,9 @@ void ImageSum::turn(const Charges& carried, std::vector<double> (&own)[6]) const
   }
 }
 
-Net ImageSum::sum(std::span<const std::vector<double>> carried) {
+Net ImageSum::sum(std::span<const std::vector<double>> strengths) {
   std::vector<double> own[6];
-  turn(charges(node_, carried), own);
+  turn(charges(node_, strengths), own);
   const Charges sources = charges(node_, own);
   Net sums(wanted_.size(), 3);
   if (tree_) {
@@ -77,11 +77,11 @@ Net ImageSum::sum(std::span<const std::vector<double>> carried) {
 
 KernelSum ImageSum::kernel() const { return kind_ == Kind::forces ? image_stokeslet_sum : image_stresslet_sum; }
 
-Vec3 ImageSum::sum(const Charges& carried, int first, const Vec3& target) const {
+Vec3 ImageSum::sum(const Charges& strengths, int first, const Vec3& target) const {
   std::vector<double> own[6];
-  turn(carried, own);
+  turn(strengths, own);
   Charges sources = charges(node_, own);
-  sources.n = carried.n, sources.x += first, sources.y += first, sources.z += first;
+  sources.n = strengths.n, sources.x += first, sources.y += first, sources.z += first;
   const Vec3 at = below(target);
   Vec3 value;
   kernel_sums(kernel(), sources, {&at, 1}, value.data());

@@ -27,24 +27,24 @@ class ImageSum {
   void share(int part, int parts);
 
   /// Sets the positions of the nodes.
-  void place(const std::vector<double> (&node)[3]);
+  void set_sources(const std::vector<double> (&node)[3]);
 
   /// Sets all targets, and the indices of the targets (`wanted`) at which sum() returns the sums. Returns true if the targets, the indices or the
-  /// nodes set by place() have changed since the last call.
+  /// nodes set by set_sources() have changed since the last call.
   bool want(std::vector<Vec3> targets, std::vector<int> wanted);
 
-  /// Returns the sums at the targets selected by want(), one row per target, in the order of `wanted`. `carried`: source strengths of the nodes, with
+  /// Returns the sums at the targets selected by want(), one row per target, in the order of `wanted`. `strengths`: of the sources at the nodes, with
   /// 3 components (forces) or the 6 components of S in the order 11, 22, 33, 12, 13, 23.
-  Net sum(std::span<const std::vector<double>> carried);
+  Net sum(std::span<const std::vector<double>> strengths);
 
-  /// Returns the contribution of the nodes first, first + 1, ... to the sum at one target. `carried`: source strengths of these nodes. The caller
+  /// Returns the contribution of the nodes first, first + 1, ... to the sum at one target. `strengths`: source strengths of these nodes. The caller
   /// subtracts this contribution if near-singular quadrature replaces the nodes.
-  Vec3 sum(const Charges& carried, int first, const Vec3& target) const;
+  Vec3 sum(const Charges& strengths, int first, const Vec3& target) const;
 
   long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum
 
  private:
-  void turn(const Charges& carried, std::vector<double> (&own)[6]) const;
+  void turn(const Charges& strengths, std::vector<double> (&own)[6]) const;
   Vec3 below(const Vec3& x) const { return wall_.in_axes(wall_.mirrored(x)); }
   KernelSum kernel() const;
 

@@ -12,7 +12,7 @@ constexpr double share_of_rest = 0.1;
 
 }  // namespace
 
-void Lattice::place(const LayerSources& sources) {
+void Lattice::set_sources(const LayerSources& sources) {
   const LayerSurface& surface = sources.surface;
   std::array<Vec3, 2> extent = how_.across;
   for (int e = 0; e < surface.panels.size(); ++e) {

@@ -30,7 +30,7 @@ class Lattice : public LayerMedium {
   /// Returns whether Lattice(cell, how) would be equal to this lattice.
   bool is(const PeriodicCell& cell, const Repetition& how) const { return cell_ == cell && how_ == how; }
 
-  void place(const LayerSources& sources) override;
+  void set_sources(const LayerSources& sources) override;
   const std::vector<Vec3>& far_images() const override { return sum_->images(); }
   const std::vector<Vec3>& near_images() const override { return near_; }
   bool wraps() const override { return true; }

@@ -2,7 +2,7 @@
 
 namespace tanktread::stokes {
 
-void LayerMedium::place(const LayerSources& /*sources*/) {}
+void LayerMedium::set_sources(const LayerSources& /*sources*/) {}
 
 void LayerMedium::share(int /*part*/, int /*parts*/) {}
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the surroundings of the surfaces, such as a wall or periodic images, change in a layer.
+// Contribution of the surroundings of the surfaces, such as a wall or periodic images, to a layer.
 
 #include <span>
 #include <vector>
@@ -39,13 +39,13 @@ struct LayerTargets {
 ///   other terms        anything that the derived class sums or integrates itself: add(), add_row()
 ///   smooth remainder   of assembled rows that contain displaced images: add_remainder()
 ///
-/// Order of calls: place() for each shape, then any of the others. One object belongs to one layer.
+/// Order of calls: set_sources() for each shape, then any of the others. One object belongs to one layer.
 class LayerMedium {
  public:
   virtual ~LayerMedium() = default;
 
   /// Prepares the sums for the shape and the weights of `sources`.
-  virtual void place(const LayerSources& sources);
+  virtual void set_sources(const LayerSources& sources);
 
   /// Shares sums by clusters among ranks, see TreeSum::share.
   virtual void share(int part, int parts);

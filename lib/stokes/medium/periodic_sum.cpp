@@ -117,9 +117,9 @@ struct Differences {
   std::array<int, 3> order;
 };
 
-/// Returns the velocity at node a due to the source strengths `carried` of all nodes, with In components per node.
+/// Returns the velocity at node a due to the source `strengths` of all nodes, with In components per node.
 template <int In>
-Eigen::Array4d product(const Differences& of, const double* table, int a, const double* carried) {
+Eigen::Array4d product(const Differences& of, const double* table, int a, const double* strengths) {
   const auto& [n0, n1, n2] = of.order;
   const int* along[3] = {&(*of.number)[0][static_cast<std::size_t>(n0 * (a % n0))], &(*of.number)[1][static_cast<std::size_t>(n1 * (a / n0 % n1))],
                          &(*of.number)[2][static_cast<std::size_t>(n2 * (a / (n0 * n1)))]};
@@ -127,9 +127,9 @@ Eigen::Array4d product(const Differences& of, const double* table, int a, const 
   Eigen::Array4d sum = Eigen::Array4d::Zero();
   for (int b2 = 0; b2 < n2; ++b2)
     for (int b1 = 0; b1 < n1; ++b1)
-      for (int b0 = 0; b0 < n0; ++b0, carried += In) {
+      for (int b0 = 0; b0 < n0; ++b0, strengths += In) {
         const double* t = table + 4 * In * static_cast<std::ptrdiff_t>((along[0][b0] * rows + along[1][b1]) * columns + along[2][b2]);
-        for (int c = 0; c < In; ++c) sum += Eigen::Map<const Eigen::Array4d>(t + 4 * c) * carried[c];
+        for (int c = 0; c < In; ++c) sum += Eigen::Map<const Eigen::Array4d>(t + 4 * c) * strengths[c];
       }
   return sum;
 }
@@ -189,12 +189,12 @@ Vec3 PeriodicSum::in_box(const Vec3& wrapped) const {
 void PeriodicSum::apply(const std::vector<double> (&q)[6], std::vector<double>& u) const {
   const int n = box_.n_nodes();
   const std::size_t in = static_cast<std::size_t>(components_) / 4;
-  std::vector<double> carried;
+  std::vector<double> strengths;
   for (std::size_t b = 0; b < static_cast<std::size_t>(n); ++b)
-    for (std::size_t c = 0; c < in; ++c) carried.push_back(q[c][b]);
+    for (std::size_t c = 0; c < in; ++c) strengths.push_back(q[c][b]);
   const Differences from{&difference_, &differences_, box_.order};
   for (int a = 0; a < n; ++a) {
-    const Eigen::Array4d sum = in == 3 ? product<3>(from, table_.data(), a, carried.data()) : product<6>(from, table_.data(), a, carried.data());
+    const Eigen::Array4d sum = in == 3 ? product<3>(from, table_.data(), a, strengths.data()) : product<6>(from, table_.data(), a, strengths.data());
     for (int i = 0; i < 3; ++i) u[static_cast<std::size_t>(far_block * (3 * (a / far_block) + i) + a % far_block)] = sum[i];
   }
 }

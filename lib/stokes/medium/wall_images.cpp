@@ -90,7 +90,7 @@ Vec3 WallImages::beyond_far_sum(LayerSources& sources, int e, const PointTable& 
   sources.evaluations.near += table.points + n;
   Vec3 better;
   Charges nodes{n, nullptr, nullptr, nullptr, {}};
-  std::vector<double> carried[6];
+  std::vector<double> strengths[6];
   const auto &density = sources.density, &normal = sources.normal;
   if (sources.single()) {
     image_single_sum(table, x.data(), f.data(), sources.area_weights_of(e, table, nullptr), below.data(), better.data());
@@ -100,8 +100,8 @@ Vec3 WallImages::beyond_far_sum(LayerSources& sources, int e, const PointTable& 
     for (std::size_t s = 0; s < 6; ++s) {
       const auto [i, j] = stresses[s];
       for (int k = first; k < first + n; ++k)
-        carried[s].push_back(((density[i][k] - f0[i]) * normal[j][k] + (density[j][k] - f0[j]) * normal[i][k]) / 2);
-      nodes.q[s] = carried[s].data();
+        strengths[s].push_back(((density[i][k] - f0[i]) * normal[j][k] + (density[j][k] - f0[j]) * normal[i][k]) / 2);
+      nodes.q[s] = strengths[s].data();
     }
   }
   return sources.factor(e) * (wall.axes().transpose() * better) - sum_.sum(nodes, first, at);

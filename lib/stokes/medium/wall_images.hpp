@@ -16,7 +16,7 @@ class WallImages : public LayerMedium {
   /// `by_clusters`: whether the far sum is evaluated by clusters.
   WallImages(const PlaneWall& wall, const LayerSources& sources, bool by_clusters);
 
-  void place(const LayerSources& sources) override { sum_.place(sources.surface.node); }
+  void set_sources(const LayerSources& sources) override { sum_.set_sources(sources.surface.node); }
   void share(int part, int parts) override { sum_.share(part, parts); }
   void add(LayerSources& sources, const LayerTargets& targets, Net& u) override;
   bool add_row(LayerSources& sources, const Vec3& x0, std::vector<Mat3>& block) override;

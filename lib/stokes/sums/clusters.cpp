@@ -55,7 +55,7 @@ bool Cluster::serves(const ChebyshevBox& other, const Vec3& beyond) const {
   return square >= reach * reach;
 }
 
-void Clusters::place(const std::vector<double> (&x)[3], std::span<const int> starts) {
+void Clusters::set_sources(const std::vector<double> (&x)[3], std::span<const int> starts) {
   const int n_groups = static_cast<int>(starts.size()) - 1;
   groups_.resize(n_groups);
   for (int g = 0; g < n_groups; ++g) {

@@ -45,7 +45,7 @@ class Clusters {
 
   /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only, and rounding errors hardly
   /// ever change it.
-  void place(const std::vector<double> (&x)[3], std::span<const int> starts);
+  void set_sources(const std::vector<double> (&x)[3], std::span<const int> starts);
 
   const std::vector<Cluster>& all() const { return clusters_; }  ///< parents before their children
   const std::vector<int>& order() const { return order_; }       ///< indices of the points in the order of the tree

@@ -120,7 +120,7 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
     }
     for (int c = 0; c < 3; ++c) centre_[c][e] = views_[e].flat.centre[c];
   }
-  vicinity_.place(panels_.size(), centre_[0].data(), centre_[1].data(), centre_[2].data(), reach_.data());
+  vicinity_.set_points(panels_.size(), centre_[0].data(), centre_[1].data(), centre_[2].data(), reach_.data());
 }
 
 bool NearField::on_same_surface(int e, std::span<const SelfPair> own) const {

@@ -48,13 +48,13 @@ void reflect(ChebyshevBox& box, const surface::Reflection& image) {
 TreeSum::TreeSum(double tolerance, Precision precision)
     : precision_(precision), sources_(allowance * tolerance, source_leaf, 1), target_tree_(allowance * tolerance, target_leaf, far_block) {}
 
-void TreeSum::place(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
+void TreeSum::set_sources(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
                     std::span<const surface::Reflection> reflections) {
-  sources_.place(x, starts);
+  sources_.set_sources(x, starts);
   std::vector<double> at[3];
   for (int c = 0; c < 3; ++c)
     for (const Vec3& target : targets) at[c].push_back(target[c]);
-  target_tree_.place(at, indices(targets.size() + 1));
+  target_tree_.set_sources(at, indices(targets.size() + 1));
   const Clusters& tree = target_tree_;
 
   const int n = static_cast<int>(targets.size()), n_clusters = static_cast<int>(tree.all().size());
@@ -124,9 +124,9 @@ void TreeSum::ask() {
         if (!all[child].bare) in_use_[child] = 1;
 }
 
-void TreeSum::sum(const std::array<const double*, 6>& carried, double* values) {
+void TreeSum::sum(const std::array<const double*, 6>& strengths, double* values) {
   interactions_ = 0;
-  collect(carried);
+  collect(strengths);
   target_u_.assign(target_at_.size() / 3 * out_, 0);
   node_u_.assign(node_at_.size() / 3 * out_, 0);
   has_nodes_.assign(targets_.size(), 0);
@@ -143,10 +143,10 @@ void TreeSum::sum(const std::array<const double*, 6>& carried, double* values) {
 
 /// Copies the source strengths into the order of the tree, and computes the strengths at the Chebyshev nodes of all clusters in use, from the leaves
 /// upwards.
-void TreeSum::collect(const std::array<const double*, 6>& carried) {
+void TreeSum::collect(const std::array<const double*, 6>& strengths) {
   for (int c = 0; c < in_; ++c) {
     q_[c].resize(sources_.order().size());
-    for (std::size_t k = 0; k < q_[c].size(); ++k) q_[c][k] = carried[c][sources_.order()[k]];
+    for (std::size_t k = 0; k < q_[c].size(); ++k) q_[c][k] = strengths[c][sources_.order()[k]];
     node_q_[c].assign(sources_.n_nodes(), 0);
   }
   const std::vector<Cluster>& all = sources_.all();

@@ -25,22 +25,22 @@ class TreeSum {
   /// Sets the positions x of the nodes, and all n targets. The nodes starts[g] .. starts[g + 1] - 1 (group g) always stay in the same cluster. The
   /// sums have n rows for the targets, followed by n rows for each entry of `reflections`: row i + n k belongs to target i reflected by reflections[k
   /// - 1]. The clusters of reflected targets are the reflections of the clusters of targets.
-  void place(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
-             std::span<const surface::Reflection> reflections = {});
+  void set_sources(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
+                   std::span<const surface::Reflection> reflections = {});
 
-  /// Sets the lattice vectors by which the sources are displaced; include 0 for the sources themselves. Must be called before place(). If there are
-  /// other lattice vectors than 0, place() must be called without `reflections`.
+  /// Sets the lattice vectors by which the sources are displaced; include 0 for the sources themselves. Must be called before set_sources(). If
+  /// there are other lattice vectors than 0, set_sources() must be called without `reflections`.
   void repeat(std::vector<Vec3> images) { images_ = std::move(images); }
 
   /// Sets the rows that later sums compute. A row does not depend on which other rows are computed.
   void want(std::span<const int> rows);
 
-  /// Computes the rows of the sum that want() has selected, from the source strengths `carried` of the nodes, one array per component. Component c of
+  /// Computes the rows of the sum that want() has selected, from the source `strengths` of the nodes, one array per component. Component c of
   /// row i is values[Kernel::out i + c].
   template <class Kernel>
-  void sum(const std::array<const double*, 6>& carried, double* values) {
+  void sum(const std::array<const double*, 6>& strengths, double* values) {
     in_ = Kernel::in, out_ = Kernel::out, kernel_ = precision_ == Precision::single ? Kernel::single : Kernel::sum;
-    sum(carried, values);
+    sum(strengths, values);
   }
 
   /// Restricts later sums to one part of the pairs of clusters. For equal positions, source strengths and rows, the sums of parts 0 .. parts - 1 add
@@ -50,8 +50,8 @@ class TreeSum {
   long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum
 
  private:
-  void sum(const std::array<const double*, 6>& carried, double* values);
-  void collect(const std::array<const double*, 6>& carried);
+  void sum(const std::array<const double*, 6>& strengths, double* values);
+  void collect(const std::array<const double*, 6>& strengths);
   void mark(std::span<const int> wanted);
   int row(std::size_t k) const;
   void take_part();

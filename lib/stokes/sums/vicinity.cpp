@@ -14,7 +14,7 @@ constexpr int leaf = 64;
 
 }  // namespace
 
-void Vicinity::place(int n, const double* x, const double* y, const double* z, const double* square) {
+void Vicinity::set_points(int n, const double* x, const double* y, const double* z, const double* square) {
   const double* const at[3] = {x, y, z};
   number_ = indices(n);
   boxes_.clear();
@@ -28,7 +28,7 @@ void Vicinity::place(int n, const double* x, const double* y, const double* z, c
 }
 
 /// Appends to the tree a box for the balls number_[first] .. number_[last - 1], and its descendants. Reorders these entries of number_. During this
-/// call, centre_ and square_ are still in the order of the arguments of place().
+/// call, centre_ and square_ are still in the order of the arguments of set_points().
 void Vicinity::split(int first, int last) {
   Box box{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, first, last, 0, last - first <= leaf};
   for (int k = first; k < last; ++k) {

@@ -12,7 +12,7 @@ namespace tanktread::stokes {
 class Vicinity {
  public:
   /// Sets n balls by centres and squared radii.
-  void place(int n, const double* x, const double* y, const double* z, const double* square);
+  void set_points(int n, const double* x, const double* y, const double* z, const double* square);
 
   /// Lists the indices of the balls that contain the point, in no particular order.
   void list(const double* point, std::vector<int>& holding);

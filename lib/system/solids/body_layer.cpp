@@ -16,7 +16,7 @@ Flat flat(const Net& net) { return {net.data(), net.size()}; }
 
 std::vector<Particle> without_others(std::span<const Particle> bodies) {
   std::vector<Particle> placed(bodies.begin(), bodies.end());
-  place(placed);
+  set_blocks(placed);
   return placed;
 }
 
@@ -60,12 +60,12 @@ void BodyLayer::make_regular(const Net& x) {
   }
 }
 
-void BodyLayer::place(const Net& x, const Net& at, bool keep_rows) {
+void BodyLayer::set_shape(const Net& x, const Net& at, bool keep_rows) {
   factors_.reset();  // frees the old factors before the new matrix is allocated
   at_ = at;
   make_regular(x);
-  layer_.place(x(points_, Eigen::all));
-  if (beyond_) beyond_->place(x(points_, Eigen::all));
+  layer_.set_shape(x(points_, Eigen::all));
+  if (beyond_) beyond_->set_shape(x(points_, Eigen::all));
   const std::vector<int> own = ranks_.share(static_cast<int>(points_.size()));
   const auto n = static_cast<Eigen::Index>(rows_.size());
   matrix_ = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {

@@ -28,9 +28,9 @@ class BodyLayer {
   /// Sets the shape x with the collocation sites `at`. Assembles and factors the single layer A at the sites of the bodies, without images on a
   /// lattice. `keep_rows`: true to store the matrix for many calls of velocity(); false to save memory, and velocity() is then zero in the rows of
   /// bodies.
-  void place(const Net& x, const Net& at, bool keep_rows);
+  void set_shape(const Net& x, const Net& at, bool keep_rows);
 
-  /// Returns (1/mu) A f at the collocation sites of all particles. The rows of bodies are zero if place() was called without `keep_rows`.
+  /// Returns (1/mu) A f at the collocation sites of all particles. The rows of bodies are zero if set_shape() was called without `keep_rows`.
   Net velocity(const Net& f);
 
   /// Returns the regularising term (2.10), a part of the operator (1/mu) A, applied to the density f.

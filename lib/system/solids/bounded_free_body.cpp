@@ -8,7 +8,7 @@
 namespace tanktread::coupling {
 
 BoundedFreeBody::BoundedFreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
-                               double viscosity, const Rigid& driven)
+                                 double viscosity, const Rigid& driven)
     : LoneRigidBody(surface, centre, radius, flow, driven), body_(body), viscosity_(viscosity) {
   if (body.tube()) modes_.emplace(body, surface, centre, false);
 }
@@ -17,7 +17,7 @@ BoundedFreeBody::BoundedFreeBody(RigidTractions& body, const Net& surface, const
 const BoundedFreeBody::Solution& BoundedFreeBody::solution(const Net& place) const {
   if (place_.size() > 0 && place == place_) return solution_;
   const Net x = surface(place);
-  if (body_.tube()) body_.tube()->place(x);
+  if (body_.tube()) body_.tube()->set_shape(x);
   place_ = {};  // invalidates the cached solution, also if the solve throws
   if (!body_.inside(x))
     solution_.motion = {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};

@@ -107,7 +107,7 @@ Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_d
   if (!layer_) {
     layer_ = std::make_shared<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_->space, stokes::Sites(), quadrature_of_flow());
     if (wall->cell()) layer_->repeat(*wall->cell());
-    layer_->place(surface_->net);
+    layer_->set_shape(surface_->net);
   }
   const Net density = wall->on_space(traction);
   const auto evaluate = [&](std::span<const int> own, Net& v) {

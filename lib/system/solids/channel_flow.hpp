@@ -10,8 +10,8 @@
 #include "quadrature/options.hpp"
 #include "stokes/flow/duct_end.hpp"
 #include "stokes/flow/duct_flow.hpp"
-#include "surface/channel.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/channel.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/solids/wall.hpp"
 
 namespace tanktread::coupling {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 
 namespace tanktread::coupling {
 

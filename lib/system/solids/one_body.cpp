@@ -34,10 +34,10 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   stokes::Rows<double> matrix;
   const spline::Space& space = *particle.space;
   stokes::Layer double_layer(stokes::Layer::Kernel::double_layer, space, space.collocation, quadrature);
-  double_layer.place(own);
+  double_layer.set_shape(own);
   double_layer.assemble(all, matrix);  // assembles -H (H: double layer), because the viscosity contrast is -1
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature);
-  layer.place(own);
+  layer.set_shape(own);
   const Vec3 centre = bodies.rest_centre(p);
   for (int k = 0; k < 6; ++k) {
     Net field = rigid_velocity(own, unit_motion(k), centre), at_sites = factors->sites * field;

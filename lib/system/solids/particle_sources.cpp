@@ -16,7 +16,8 @@ ParticleSources::ParticleSources(const spline::Space& space, double viscosity, c
       viscosity_(viscosity),
       quadrature_(quadrature),
       how_(how),
-      collocation_(collocation_matrix(space)) {
+      collocation_(collocation_matrix(space)),
+      contrasts_(Eigen::VectorXd::Zero(space.n_points)) {
   if (cell) cell_ = *cell, single_layer.repeat(*cell_, how_);
 }
 
@@ -38,10 +39,10 @@ void ParticleSources::set(const Net& unstressed, std::span<const Particle> parti
   set_contrasts(viscosity_contrasts_of_points(particles));
 }
 
-void ParticleSources::place(const Net& x) {
+void ParticleSources::set_shape(const Net& x) {
   sites_ = collocation_ * x;
-  single_layer.place(x, measure_);
-  if (double_layer) double_layer->place(x);
+  single_layer.set_shape(x, measure_);
+  if (double_layer) double_layer->set_shape(x);
 }
 
 SourceTargets ParticleSources::prepared(const Net& at, std::span<const int> rows, int first_image_row) {

@@ -28,8 +28,8 @@ struct SourceTargets {
 ///
 /// with the single layer G_C of the particles divided by 8 pi. LayerPair is the counterpart for points on the particles.
 ///
-/// Order of calls: set() after construction, or set_reference() and set_contrasts(); place() for each shape; then add_velocity() for any f and v. If
-/// several f and v have equal targets, call prepared() once for each shape and pass its result. Nets of particles have one row per control point.
+/// Order of calls: set() after construction, or set_reference() and set_contrasts(); set_shape() for each shape; then add_velocity() for any f and v.
+/// If several f and v have equal targets, call prepared() once for each shape and pass its result. Nets of particles have one row per control point.
 /// Uses no MPI.
 class ParticleSources {
  public:
@@ -41,12 +41,13 @@ class ParticleSources {
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
   /// Sets the viscosity contrast at each control point: 1 - lambda of a deformable particle. The contrast of a rigid body is 0 if its unknown is the
-  /// traction (2.40). It is -1 if the unknown is the density w of (2.23), which then takes the place of v.
+  /// traction (2.40). It is -1 if the unknown is the density w of (2.23), which then takes the place of v. All contrasts are 0 before the first call.
   void set_contrasts(const Eigen::VectorXd& contrasts);
+  void set_contrasts(double equal) { set_contrasts(Eigen::VectorXd::Constant(space_.n_points, equal)); }
   void set(const Net& unstressed, std::span<const Particle> particles);  ///< sets the reference and the contrasts of these particles
 
   /// Sets the control net x of the particles.
-  void place(const Net& x);
+  void set_shape(const Net& x);
 
   /// Prepares `rows` of the targets at the points `at`, for the current shape.
   SourceTargets prepared(const Net& at, std::span<const int> rows, int first_image_row = std::numeric_limits<int>::max());

@@ -56,7 +56,7 @@ Mat3 strain_of_products(const Eigen::Matrix<double, 5, 1>& p) {
 
 RigidModes::RigidModes(RigidTractions& body, const Net& surface, const Vec3& centre, bool quadratic)
     : response(6, affine_modes + (quadratic ? quadratic_modes : 0)) {
-  body.place(surface, {&centre, 1});
+  body.set_shape(surface, {&centre, 1});
   const Net& at = body.sites();
   const Net from_centre = at.rowwise() - centre.transpose();
   const auto field = [&](int k) -> Net {

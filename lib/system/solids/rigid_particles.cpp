@@ -24,7 +24,7 @@ namespace {
 std::array<Net, 6> single_layer_at(const stokes::Sites& sites, const spline::Space& space, const Net& surface, const std::array<Net, 6>& f,
                                    const quadrature::Options& quadrature) {
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, sites, quadrature);
-  layer.place(surface);
+  layer.set_shape(surface);
   const std::vector<int> all = indices(sites.size());
   std::array<Net, 6> u;
   u.fill(Net(sites.size(), 3));
@@ -39,7 +39,7 @@ Eigen::MatrixXd weighted_double_layer(const stokes::Sites& sites, const Eigen::S
   constexpr int at_a_time = 512;
   using Strided = Eigen::Map<const stokes::Rows<double>, 0, Eigen::OuterStride<>>;
   stokes::Layer layer(stokes::Layer::Kernel::double_layer, space, sites, quadrature);
-  layer.place(surface);
+  layer.set_shape(surface);
   const int n_sites = static_cast<int>(sites.size());
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(3 * weights.rows(), surface.size());
   stokes::Rows<double> rows;
@@ -123,7 +123,7 @@ bool RigidParticles::prescribed() const {
   return std::ranges::any_of(bodies_, [](const Body& body) { return body.rigid.prescribed; });
 }
 
-void RigidParticles::place(Net& x) {
+void RigidParticles::fit_to(Net& x) {
   if (!x.allFinite()) return;
   for (Body& body : bodies_) {
     auto rows = body.block.rows(x);

@@ -54,7 +54,7 @@ class RigidParticles {
   bool prescribed() const;  ///< returns whether the motion of at least one body is prescribed
 
   /// Moves every body to the position that fits the rows of the body in x best. Replaces these rows by the control points of the moved body.
-  void place(Net& x);
+  void fit_to(Net& x);
 
   /// Sets forces on the bodies in addition to the prescribed forces. `work`: virtual work of these forces per unit displacement of each control
   /// point, one row per control point of all particles; no rows if there are no such forces. The forces act on material points and have fixed

@@ -34,7 +34,7 @@ RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, 
       layers_(space, between_.places, unstressed, particles, for_residual(quadrature), medium) {}
 
 Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls) {
-  layers_.place(x);
+  layers_.set_shape(x);
   const Net at = between_.values * x;
   const Tube::Response response = walls.tube ? walls.tube->respond(load, v) : Tube::Response();
   const Solids::Flow by_solids = walls.solids ? walls.solids->respond(load, v) + walls.solids->empty() : Solids::Flow();

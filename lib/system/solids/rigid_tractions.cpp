@@ -161,11 +161,11 @@ Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
   return y - minus_velocity;
 }
 
-void RigidTractions::place(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around) {
+void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around) {
   around_ = std::move(around);
   x_ = x, sites_ = collocation_ * x;
   centres_.assign(centres.begin(), centres.end());
-  layer_.place(x, sites_, responds() && !repeats_);
+  layer_.set_shape(x, sites_, responds() && !repeats_);
 }
 
 /// Returns the collocation-error corrections (2.11) for the unknowns y. Each column of z is a force density; its correction is its work in the
@@ -181,7 +181,8 @@ Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd&
 void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
                            std::optional<Surroundings> around) {
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
-  place(x, centres, std::move(around));
+  ++n_solves_;
+  set_shape(x, centres, std::move(around));
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
   const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);
   Net empty = around_ ? Net(-around_->flow) : at_sites;
@@ -243,6 +244,11 @@ SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {
   body.moment = weighted.transpose() * (block.rows(x_).rowwise() - centres_[p].transpose());
   body.torque << body.moment(2, 1) - body.moment(1, 2), body.moment(0, 2) - body.moment(2, 0), body.moment(1, 0) - body.moment(0, 1);
   return body;
+}
+
+stokes::Evaluations RigidTractions::kernel_evaluations() const {
+  const stokes::Evaluations own = layer_.evaluations() + residual_.evaluations();
+  return walls_.tube ? own + walls_.tube->kernel_evaluations() : own;
 }
 
 bool RigidTractions::inside(const Net& x) const {

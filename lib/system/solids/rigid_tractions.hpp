@@ -78,17 +78,17 @@ class RigidTractions {
     std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
   };
 
-  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, call Tube::place(x) before. `around`: interactions
-  /// with deformable particles and with images on a lattice; not set if there are neither. Collective.
-  void place(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
+  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, call Tube::set_shape(x) before. `around`:
+  /// interactions with deformable particles and with images on a lattice; not set if there are neither. Collective.
+  void set_shape(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
 
   /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles at the net x. `driven`: prescribed force
-  /// and torque, or prescribed motion, of each body. `flow`: ambient flow. `centres`, `around`: as for place(). Results are kept until the next call.
-  /// Collective.
+  /// and torque, or prescribed motion, of each body. `flow`: ambient flow. `centres`, `around`: as for set_shape(). Results are kept until the next
+  /// call. Collective.
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
              std::optional<Surroundings> around = {});
 
-  /// Returns the force densities, shape (N, 3), that cause these velocities at the collocation sites of the net passed to place() last. Neither
+  /// Returns the force densities, shape (N, 3), that cause these velocities at the collocation sites of the net passed to set_shape() last. Neither
   /// motions of the bodies nor corrections of the collocation error are included. All particles must be bodies. Collective.
   Net density(const Net& velocities);
 
@@ -100,16 +100,19 @@ class RigidTractions {
   /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
   SolvedBody integrals(std::size_t p, const Net& f);
 
-  /// Returns the positions of the collocation sites of all particles on the net passed to place() last.
+  /// Returns the positions of the collocation sites of all particles on the net passed to set_shape() last.
   const Net& sites() const { return sites_; }
 
-  BodyLayer& layer() { return layer_; }  ///< returns the single layer on the net passed to place() last
+  BodyLayer& layer() { return layer_; }  ///< returns the single layer on the net passed to set_shape() last
 
-  /// Returns whether the bodies with the net x are inside the tube and in the medium. If there is a tube, call Tube::place(x) before.
+  /// Returns whether the bodies with the net x are inside the tube and in the medium. If there is a tube, call Tube::set_shape(x) before.
   bool inside(const Net& x) const;
 
   /// Returns the results for the bodies in the order of the particles. Their moments lack the collocation-error correction that moment() adds.
   const std::vector<SolvedBody>& bodies() const { return bodies_; }
+
+  /// Returns the number of calls of solve() so far, which shows whether the results are still those of an earlier call.
+  int n_solves() const { return n_solves_; }
 
   /// Returns int f r dG of body p for the latest solve. Unless there is a tube, its symmetric traceless part is corrected for the collocation error.
   /// This takes five additional solves, one for each unit strain. Collective.
@@ -126,7 +129,7 @@ class RigidTractions {
   int solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
   void forget_recycled() const;  ///< discards the data of earlier solves that the iterative solvers of this equation and of the tube's wall keep
   Tube* tube() const { return walls_.tube; }
-  stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + residual_.evaluations(); }
+  stokes::Evaluations kernel_evaluations() const;  ///< of the layers of the bodies and of the tube
 
  private:
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
@@ -145,10 +148,11 @@ class RigidTractions {
   Eigen::SparseMatrix<double> collocation_;  // collocation matrix R
   membrane::MassMatrix mass_;
   bool repeats_ = false;
+  int n_solves_ = 0;
   Krylov krylov_;
   double tolerance_;
-  std::optional<Surroundings> around_;  // surroundings passed to place() last
-  Net x_, sites_;                       // x_: net passed to place() last. sites_: positions of the collocation sites on this net
+  std::optional<Surroundings> around_;  // surroundings passed to set_shape() last
+  Net x_, sites_;                       // x_: net passed to set_shape() last. sites_: positions of the collocation sites on this net
   Eigen::VectorXd weighted_residual_;   // int N_A (v - v_inf - (1/mu) A f) dG for the latest f: residual of (2.40), used by (2.11)
   std::vector<Vec3> centres_;
   std::vector<SolvedBody> bodies_;

@@ -1,5 +1,7 @@
 #include "system/solids/solid_response.hpp"
 
+#include <algorithm>
+
 namespace tanktread::coupling {
 
 namespace {
@@ -33,11 +35,11 @@ SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space
       flow_(flow),
       particles_(space, scene.solids->viscosity(), scene.quadrature, &scene.solids->cell(), {.across = scene.solids->across()}) {}
 
-void SolidResponse::place(const Net& x, const Net& at, std::span<const int> own) {
-  if (shape_.rows() == x.rows() && shape_ == x && at_.rows() == at.rows() && at_ == at) return;
+void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> own) {
+  if (shape_.rows() == x.rows() && shape_ == x && at_.rows() == at.rows() && at_ == at && std::ranges::equal(own, own_)) return;
   shape_ = x, at_ = at;
   own_.assign(own.begin(), own.end());
-  particles_.place(x);
+  particles_.set_shape(x);
   areas_ = particles_.single_layer.moments(particles_.single_layer.weights());
   Solids& solids = *scene_.solids;
   solids.reach(x);

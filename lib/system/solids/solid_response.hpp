@@ -42,11 +42,11 @@ class SolidResponse {
   /// `space`: common space of all particles. `flow`: ambient flow. References must outlive this object.
   SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow);
 
-  ParticleSources& particles() { return particles_; }  ///< contrasts and unstressed net must be set before place()
+  ParticleSources& particles() { return particles_; }  ///< contrasts and unstressed net must be set before set_shape()
 
   /// Sets the particles' control net; later calls use this shape. `at`: points on the particles at which `velocities` are needed. `own`: the rows
   /// that this rank computes.
-  void place(const Net& x, const Net& at, std::span<const int> own);
+  void set_shape(const Net& x, const Net& at, std::span<const int> own);
 
   /// Returns the solution without particles.
   const Solids::Flow& empty();

@@ -50,7 +50,7 @@ Solids::Solids(const std::vector<Solid>& solids, const Parameters& parameters, P
   make_layer();
   stokes::Layer on_itself(stokes::Layer::Kernel::single_layer, surface_.space, surface_.sites, parameters.quadrature.for_matrix());
   on_itself.repeat(cell(), {.assembled = true, .across = across_});
-  on_itself.place(surface_.net);
+  on_itself.set_shape(surface_.net);
   const auto& grid = solids.front().surface.grid;
   if (grid[0] > 0 && std::ranges::all_of(solids, [&](const Solid& one) { return one.surface.grid == grid; })) factor_plates(on_itself, grid);
   factor(on_itself);
@@ -75,7 +75,7 @@ void Solids::make_layer() {
   if (layer_) evaluations_ += layer_->evaluations();
   layer_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, stokes::Sites(), parameters_.quadrature);
   layer_->repeat(cell(), {.across = reached_});
-  layer_->place(surface_.net);
+  layer_->set_shape(surface_.net);
 }
 
 /// Sets the range of coordinates for which the layer is accurate, so that it includes x. The range depends only on the current x, so that a resumed

@@ -13,7 +13,7 @@
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
 #include "stokes/layer.hpp"
-#include "surface/solid_surface.hpp"
+#include "surface/walls/solid_surface.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/plate_factors.hpp"
 

@@ -48,11 +48,11 @@ Net Tube::in_wall_frame(Net x) const {
   return x;
 }
 
-void Tube::place(const Net& x, std::optional<double> centroid) {
+void Tube::set_shape(const Net& x, std::optional<double> centroid) {
   const auto clock = phases_.time("wall");
   if (!centroid && !fixed()) centroid = particle_->geometry.measures(x).centroid[0];
   if (!centroid && cell()) centroid = cell()->shift(x.colwise().mean().transpose() - (wall().start + wall().end) / 2 * Vec3::UnitX())[0];
-  particle_->place(x, centroid.value_or(0), *flow_, *wall_, empty_pressure_drop());
+  particle_->set_shape(x, centroid.value_or(0), *flow_, *wall_, empty_pressure_drop());
 }
 
 double Tube::pressure_of(const Net& f, const Net& v) {

@@ -14,7 +14,7 @@
 #include "stokes/flow/duct_flow.hpp"
 #include "stokes/kernels/kernels.hpp"
 #include "surface/symmetry.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/channel_flow.hpp"
 #include "system/solids/particle_sources.hpp"
@@ -26,7 +26,6 @@ struct BetweenSites;
 
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
-  double viscosity_ratio = 1;        ///< lambda, if equal for all particles; otherwise see particles()
   surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; Symmetry() if there is none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
@@ -70,12 +69,12 @@ class Tube {
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
-  /// Returns the particles as sources of flow. Their unstressed net must be set before place().
+  /// Returns the particles as sources of flow. Their unstressed net, and their contrasts if they are not 0, must be set before set_shape().
   ParticleSources& particles();
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: x1 coordinate of the origin of the frame of
   /// wall() if the wall is straight; by default the x1 coordinate of the particle's centroid.
-  void place(const Net& x, std::optional<double> centroid = {});
+  void set_shape(const Net& x, std::optional<double> centroid = {});
 
   /// Returns the lattice of a periodic duct; not set for other ducts.
   const std::optional<stokes::PeriodicCell>& cell() const;

@@ -104,7 +104,7 @@ Tube::BetweenSitesOfWall::BetweenSitesOfWall(const surface::TubeWall& wall, cons
       weights(between.weights),
       layer(stokes::Layer::Kernel::single_layer, wall.space, between.places, for_leak(options)) {
   if (cell) layer.repeat(*cell);
-  layer.place(wall.net);
+  layer.set_shape(wall.net);
 }
 
 Tube::Leak Tube::leak(const Net& f) {

@@ -34,14 +34,13 @@ Tube::Particle::Particle(const spline::Space& particle, const TubeParameters& ho
       periodic(wall.cell()) {
   own = ranks.divide_points(space, parameters.symmetry.order() > 1 ? parameters.symmetry : surface::Symmetry(space.n_points));
   from_sites.factor(sources.collocation());
-  sources.set_contrasts(Eigen::VectorXd::Constant(space.n_points, 1 - how.viscosity_ratio));
 }
 
-void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
+void Tube::Particle::set_shape(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
   centroid = origin;
   shape = x;
   shape.col(0).array() -= centroid;
-  sources.place(shape);
+  sources.set_shape(shape);
   flow_of_strength_.resize(0, 3);
   target_points = wall.points().targets();
   own_targets = wall.points().own_targets();

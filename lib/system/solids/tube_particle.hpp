@@ -16,13 +16,13 @@
 namespace tanktread::coupling {
 
 /// The surface of all particles in a tube, in the frame of the wall: what it causes at the wall, the weights with which its load and velocity enter
-/// the pressure drop (2.7), and the frozen operators of the Jacobian. place() sets all members that depend on the shape, except those of `frozen`,
-/// which freeze() sets. Calls are collective.
+/// the pressure drop (2.7), and the frozen operators of the Jacobian. set_shape() sets all members that depend on the shape, except those of
+/// `frozen`, which freeze() sets. Calls are collective.
 struct Tube::Particle {
   Particle(const spline::Space& space, const TubeParameters& parameters, const Wall& wall);
 
   /// Sets the shape. `origin`: position along x1 of the origin of the wall's frame. `pressure_drop`: pressure drop of the empty duct.
-  void place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
+  void set_shape(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
 
   /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights with which a velocity on the wall contributes to
   /// the pressure drop dp, or empty. If it is not empty, also computes the weights with which the particle's velocity v contributes to dp: the

@@ -98,12 +98,12 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   const auto n = static_cast<int>(wall.sites.size());
   if (!cell_) inlet_.emplace(wall.outline, wall.start, quadrature.for_matrix().tolerance);
   if (cell_) layer_.repeat(*cell_, {.assembled = true});
-  layer_.place(wall.net);
+  layer_.set_shape(wall.net);
   if (wall.channel) boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
   on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, points_.target_sites(wall),
                                                quadrature.for_matrix());
   if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
-  on_itself_->place(wall.net);
+  on_itself_->set_shape(wall.net);
   if (cell_) find_pressure();
   if (solver.iterates(3.0 * n / symmetry_.order(), cell_.has_value())) {
     patches_of_rows_.emplace(surface_, *on_itself_, symmetry_.fundamental());

@@ -17,7 +17,7 @@
 #include "surface/closest_points.hpp"
 #include "surface/geometry.hpp"
 #include "surface/symmetry.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/solids/wall_points.hpp"
 #include "system/solvers/krylov.hpp"
 

@@ -9,7 +9,7 @@
 #include "base/types.hpp"
 #include "stokes/layer.hpp"
 #include "surface/symmetry.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/ranks.hpp"
 
 namespace tanktread::coupling {

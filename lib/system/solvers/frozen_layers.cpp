@@ -21,7 +21,7 @@ void FrozenLayers::assemble(const Net& at, const Net& x) {
   const int n = static_cast<int>(x.rows());
   stokes::Layer& single = at_sites_ ? at_sites_->single_layer : layers_.single_layer();
   const auto assemble = [&](std::span<const int> targets, auto&&... of) { single.assemble(targets, of...); };
-  single.place(x, stokes::Measure::reference);
+  single.set_shape(x, stokes::Measure::reference);
   if (nodal()) {
     const Eigen::SparseMatrix<double>& sites = targets_.at_sites();
     const NodalOperator::Surface surface{sites * x, sites, mass_.row_sums(unstressed_), mass_.row_sums(x), parameters_.symmetry};
@@ -31,7 +31,7 @@ void FrozenLayers::assemble(const Net& at, const Net& x) {
   }
   if (!has_double()) return;
   stokes::Layer& layer = at_sites_ ? *at_sites_->double_layer : *layers_.double_layer();
-  layer.place(x);
+  layer.set_shape(x);
   double_.assemble(own, n, [&](std::span<const int> targets, stokes::Rows<float>& rows) { layer.assemble(targets, rows); });
 }
 

@@ -28,9 +28,10 @@ void FrozenOperator::assemble(const std::vector<int>& targets, int n, const Asse
     assemble(some, rows);
     for (size_t k = 0; k < some.size(); ++k) {
       std::uint16_t* out = entries_.data() + 6 * static_cast<size_t>(n) * (first + k);
+      const auto first_row = 3 * static_cast<Eigen::Index>(k);
       for (int i = 0; i < 3; ++i)
         for (int j = i; j < 3; ++j, out += n)
-          for (int b = 0; b < n; ++b) out[b] = narrowed(rows(3 * static_cast<Eigen::Index>(k) + i, 3 * b + j));
+          for (int b = 0; b < n; ++b) out[b] = narrowed((rows(first_row + i, 3 * b + j) + rows(first_row + j, 3 * b + i)) / 2);
     }
   }
 }

@@ -55,7 +55,7 @@ void NodalOperator::assemble(const std::vector<int>& targets, const Surface& sur
   tree_.emplace(cluster_tolerance);
   std::vector<Vec3> at;
   for (const auto site : surface.sites.rowwise()) at.emplace_back(site.transpose());
-  tree_->place(node_, indices(n + 1), at);
+  tree_->set_sources(node_, indices(n + 1), at);
   tree_->share(part_, parts_);
   tree_->want(parts_ > 1 ? everybody_ : targets_);
 }
@@ -68,7 +68,7 @@ void NodalOperator::share(int part, int parts, std::vector<int> everybody) {
 void NodalOperator::find_near(const Surface& surface, double reach) {
   const Eigen::VectorXd square = reach * reach * surface.areas;
   stokes::Vicinity vicinity;
-  vicinity.place(static_cast<int>(square.size()), node_[0].data(), node_[1].data(), node_[2].data(), square.data());
+  vicinity.set_points(static_cast<int>(square.size()), node_[0].data(), node_[1].data(), node_[2].data(), square.data());
   near_ = {};
   for (const Vec3& x0 : at_) {
     vicinity.list(x0.data(), near_.point);

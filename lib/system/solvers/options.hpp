@@ -40,6 +40,10 @@ struct IterativeOptions {
   void declare(deck::Section& section);
 };
 
+/// Integral equation of rigid bodies: `second_kind` for the density of a double layer (RigidParticles), `first_kind` for the tractions
+/// (RigidTractions), `automatic` for the choice by Scene::by_tractions().
+enum class BodyEquation { automatic, second_kind, first_kind };
+
 /// Options `Solvers/*` of the deck: the solvers of the linear systems.
 struct SolverOptions {
   std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver of all systems that do not set their own
@@ -54,8 +58,7 @@ struct SolverOptions {
   std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values:
                                                   ///< preconditioner of one system for all unknowns (TubeSystem)
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (see WallSolver)
-  std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind (RigidParticles), first kind
-                                      ///< (RigidTractions), or auto (Scene::by_tractions)
+  BodyEquation rigid_bodies = BodyEquation::automatic;
   std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
   std::string frozen_operator = "nodal";          ///< single layer of the Jacobian: nodal (NodalOperator) or assembled (FrozenOperator)
   membrane::DirectSolverOptions direct;

@@ -25,7 +25,7 @@ TEST(AreaConstraint, InvertsTheStiffPartOfTheTangent) {
   const Sphere& s = sphere(3);
   for (const Law& law : laws) {
     AreaConstraint constraint(with_points(s, law), mobility(s.net.rows()));
-    constraint.place(s.net);
+    constraint.set_shape(s.net);
     constraint.factor(0.7);
     const Net r = random_net(s.net.rows(), 5), p = constraint.apply(r);
     const Net stiff = difference([&](const Net& y) { return area_load(s, law, y); }, s.net, p);

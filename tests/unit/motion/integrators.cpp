@@ -360,10 +360,10 @@ TEST(DenseOutput, IsOfFourthOrderAndItsSlopeOfThird) {
       return state;
     };
     const DenseOutput dense(at(1), at(1 + step));
-    EXPECT_EQ(dense.place(1)(0, 0), std::sin(1.0));
+    EXPECT_EQ(dense.shape(1)(0, 0), std::sin(1.0));
     EXPECT_NEAR(dense.slope(1 + step)(0, 0), std::cos(1 + step), 1e-14);
     const double time = 1 + 0.3 * step;  // not a point where the error of the slope vanishes
-    return std::pair(std::abs(dense.place(time)(0, 0) - std::sin(time)), std::abs(dense.slope(time)(0, 0) - std::cos(time)));
+    return std::pair(std::abs(dense.shape(time)(0, 0) - std::sin(time)), std::abs(dense.slope(time)(0, 0) - std::cos(time)));
   };
   const auto [place, slope] = errors(0.1);
   const auto [finer_place, finer_slope] = errors(0.05);

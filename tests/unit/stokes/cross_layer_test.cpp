@@ -45,7 +45,7 @@ TEST(CrossLayer, IsTheIntegral) {
   for (const spline::Element& e : s.space.elements) field.emplace_back(e, s.f);
   for (const auto kernel : {CrossLayer::Kernel::single_layer, CrossLayer::Kernel::double_layer}) {
     CrossLayer layer(s.space, s.options, kernel);
-    layer.place(s.x);
+    layer.set_shape(s.x);
     Net u(4, 3);
     layer.apply(s.f, s.at, s.all, u);
     for (int i = 0; i < 4; ++i) {
@@ -63,7 +63,7 @@ TEST(CrossLayer, IsItsAssembledRows) {
   const Fixture s;
   for (const auto kernel : {CrossLayer::Kernel::single_layer, CrossLayer::Kernel::double_layer}) {
     CrossLayer layer(s.space, s.options, kernel);
-    layer.place(s.x);
+    layer.set_shape(s.x);
     Net u(4, 3);
     layer.apply(s.f, s.at, s.all, u);
     Rows<double> rows;
@@ -77,7 +77,7 @@ TEST(CrossLayer, KeepsItsNearRulesForFurtherDensities) {
   const Fixture s;
   for (const auto kernel : {CrossLayer::Kernel::single_layer, CrossLayer::Kernel::double_layer}) {
     CrossLayer layer(s.space, s.options, kernel);
-    layer.place(s.x);
+    layer.set_shape(s.x);
     const CrossLayer::Near kept = layer.near(s.at, s.all);
     EXPECT_GT(kept.panels.size(), 0u);
     Net u(4, 3), again(4, 3);
@@ -95,7 +95,7 @@ TEST(CrossLayer, KeepsItsNearRulesForFurtherDensities) {
 TEST(CrossLayer, FeelsNoConstantVelocityOutside) {
   const Fixture s;
   CrossLayer layer(s.space, s.options, CrossLayer::Kernel::double_layer);
-  layer.place(s.x);
+  layer.set_shape(s.x);
   Net u(4, 3), shifted(4, 3);
   const Net v0 = Vec3(1, -2, 3).transpose().replicate(4, 1);
   layer.apply(s.f, s.at, s.all, u);
@@ -108,9 +108,9 @@ TEST(CrossLayer, MeasuresALoadOnTheUnstressedArea) {
   CrossLayer layer(s.space, s.options, CrossLayer::Kernel::single_layer);
   layer.set_reference(2 * s.x);
   Net present(4, 3), reference(4, 3);
-  layer.place(s.x);
+  layer.set_shape(s.x);
   layer.apply(s.f, s.at, s.all, present);
-  layer.place(s.x, Measure::reference);
+  layer.set_shape(s.x, Measure::reference);
   layer.apply(s.f, s.at, s.all, reference);
   EXPECT_LT((reference - 4 * present).norm() / present.norm(), 1e-7);
 }
@@ -118,7 +118,7 @@ TEST(CrossLayer, MeasuresALoadOnTheUnstressedArea) {
 TEST(CrossLayer, MomentsAreDualToValues) {
   const Fixture s;
   CrossLayer layer(s.space, s.options, CrossLayer::Kernel::single_layer);
-  layer.place(s.x);
+  layer.set_shape(s.x);
   std::vector<double> value[3];
   layer.values(s.f, value);
   const double sum = std::inner_product(value[0].begin(), value[0].end(), layer.weights().begin(), 0.);

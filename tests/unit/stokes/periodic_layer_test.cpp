@@ -85,7 +85,7 @@ TEST(PeriodicLayer, AssembledRowsOfTargetsAtFarNodesAreTheSum) {
   std::iota(all.begin(), all.end(), 0);
   Layer layer(Layer::Kernel::single_layer, space, sites, {.rule = "fixed", .points = points, .far_sum = "dense"});
   layer.repeat(cell(), {.assembled = true});
-  layer.place(x);
+  layer.set_shape(x);
   Net u(static_cast<Eigen::Index>(sites.size()), 3);
   layer.apply(field, all, u);
   Rows<double> rows;

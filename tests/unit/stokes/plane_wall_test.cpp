@@ -20,14 +20,14 @@ namespace plane_wall_test {
 
 const PlaneWall level(Vec3(0.3, 0.2, -0.4), Vec3(0, 0, 1)), oblique(Vec3(0.1, -0.2, 0.3), Vec3(1, -2, 2));
 
-/// Returns the velocity at x0 due to the images of one node at y. `carried`: source strength of the node.
-Vec3 image(ImageSum::Kind kind, const PlaneWall& wall, const std::vector<double>& carried, const Vec3& y, const Vec3& x0) {
+/// Returns the velocity at x0 due to the images of one node at y with the strengths `strengths`.
+Vec3 image(ImageSum::Kind kind, const PlaneWall& wall, const std::vector<double>& strengths, const Vec3& y, const Vec3& x0) {
   ImageSum sum(kind, wall, {});
   const std::vector<double> node[3] = {{y[0]}, {y[1]}, {y[2]}};
-  sum.place(node);
+  sum.set_sources(node);
   sum.want({x0}, {0});
   std::vector<std::vector<double>> each;
-  for (const double q : carried) each.push_back({q});
+  for (const double q : strengths) each.push_back({q});
   return sum.sum(each).row(0).transpose();
 }
 
@@ -143,7 +143,7 @@ Net layer_of(Layer::Kernel kernel, const Net& x, const Net& f, const PlaneWall& 
   const Surface& of = ellipsoid();
   Layer layer(kernel, of.space, of.space.collocation, {.tolerance = tolerance, .far_sum = far_sum});
   layer.set_medium(wall);
-  layer.place(x);
+  layer.set_shape(x);
   Net u = Net::Zero(of.space.n_points, 3);
   layer.apply(f, of.all, u);
   return u;
@@ -198,7 +198,7 @@ TEST(PlaneWall, RowsMakeTheSameSums) {
   for (const auto kernel : {single, twofold}) {
     Layer layer(kernel, of.space, of.space.collocation, {.tolerance = 1e-7});
     layer.set_medium(of.below(0.02));
-    layer.place(of.x);
+    layer.set_shape(of.x);
     Rows<double> rows;
     layer.assemble(of.all, rows);
     const Eigen::VectorXd product = rows * Eigen::Map<const Eigen::VectorXd>(of.field.data(), of.field.size());
@@ -215,7 +215,7 @@ TEST(PlaneWall, FluidSticksToIt) {
   for (const auto kernel : {single, twofold}) {
     CrossLayer layer(of.space, {.tolerance = 1e-6}, kernel);
     layer.set_medium(wall);
-    layer.place(of.x);
+    layer.set_shape(of.x);
     Net u = Net::Zero(7, 3);
     layer.apply(of.field, at, targets, u);
     EXPECT_LT(u.cwiseAbs().maxCoeff(), 1e-11);

@@ -39,7 +39,7 @@ struct Cloud {
 
   Net sum(TreeSum& tree, const std::vector<int>& wanted) const {
     Net u = Net::Zero(static_cast<Eigen::Index>(targets.size()), 3);
-    tree.place(x, starts, targets);
+    tree.set_sources(x, starts, targets);
     tree.want(wanted);
     tree.sum<StokesletKernel>({f[0].data(), f[1].data(), f[2].data()}, u.data());
     return u;
@@ -85,7 +85,7 @@ TEST(TreeSum, KeepsItsToleranceInACubeAndInATiltedSlab) {
 TEST(Clusters, HaveNodesOnlyWhereTheseAreFewerThanTheirPoints) {
   const Cloud cloud(9000, 0, 1);
   Clusters tree(1e-5, 64, 1);
-  tree.place(cloud.x, cloud.starts);
+  tree.set_sources(cloud.x, cloud.starts);
   int nodes = 0, bare = 0;
   for (const Cluster& c : tree.all()) {
     EXPECT_EQ(c.bare, c.n_points() <= c.n_nodes());
@@ -110,8 +110,8 @@ TEST(Clusters, OfMirroredPointsDoNotDependOnRounding) {
     for (int c = 0; c < 3; ++c) moved[c].push_back(x[c][k] + 1e-16 * std::sin(static_cast<double>(7 * k) + c));
   }
   Clusters tree(1e-5, 64, 1), other(1e-5, 64, 1);
-  tree.place(x, starts);
-  other.place(moved, starts);
+  tree.set_sources(x, starts);
+  other.set_sources(moved, starts);
   EXPECT_EQ(tree.order(), other.order());
 }
 

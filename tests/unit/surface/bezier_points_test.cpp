@@ -60,10 +60,10 @@ TEST(BezierPoints, DerivativesOfAPatchAreThoseOfItsPlaces) {
     const Patch patch = element.patch();
     const double s = 0.3, t = 0.8, h = 1e-4;
     const Jet at = jet(patch, s, t);
-    EXPECT_LT((at.x - place(patch, s, t)).norm(), 1e-15);
+    EXPECT_LT((at.x - position(patch, s, t)).norm(), 1e-15);
     // The errors of central differences are h^2 times a third derivative of order one, or round-off divided by h^2 = 1e-8.
-    EXPECT_LT(((place(patch, s + h, t) - place(patch, s - h, t)) / (2 * h) - at.s).norm(), 1e-7);
-    EXPECT_LT(((place(patch, s, t + h) - place(patch, s, t - h)) / (2 * h) - at.t).norm(), 1e-7);
+    EXPECT_LT(((position(patch, s + h, t) - position(patch, s - h, t)) / (2 * h) - at.s).norm(), 1e-7);
+    EXPECT_LT(((position(patch, s, t + h) - position(patch, s, t - h)) / (2 * h) - at.t).norm(), 1e-7);
     EXPECT_LT(((jet(patch, s + h, t).s - jet(patch, s - h, t).s) / (2 * h) - at.ss).norm(), 1e-7);
     EXPECT_LT(((jet(patch, s, t + h).s - jet(patch, s, t - h).s) / (2 * h) - at.st).norm(), 1e-7);
     EXPECT_LT(((jet(patch, s, t + h).t - jet(patch, s, t - h).t) / (2 * h) - at.tt).norm(), 1e-7);

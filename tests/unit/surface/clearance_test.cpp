@@ -22,7 +22,7 @@ double sampled(const Patches& surface, const Outline& outline) {
       for (int k = 0; k < (2 * n + 1) * (2 * n + 1); ++k) {
         const double at_s = std::clamp(s0 + half * (k % (2 * n + 1) - n) / n, 0., 1.),
                      at_t = std::clamp(t0 + half * (k / (2 * n + 1) - n) / n, 0., 1.);
-        const Vec3 x = place(surface[e], at_s, at_t);
+        const Vec3 x = position(surface[e], at_s, at_t);
         if (const double gap = outline.distance({x[1], x[2]}); gap < best) best = gap, s = at_s, t = at_t;
       }
     };

@@ -10,7 +10,7 @@
 #include "spline/t_mesh.hpp"
 #include "surface/closest_points.hpp"
 #include "surface/shapes.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -45,7 +45,7 @@ double by_brute_force(const Shape& shape, const Net& a, const Net& b) {
     std::vector<Vec3> all;
     for (int e = 0; e < patches.size(); ++e)
       for (int k = 0; k <= n; ++k)
-        for (int l = 0; l <= n; ++l) all.push_back(place(patches[e], double(k) / n, double(l) / n));
+        for (int l = 0; l <= n; ++l) all.push_back(position(patches[e], double(k) / n, double(l) / n));
     return all;
   };
   double least = 1e9;
@@ -78,7 +78,7 @@ TEST(ClosestPoints, OfEqualSurfacesAboveEachOtherAreTheirTops) {
   double top = -1;
   for (int e = 0; e < patches.size(); ++e)
     for (const double s : {0., 0.5, 1.})
-      for (const double t : {0., 0.5, 1.}) top = std::max(top, place(patches[e], s, t)[2]);
+      for (const double t : {0., 0.5, 1.}) top = std::max(top, position(patches[e], s, t)[2]);
   for (const double gap : {1., 1e-2, 1e-4}) {
     const Net above = shape.sphere.rowwise() + Eigen::RowVector3d(0, 0, 2 * top + gap);
     const ClosestPoints found = closest(shape, shape.sphere, above);
@@ -131,7 +131,7 @@ TEST(FilmWidths, BesideTheWallOfATube) {
   const std::vector<double> widths = film_widths(sphere, others, 0.25);
   EXPECT_NEAR(*std::ranges::min_element(widths), 0.1, 3e-3);  // the sphere's fit, and the distance of elements from their tangent planes
   for (int e = 0; e < sphere.size(); ++e)
-    if (place(sphere[e], 0.5, 0.5).tail<2>().norm() < 0.3) {
+    if (position(sphere[e], 0.5, 0.5).tail<2>().norm() < 0.3) {
       EXPECT_EQ(widths[static_cast<std::size_t>(e)], std::numeric_limits<double>::infinity());
     }
 }

@@ -34,7 +34,7 @@ TEST(Deformation, TheLargestCoordinateIsNotSoughtAtTheHighestBezierPoint) {
   Net net = Net::Zero(16, 3);
   net.col(0) << -5, -7, 0, -5, -5, -4, -3, -5, -6, -3, -2, -1, -12, -1, -4, -6;  // the highest one is on a side, the maximum is inside
   const Patches patches(BezierMap(space), net);
-  EXPECT_NEAR(coordinate_range(patches, 0).largest, place(patches[0], 0.7336, 0.5846)[0], 1e-6);
+  EXPECT_NEAR(coordinate_range(patches, 0).largest, position(patches[0], 0.7336, 0.5846)[0], 1e-6);
 }
 
 TEST(Deformation, OfAnEllipsoidInAnyPositionIsThatOfItsSectionAndItsMoments) {
@@ -81,7 +81,7 @@ TEST(Deformation, ExtremesOfACrumpledSurfaceBoundWhatDenseSamplingFinds) {
       Vec3 y[cells + 1][cells + 1];
       for (int j = 0; j <= cells; ++j) {
         for (int i = 0; i <= cells; ++i) {
-          const Vec3 x = place(patches[e], double(i) / cells, double(j) / cells);
+          const Vec3 x = position(patches[e], double(i) / cells, double(j) / cells);
           y[j][i] = x - centre;
           for (int c = 0; c < 3; ++c) low[c] = std::min(low[c], x[c]), high[c] = std::max(high[c], x[c]);
           for (const Vec3& before : {i > 0 ? y[j][i - 1] : y[j][i], j > 0 ? y[j - 1][i] : y[j][i]}) {

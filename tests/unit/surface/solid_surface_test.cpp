@@ -1,6 +1,6 @@
 // Surfaces of plates and posts, and periodic densities on them.
 
-#include "surface/solid_surface.hpp"
+#include "surface/walls/solid_surface.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -10,7 +10,7 @@
 #include "base/errors.hpp"
 #include "spline/basis.hpp"
 #include "surface/geometry.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 
 namespace tanktread::surface {
 namespace {

@@ -9,7 +9,7 @@
 #include "membrane/laws.hpp"
 #include "spline/extraction.hpp"
 #include "surface/shapes.hpp"
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 #include "system/capsule.hpp"
 
 namespace tanktread::coupling {
@@ -62,7 +62,6 @@ struct Confined {
       parameters.particles.front().interface_speed = 1;
     }
     in_tube.viscosity = 1.3;
-    in_tube.viscosity_ratio = viscosity_ratio;
     capsule = std::make_unique<Capsule>(space, unstressed, unstressed, stokes::AmbientFlow(flow, duct), parameters, ranks, phases,
                                         std::make_unique<Tube>(*wall, *duct, space, in_tube, phases));
   }
@@ -108,7 +107,7 @@ TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
 
     EXPECT_EQ(fresh.capsule->velocity(fresh.x), v);
     const Net f = fresh.capsule->evaluate(fresh.x)->load();
-    fresh.capsule->tube()->place(fresh.x);
+    fresh.capsule->tube()->set_shape(fresh.x);
     const Tube::Response again = fresh.capsule->tube()->respond(f, v);
     EXPECT_EQ(response.wall_traction, again.wall_traction);
     EXPECT_EQ(response.pressure_drop, again.pressure_drop);

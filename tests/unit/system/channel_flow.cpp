@@ -99,7 +99,7 @@ struct InStraightChannel {
     const Net flux = surface::Geometry(space).volume_gradient(x);
     v -= flux.cwiseProduct(v).sum() / flux.squaredNorm() * flux;
     TubeParameters parameters;
-    parameters.viscosity = 1.7, parameters.viscosity_ratio = ratio;
+    parameters.viscosity = 1.7;
     parameters.quadrature.tolerance = 1e-7;
     surface::TubeOptions options = coupling::channel("straight", around);
     options.channel->start = -pi + 0.2, options.channel->end = pi + 0.2, options.channel->axial_elements = around;
@@ -107,7 +107,7 @@ struct InStraightChannel {
     options.channel.reset(), options.axial_elements = around;
     const stokes::DuctFlow flow(options, 1.7, 1.3);
     tube = std::make_unique<Tube>(surface::tube_wall(flow.outline(), options, 2 * pi), flow, space, parameters, phases);
-    for (Tube* one : {tube.get(), channel.get()}) one->particles().set_reference(x), one->place(x);
+    for (Tube* one : {tube.get(), channel.get()}) one->particles().set_reference(x), one->particles().set_contrasts(1 - ratio), one->set_shape(x);
   }
 };
 
@@ -126,7 +126,7 @@ TEST(Channel, KeepsItsAnswerFrozen) {
   InStraightChannel s(5, 12);
   s.channel->freeze();
   const Net now = s.channel->respond(s.f, s.v).velocity;
-  s.channel->place(s.x + Eigen::RowVector3d(0.2, 0, 0.1).replicate(s.x.rows(), 1));
+  s.channel->set_shape(s.x + Eigen::RowVector3d(0.2, 0, 0.1).replicate(s.x.rows(), 1));
   EXPECT_LT((s.channel->frozen_response(s.f, s.v) - now).norm() / now.norm(), 1e-2);  // nine bits per entry
 }
 

@@ -38,7 +38,7 @@ TEST(Contact, ForcesAreEqualAndOppositeAndTurnNothing) {
   const Net sphere = surface::resting_shape(space, mesh, {});
   std::vector<Particle> particles(2);
   particles[0].space = particles[1].space = &space;
-  place(particles);
+  set_blocks(particles);
   Contact contact{{0, 1}, {spline::Site{4, 0.3, 0.6}, spline::Site{20, 1, 0.2}}};
   Net x(2 * space.n_points, 3);
   x << sphere, sphere;

@@ -101,7 +101,7 @@ TEST(FreeBody, MeetsAQuadraticFlowByItsModesAsBySolvingAtThePlace) {
     EXPECT_LT((one.angular_velocity - other.angular_velocity).norm(), 5e-5 * other.angular_velocity.norm());
     EXPECT_LT((modes.stresslet(place) - solve.stresslet(place)).norm(), 1e-4 * solve.stresslet(place).norm());
     const Vec3 centre = centre_of(place);
-    f.tractions->place(modes.surface(place), {&centre, 1});
+    f.tractions->set_shape(modes.surface(place), {&centre, 1});
     const Net& at = f.tractions->sites();
     const Net direct = f.tractions->density(rigid_velocity(at, one, centre) - modes.flow().velocities(at));
     EXPECT_LT((modes.force_density(place) - direct).norm(), 1e-6 * direct.norm());  // tolerance of integrals times the condition number

@@ -21,7 +21,7 @@ struct Fixture : SingleEllipsoid {
   explicit Fixture(const Vec3& semi_axes) : SingleEllipsoid(semi_axes, Vec3::Zero()) { place(Vec3::Zero()); }
 
   /// Sets the point about which torques and moments are computed.
-  void place(const Vec3& centre) const { tractions->place(rest, {&centre, 1}); }
+  void place(const Vec3& centre) const { tractions->set_shape(rest, {&centre, 1}); }
 
   using Velocity = std::function<Vec3(const Vec3&)>;
 

@@ -46,11 +46,11 @@ struct Fixture {
     options.azimuthal_elements = 12, options.axial_elements = 10;
     flow = std::make_shared<stokes::DuctFlow>(options, viscosity, 1.3);
     TubeParameters parameters;
-    parameters.viscosity = viscosity, parameters.viscosity_ratio = ratio;
+    parameters.viscosity = viscosity;
     parameters.quadrature.tolerance = 1e-6;
     tube = std::make_unique<Tube>(surface::tube_wall(flow->outline(), options, 2 * pi), *flow, space, parameters, phases);
-    tube->particles().set_reference(x);
-    tube->place(x);
+    tube->particles().set_reference(x), tube->particles().set_contrasts(1 - ratio);
+    tube->set_shape(x);
   }
 };
 
@@ -99,7 +99,7 @@ TEST(Tube, IsTheSameEverywhereAlongItsAxis) {
   Fixture s(5);
   const Net here = s.tube->respond(s.f, s.v).velocity;
   const double gap = s.tube->gap();
-  s.tube->place(s.x.rowwise() + Eigen::RowVector3d(123, 0, 0));
+  s.tube->set_shape(s.x.rowwise() + Eigen::RowVector3d(123, 0, 0));
   EXPECT_LT((s.tube->respond(s.f, s.v).velocity - here).norm() / here.norm(), 1e-9);  // round-off at a distance of 123
   EXPECT_NEAR(s.tube->gap(), gap, 1e-10);
 }
@@ -113,7 +113,7 @@ TEST(Tube, KeepsItsAnswerFrozen) {
   Fixture s(5);
   s.tube->freeze();
   const Net now = s.tube->respond(s.f, s.v).velocity;
-  s.tube->place(0.8 * s.x);
+  s.tube->set_shape(0.8 * s.x);
   EXPECT_LT((s.tube->frozen_response(s.f, s.v) - now).norm() / now.norm(), 1e-2);  // nine bits per entry
   EXPECT_GT((s.tube->respond(s.f, s.v).velocity - now).norm() / now.norm(), 0.1);
 }
@@ -124,8 +124,8 @@ TEST(Tube, ServesAnotherMeshOfTheParticle) {
   const spline::Space space = spline::space(finer, spline::ExtraordinaryRule::g1);
   const Net x = surface::resting_shape(space, finer, s.shape);
   Tube other(*s.tube, space);
-  other.particles().set_reference(x);
-  other.place(x);
+  other.particles().set_reference(x), other.particles().set_contrasts(1 - 5);
+  other.set_shape(x);
   const auto work = [](Tube& tube, const Net& net) {  // for a constant load and a rigid velocity; independent of the mesh
     const Net load = Eigen::RowVector3d(1, 0.5, 0).replicate(net.rows(), 1);
     return tube.respond(load, net).pressure_drop;
@@ -135,7 +135,7 @@ TEST(Tube, ServesAnotherMeshOfTheParticle) {
 
 TEST(Tube, GivesItsAnswerAnywhere) {
   Fixture s(5);
-  s.tube->place(s.x.rowwise() + Eigen::RowVector3d(7, 0, 0));
+  s.tube->set_shape(s.x.rowwise() + Eigen::RowVector3d(7, 0, 0));
   const Tube::Response r = s.tube->respond(s.f, s.v);
   Net u(s.x.rows(), 3), sites(s.x.rows(), 3);
   std::vector<int> all;

@@ -4,7 +4,7 @@
 
 #include <Eigen/SparseLU>
 
-#include "surface/outline.hpp"
+#include "surface/walls/outline.hpp"
 
 namespace tanktread::surface {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "surface/outline.hpp"
+#include "surface/walls/outline.hpp"
 
 namespace tanktread::surface {
 

@@ -8,8 +8,8 @@
 
 #include "base/types.hpp"
 #include "spline/space.hpp"
-#include "surface/channel.hpp"
-#include "surface/outline.hpp"
+#include "surface/walls/channel.hpp"
+#include "surface/walls/outline.hpp"
 
 namespace tanktread::surface {
 

@@ -1,11 +1,11 @@
-#include "surface/solid_surface.hpp"
+#include "surface/walls/solid_surface.hpp"
 
 #include <algorithm>
 
 #include <Eigen/Geometry>
 
 #include "base/formatted.hpp"
-#include "surface/outline.hpp"
+#include "surface/walls/outline.hpp"
 #include "surface/spline_lines.hpp"
 
 namespace tanktread::surface {

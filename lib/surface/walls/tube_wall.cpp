@@ -1,4 +1,4 @@
-#include "surface/tube_wall.hpp"
+#include "surface/walls/tube_wall.hpp"
 
 #include <algorithm>
 #include <cmath>

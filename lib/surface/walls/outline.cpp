@@ -1,4 +1,4 @@
-#include "surface/outline.hpp"
+#include "surface/walls/outline.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/words.hpp"
-#include "surface/outline.hpp"
+#include "surface/walls/outline.hpp"
 
 namespace tanktread::surface {
 namespace {

@@ -1,4 +1,4 @@
-#include "surface/channel.hpp"
+#include "surface/walls/channel.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,107 @@
+#include "scene/memory.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Teuchos_ParameterList.hpp>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "scene/scene.hpp"
+#include "scene/tube.hpp"
+#include "surface/walls/channel.hpp"
+#include "system/ranks.hpp"
+#include "system/solvers/frozen_operator.hpp"
+
+namespace tanktread {
+
+namespace {
+
+constexpr double most_bytes = 64e9;        // largest size of the assembled operators of one surface, summed over all ranks
+constexpr double doubles = 72;             // bytes of a 3 x 3 block of doubles
+constexpr double most_vector_bytes = 4e9;  // largest size of the vectors of an iterative solver, on one rank
+
+/// Return the numbers of control points: points() of the particle, wall_points() of the tube wall.
+double points(const Scene& scene) {
+  const auto& imported = scene.particle.shape.imported;
+  return imported ? imported->space.n_points : scene.surface.n_points();
+}
+
+double wall_points(const Scene& scene) {
+  const int of_tube = scene.tube.axial_elements.value_or(surface::TubeOptions::default_axial_elements);
+  const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : of_tube;
+  return scene.tube.azimuthal_elements * (along + 3.0);
+}
+
+/// Returns the bytes of all assembled operators of the particle per pair of control points. A layer operator has 3 x 3 doubles per pair, and a frozen
+/// operator six numbers of 16 bits. An operator with the option `auto` is not counted, because it is not assembled if it is too large.
+double bytes_a_pair(const Scene& scene) {
+  if (scene.particle.rigid()) return doubles * coupling::Ranks().size() * (scene.tube.present ? 2 : 1);  // LU factors; in a tube, also the matrix
+  const bool viscous = scene.particle.viscosity_ratio != 1;
+  const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
+  return doubles * ((viscous + scene.viscous_membrane()) * (scene.solvers.double_layer == "assembled") + (scene.interface_motion() == "relaxed")) +
+         coupling::FrozenOperator::bytes_a_pair * frozen;
+}
+
+/// Throws UserError if the assembled operators for `n_points` control points are too large. The message begins "<keys> must <must>", where `keys` are
+/// the keys of the deck that determine this number.
+void check_bytes(const std::string& keys, const std::string& must, double n_points, double bytes) {
+  if (bytes * n_points * n_points > most_bytes)
+    throw UserError(
+        keys + " must " + must +
+        formatted(": the assembled boundary-integral operators of %.0f control points take %.0f GB, more than the limit of %.0f GB.",
+                  n_points, bytes * n_points * n_points / 1e9, most_bytes / 1e9));
+}
+
+/// Throws UserError if the assembled operators of the particle or of the wall of a duct are too large.
+void check_size(const Scene& scene) {
+  const double bytes = bytes_a_pair(scene), most = std::floor(std::sqrt(most_bytes / bytes));
+  const std::string few = formatted("give at most %.0f control points", most);
+  if (scene.particle.shape.imported)
+    check_bytes("Particle/file", few, points(scene), bytes);
+  else if (scene.surface.polar())
+    check_bytes("Surface/azimuthal elements and Surface/meridional elements", few, points(scene), bytes);
+  else
+    check_bytes("Surface/elements per side",
+                formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *scene.surface.elements_per_side),
+                points(scene), bytes);
+  if (!scene.tube.present || (scene.tube.channel && coupling::WallSolver{scene.solvers.wall}.may_iterate(scene.tube.period > 0))) return;
+  check_bytes(scene.tube.list() + "/azimuthal elements and " + scene.tube.list() + "/axial elements",
+              formatted("give at most %.0f control points", most_wall_points()), wall_points(scene), doubles * coupling::Ranks().size());
+}
+
+/// Throws UserError if the vectors that each rank stores for an iterative solver, and the matrix of their inner products, are too large.
+void check_vectors(const Scene& scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
+  const double unknowns = 3 * (points(scene) + (scene.tube.present ? wall_points(scene) : 0));
+  double vectors = 1;
+  std::string keys;
+  for (const char* key : {"Num Blocks", "Block Size", "Num Recycled Blocks", "Deflation Blocks", "Adaptive Block Size"}) {
+    if (!list || !list->isType<int>(key)) continue;
+    vectors *= std::max(1, list->get<int>(key));
+    keys += (keys.empty() ? std::string() : " and ") + path + "/Belos/" + key;
+  }
+  const double most = std::floor((std::sqrt(unknowns * unknowns + 4 * most_vector_bytes / 8) - unknowns) / 2);
+  if (vectors > most)
+    throw UserError(keys + formatted(" may ask for at most %.0f vectors, which with %.0f unknowns take %.0f GB on each rank, but %.0f are asked for.",
+                                     most, unknowns, most_vector_bytes / 1e9, vectors));
+}
+
+}  // namespace
+
+double most_wall_points() { return std::floor(std::sqrt(most_bytes / (doubles * coupling::Ranks().size()))); }
+
+void check_memory(const Scene& scene) {
+  check_size(scene);
+  check_vectors(scene, "Solvers", scene.solvers.belos);
+  for (const coupling::IterativeOptions* system : scene.solvers.systems()) check_vectors(scene, system->path, system->belos);
+}
+
+void check_first_kind(const Scene& scene) {
+  double n_points = 0;
+  for (const Scene& one : scene.alone())
+    if (one.particle.rigid()) n_points += points(one);
+  if (n_points == 0) throw UserError("Solvers/rigid bodies `first kind` is for rigid bodies, but every Particle deforms.");
+  check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
+}
+
+}  // namespace tanktread

@@ -1,0 +1,19 @@
+#pragma once
+// Limits of memory. They are checked before a run allocates anything.
+
+namespace tanktread {
+
+struct Scene;
+
+/// Throws UserError if the operators assembled for the particle or for the wall of its duct, or the vectors of an iterative solver, take more memory
+/// than the program allows. `scene`: scene with one particle.
+void check_memory(const Scene& scene);
+
+/// Throws UserError if the scene has no rigid bodies for the first-kind equation (2.40), or if the matrix of this equation is too large.
+void check_first_kind(const Scene& scene);
+
+/// Returns the largest number of control points that the wall of a tube may have. Each rank stores the factors of the wall, and the factors of all
+/// ranks together must fit into the allowed memory.
+double most_wall_points();
+
+}  // namespace tanktread

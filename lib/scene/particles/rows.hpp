@@ -1,0 +1,43 @@
+#pragma once
+// The part of a row of the series that belongs to the particles of a coupled system.
+
+#include <vector>
+
+#include "scene/member.hpp"
+#include "scene/series/surface_fields.hpp"
+
+namespace tanktread {
+
+/// Measurements on all particles of a coupled system at one state. Calls are collective.
+class ParticleRows {
+ public:
+  /// `here`: evaluation of the shape. `state`: state of the shape only, with the velocity of the control points as the first of its `history`. `y`:
+  /// state x of shape and surface fields. References must outlive this object.
+  ParticleRows(std::vector<Member>& members, const coupling::Capsule& capsule, const SurfaceFields& fields, coupling::Evaluation& here,
+               const motion::State& state, const Net& y, coupling::Ranks& ranks);
+
+  /// Advances the phase angle of each deforming particle by `step`, the step that led to the state, and returns the columns of all particles. The
+  /// fluid velocity on their surfaces is that of `here`. `recorded`: particles for user-defined series; empty if there are none.
+  Columns columns(double step, const std::vector<RecordedParticle>& recorded);
+
+  Together together() const;  ///< returns totals and means of all particles, without the stresslets of pairs in contact
+
+ private:
+  const surface::Geometry& geometry(const Member& member) const { return members_.size() > 1 ? *member.geometry : capsule_.geometry(); }
+  const membrane::Membrane& membrane(const Member& member) const { return members_.size() > 1 ? *member.membrane : capsule_.membrane(); }
+  DeformingRow deforming(std::size_t p, const Net& y);
+  RigidRow rigid(std::size_t p, const coupling::RigidParticles& bodies);
+  void add_treading(const Net& v);
+  void advance_phase(std::size_t p, double step);
+
+  std::vector<Member>& members_;
+  const coupling::Capsule& capsule_;
+  const SurfaceFields& fields_;
+  coupling::Evaluation& here_;
+  const motion::State& state_;
+  coupling::Ranks& ranks_;
+  std::vector<std::unique_ptr<ParticleRow>> rows_;
+  std::vector<Columns> columns_;  // columns of the surface fields of each particle
+};
+
+}  // namespace tanktread
