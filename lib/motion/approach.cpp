@@ -19,11 +19,11 @@ std::string Approach::text() const {
 Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
                          const coupling::SolverOptions& solvers, Net& x) {
   // The full flow is reached by continuation in its amplitude, from 0 to 1. At each amplitude, a steady shape is searched for.
-  // least_step: smallest step of the amplitude. coarse: tolerance of each search, unless Steady/tolerance is larger. far: largest change of shape
-  // from one amplitude to the next, divided by the particle radius. few: a search with fewer iterations makes the next step of the amplitude longer.
-  // most_searches: largest number of searches. most_polishes: largest number of repeated searches in the full flow with Steady/tolerance; each starts
-  // at the shape found by the previous search, with a new Jacobian. most_short_searches: number of searches in the full flow, with a tenth of
-  // Steady/step, that are tried before the continuation.
+  // least_step: smallest step of the amplitude. coarse: tolerance of each search, unless Steady/tolerance is larger. far: largest distance between
+  // the first and the last shape of a search, divided by the particle radius. few: a search with fewer iterations makes the next step of the
+  // amplitude longer. most_searches: largest number of searches. most_polishes: largest number of repeated searches in the full flow with
+  // Steady/tolerance; each starts at the shape found by the previous search, with a new Jacobian. most_short_searches: number of searches in the
+  // full flow, with a tenth of Steady/step, that are tried before the continuation.
   constexpr double least_step = 1. / 512, coarse = 1e-6, far = 0.5;
   constexpr int few = 25, most_searches = 60, most_polishes = 3, most_short_searches = 2;
   Approach way;

@@ -108,7 +108,7 @@ class LayerSources {
 
   LayerKernel kernel_;
   std::vector<double> factor_;
-  std::optional<Measure> measure_;  // kind of area (current or unstressed) that `weight` contains; not set before the first place()
+  std::optional<Measure> measure_;  // kind of area (current or unstressed) that `weight` contains; not set before set_shape()
   Reference reference_;
   std::vector<double> bezier_field_;
   std::vector<Pack> point_weights_, scratch_;

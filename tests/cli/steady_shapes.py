@@ -286,8 +286,8 @@ Tanktread:
 
 
 def an_oblate_capsule_that_swings_comes_back():
-    """A run in time returns to this state after one period, rotated by half a turn. `Steady` and a search without a
-    period are rejected."""
+    """A run in time returns to this state after one period, rotated by half a turn. `Steady` is rejected for this
+    scene, and a search that starts from a wrong period fails."""
     run(deck(SWINGS), "--set", "Periodic/period=9", "--set", "Periodic/turn=180", "--set", "Periodic/tolerance=1e-4", "--set", "Time/tolerance=1e-5",
         "--output", "swings", "--quiet")
     period, d, angle = (series("swings", name)[-1] for name in ("period", "taylor_inertia", "inclination"))

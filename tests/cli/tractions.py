@@ -50,8 +50,8 @@ def ranks_and_a_pause_change_nothing():
 
 
 def a_pair_moves_as_without_a_far_drop():
-    """A drop in the scene makes `auto` choose how the bodies are computed. Its influence decays like the fourth power
-    of the distance."""
+    """`Solvers/rigid bodies` has its default `auto`, in a scene that also has a drop. The influence of the drop decays
+    like the fourth power of its distance."""
     push = 6 * numpy.pi
     run(deck(PAIR % (push, push)), "--output", "found", "--quiet")
     # Mobilities x^a_11, x^a_12, y^a_11, y^a_12 of spheres at distance 2.1: multipole solution.

@@ -144,8 +144,9 @@ class BoundedFreeBody : public LoneRigidBody {
   RigidTractions& body_;
   double viscosity_;
   std::optional<RigidModes> modes_;  // force densities for unit motions and unit flows, without the effect of the tube
-  mutable Net place_;                 // control net of the body at the latest solve, which gives its position; empty if there is no valid solution
-  mutable Solution solution_;         // solution for the control net `place_`
+  mutable Net place_;                 // position of the body (centre and quaternion, see placed()) at the latest solve; empty if there is no valid
+                                      // solution
+  mutable Solution solution_;         // solution at the position `place_`
   mutable Eigen::VectorXd unknowns_;  // traction and rigid motion found by the latest solve, from which the next solve starts
   mutable long iterations_ = 0;
 };
