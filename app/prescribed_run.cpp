@@ -64,7 +64,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   now.add_columns(scene, row);
   PrescribedRow{solution, surface::measures(body.space, body.rest), body.space.n_points, static_cast<double>(kernel.total())}
       .add_columns(scene, row);
-  if (around) tube_row(*around, body.flow.amplitude(), solution.density, solution.pressure_drop).add_columns(scene, row);
+  if (around) tube_row(*around, body.flow, solution.density, solution.pressure_drop).add_columns(scene, row);
   if (const auto walls = scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(scene, row);
   finish(row);
 

@@ -74,8 +74,8 @@ void ParticleOptions::declare(deck::Section& section) {
       "drift", drift, deck::Choice{"free", "held"},
       "treatment of the motion of the particle's centroid. `free`: it moves with the flow. `held`: it is moved back to its initial "
       "position after every step, which does not change the shape in a flow with a uniform gradient. The default is `held` for a "
-      "particle at the stagnation point of a flow that diverges in some direction, where rounding errors would grow into a drift, and "
-      "`free` otherwise");
+      "particle without weight, other forces and registered loads at the stagnation point of a flow that diverges in some direction, where "
+      "rounding errors would grow into a drift, and `free` otherwise");
   section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
               "method of computing force and torque on a single particle with Particle/motion `prescribed`. `integral`: integral of the "
               "traction, as by Maestre et al. (2017). `reciprocal`: this integral corrected by the reciprocal theorem, which is more "

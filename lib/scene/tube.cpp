@@ -64,8 +64,9 @@ void check_fits(const Scene& scene, const Body& body) {
                   where.c_str(), nearest.gap, scene.tube.contact_gap, least));
 }
 
-/// Adds the flow rate to the row, and in a channel also the pressure drops of the empty channel.
-TubeRow with_channel(const coupling::Tube& tube, double amplitude, TubeRow now) {
+/// Adds the flow rate to the row, and in a channel also the pressure drops of the empty channel. They are 0 if `flow` is not a duct flow.
+TubeRow with_channel(const coupling::Tube& tube, const stokes::AmbientFlow& flow, TubeRow now) {
+  const double amplitude = flow.duct() ? flow.amplitude() : 0;
   now.flow_rate = tube.flow_rate(now.pressure_drop, amplitude);
   const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
   if (channel) {
@@ -111,10 +112,11 @@ void check_fit(const Scene& scene, const Body& body) {
 
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene) {
   if (!scene.tube.present) return {};
+  const double speed = scene.flow.mean_velocity ? *scene.flow.mean_velocity : scene.rate() * scene.radius();
   if (scene.tube.channel)
-    return std::make_shared<const coupling::ChannelFlow>(scene.tube, scene.flow.viscosity, scene.flow.mean_velocity.value_or(1.0), scene.quadrature,
+    return std::make_shared<const coupling::ChannelFlow>(scene.tube, scene.flow.viscosity, speed, scene.quadrature,
                                                          coupling::WallSolver{scene.solvers.wall, scene.solvers.tolerance});
-  return std::make_shared<const stokes::DuctFlow>(scene.tube, scene.flow.viscosity, scene.flow.mean_velocity.value_or(1.0));
+  return std::make_shared<const stokes::DuctFlow>(scene.tube, scene.flow.viscosity, speed);
 }
 
 std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body) {
@@ -199,7 +201,9 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
     to.add(checks.cap_velocity, {"cap_velocity",
                                  "1",
                                  "largest disturbance velocity on the ends of the computed part of the tube divided by the mean velocity; "
-                                 "a measure of error that decreases with the length of the tube",
+                                 "a measure of error that decreases with the length of the tube. In other flows than `duct`, this series, "
+                                 "`disturbance_flux` and `force_imbalance` refer to a duct flow with the mean velocity R_C times the rate of "
+                                 "the flow or, in fluid at rest, shear modulus or surface tension divided by the viscosity",
                                  {},
                                  tube});
   to.add(checks.pressure_by_flux, {"pressure_drop_by_flux",
@@ -216,13 +220,13 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
                                     tube});
 }
 
-TubeRow tube_row(const coupling::Tube& tube, double amplitude, coupling::Evaluation& e) {
+TubeRow tube_row(const coupling::Tube& tube, const stokes::AmbientFlow& flow, coupling::Evaluation& e) {
   const coupling::Tube::Checks checks = e.checks();
-  return with_channel(tube, amplitude, {.pressure_drop = e.response().pressure_drop, .gap = tube.gap(), .checks = checks});
+  return with_channel(tube, flow, {.pressure_drop = e.response().pressure_drop, .gap = tube.gap(), .checks = checks});
 }
 
-TubeRow tube_row(coupling::Tube& tube, double amplitude, const Net& density, double pressure_drop) {
-  return with_channel(tube, amplitude,
+TubeRow tube_row(coupling::Tube& tube, const stokes::AmbientFlow& flow, const Net& density, double pressure_drop) {
+  return with_channel(tube, flow,
                       {.pressure_drop = pressure_drop, .gap = tube.gap(), .checks = tube.checks(-density, {}, tube.respond(-density))});
 }
 

@@ -34,13 +34,13 @@ struct TubeRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the data of the tube (pressure drop, gap) for the particle shapes of the evaluation `e`. `amplitude`: current factor of the duct flow.
-/// Collective.
-TubeRow tube_row(const coupling::Tube& tube, double amplitude, coupling::Evaluation& e);
+/// Returns the data of the tube (pressure drop, gap) for the particle shapes of the evaluation `e`. `flow`: ambient flow at the time of the
+/// row. Collective.
+TubeRow tube_row(const coupling::Tube& tube, const stokes::AmbientFlow& flow, coupling::Evaluation& e);
 
 /// Returns the data of the tube (pressure drop, gap) for a rigid body at the position last set in `tube`, from the force density on the fluid and the
 /// pressure drop. Collective.
-TubeRow tube_row(coupling::Tube& tube, double amplitude, const Net& density, double pressure_drop);
+TubeRow tube_row(coupling::Tube& tube, const stokes::AmbientFlow& flow, const Net& density, double pressure_drop);
 
 /// Returns the smallest axial coordinate among the particles' centroids in a row of the results: x1, or in a channel the coordinate along the centre
 /// line.

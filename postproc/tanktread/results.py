@@ -179,19 +179,25 @@ class Run:
     def scale(self, dimension):
         """Returns the scale by which a length, velocity, stress, curvature or tension is divided to be dimensionless,
         and its symbol. The scale of lengths is R_C. The scale of stresses is the viscosity times the rate of the flow;
-        if the flow has no rate, the modulus divided by R_C, or for a rigid body the viscosity times its speed divided
-        by R_C. Tensions in snapshots are dimensionless already."""
+        if the flow has no rate, the modulus of the first membrane or interface divided by R_C; for rigid bodies, the
+        viscosity times the largest prescribed speed divided by R_C; if no speed is prescribed, the viscosity divided by
+        the unit of time of the deck. Tensions in snapshots are dimensionless already."""
         radius, viscosity = self.radius, float(self.value("Flow/viscosity", 1))
         rate, words = self.rate
-        symbol = "σ" if self.value("Membrane/law") == "surface tension" else "G$_s$"
-        modulus = float(self.value("Membrane/shear modulus") or self.value("Membrane/surface tension") or 0)
+        symbol = "σ" if "surface tension" in self.values_of("Membrane/law")[:1] else "G$_s$"
+        moduli = [float(self.values_of(f"Membrane/{key}")[0]) for key in ("shear modulus", "surface tension")
+                  if self.values_of(f"Membrane/{key}")]
+        speeds = [numpy.linalg.norm(speed) / radius for speed in self.values_of("Particle/velocity")]
+        speeds += [numpy.linalg.norm(speed) for speed in self.values_of("Particle/angular velocity")]
         if words:
             stress, velocity = f"(μ · {words})", f"({words} · R$_C$)"
-        elif modulus:
-            rate, stress, velocity = modulus / (viscosity * radius), f"({symbol} / R$_C$)", f"({symbol} / μ)"
+        elif moduli:
+            rate, stress, velocity = moduli[0] / (viscosity * radius), f"({symbol} / R$_C$)", f"({symbol} / μ)"
+        elif any(speeds):
+            rate, stress, velocity = float(max(speeds)), "(μ · speed / R$_C$)", "speed"
         else:
-            speeds = [numpy.linalg.norm(self.value(f"Particle/{key}", 0)) for key in ("velocity", "angular velocity")]
-            rate, stress, velocity = float(max(speeds[0] / radius, speeds[1]) or 1), "(μ · speed / R$_C$)", "speed"
+            time = self.in_units("time").removeprefix(", ") or "unit of time"
+            rate, stress, velocity = 1.0, f"(μ / {time})", f"(R$_C$ / {time})"
         return {"length": (radius, " / R$_C$"), "velocity": (rate * radius, f" / {velocity}"),
                 "stress": (viscosity * rate, f" / {stress}"), "curvature": (1 / radius, " · R$_C$"),
                 "tension": (1.0, f" / {symbol}")}.get(dimension, (1.0, ""))
@@ -206,6 +212,14 @@ class Run:
         for part in path.split("/"):
             found = found.get(part, default) if isinstance(found, dict) else default
         return found
+
+    def values_of(self, path):
+        """Returns the values of a key of a particle, such as `Membrane/law` or `Particle/velocity`, for all particles
+        of the deck that set it, in the order of the deck."""
+        if not self.several:
+            return [value for value in [self.value(path)] if value is not None]
+        own = [f"Particles/{name}/{path.removeprefix('Particle/')}" for name in self.deck["Particles"]]
+        return [value for value in map(self.value, own) if value is not None]
 
     def cell(self, time):
         """Returns the vectors of the periodic cell at a time, divided by R_C, as rows (3, 3); None if there is none."""

@@ -33,6 +33,25 @@ def a_spheroid_aligns_with_an_extension():
     close(series("found", "leading_rate")[-1], 0, 2e-3, "of a rotation about the axis")
 
 
+def a_channel_at_rest_has_no_pressure_drop_of_its_own():
+    """Measures of error refer to a speed of the scene: they do not depend on the unit of time."""
+    text = """Tanktread:
+  Flow: {type: quiescent, viscosity: %g}
+  Channel: {profile: constriction, radius: 1, depth: 0.2, half length: 1, start: -3, end: 3, azimuthal elements: 8, axial elements: 12}
+  Membrane: {shear modulus: %g}
+  Particle: {shape: ellipsoid, semi-axes: [0.5, 0.4, 0.4], center: [-1, 0.1, 0]}
+  Surface: {elements per side: 3}
+  Time: {final time: %g, fixed step: %g}
+"""
+    for name, unit in ("one", 1), ("other", 10):
+        run(deck(text % (unit, 1, 0.2 * unit, 0.1 * unit)), "--output", name, "--quiet")
+        for column in "channel_pressure_drop", "channel_extra_pressure_drop":
+            check(abs(series(name, column)).max() == 0, f"{column} in fluid at rest: {series(name, column)}")
+    for column in "disturbance_flux", "force_imbalance", "cap_velocity":
+        one, other = series("one", column)[-1], series("other", column)[-1]
+        check(abs(other - one) < 1e-3 * abs(one), f"{column} is {one}, and {other} in another unit of time")
+
+
 def a_run_ends_when_a_body_no_longer_turns():
     text = SPHEROID % ("uniaxial extension", 60, "Time: {final time: 20, steady tolerance: 1.0e-3}\n  Output: {interval: 20}")
     for settings in [], ["--set", "Output/power balance=true", "--set", "Solvers/rigid bodies=second kind"]:

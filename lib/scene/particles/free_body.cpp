@@ -63,7 +63,7 @@ class Free : public ParticleSystem {
     Columns row;
     if (tube_) {
       const double pressure_drop = free_->pressure_drop(state.x);
-      tube_row(*tube_, free_->flow().amplitude(), free_->force_density(state.x), pressure_drop).add_columns(scene_, row);
+      tube_row(*tube_, free_->flow(), free_->force_density(state.x), pressure_drop).add_columns(scene_, row);
     }
     if (const auto walls = scene_.wall.planes(); !walls.empty()) wall_row(walls, body_, free_->surface(state.x)).add_columns(scene_, row);
     turn_to(state.x, progress.step.step, now);

@@ -29,7 +29,7 @@ void add_surroundings(const Scene& scene, const std::vector<Member>& members, co
   const Net& x = here.x();
   if (all.wall) {
     check_spread(scene, *all.wall, capsule.geometry(), x);
-    tube_row(*capsule.tube(), capsule.flow().amplitude(), here).add_columns(scene, row);
+    tube_row(*capsule.tube(), capsule.flow(), here).add_columns(scene, row);
   }
   if (const auto& cell = capsule.cell()) {
     DomainRow now{.cell = cell->vectors()};

@@ -1,6 +1,7 @@
 #include "scene/body.hpp"
 #include "scene/searches.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "base/small_matrices.hpp"
@@ -27,6 +28,23 @@ TEST(Drift, AParticleThatStartsElsewhereIsCarriedAway) {
   Scene s = scene("planar hyperbolic");
   s.particle.shape.center = {0.1, 0, 0};
   EXPECT_FALSE(holds_centre(s));
+}
+
+TEST(Drift, AParticleOnWhichAForceActsIsNotHeld) {
+  Scene heavy = scene("planar hyperbolic");
+  heavy.flow.gravity = Vec3(0, 0, -1), heavy.particle.density_difference = 1;
+  EXPECT_FALSE(holds_centre(heavy));
+  heavy.particle.density_difference = 0;
+  EXPECT_TRUE(holds_centre(heavy));
+}
+
+TEST(Drift, AShearInAnyDirectionsHoldsNothing) {
+  for (const double angle : {0.3, 1.1, 2.5}) {
+    Scene s = scene("linear");
+    const Mat3 turn = Eigen::AngleAxisd(angle, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+    s.flow.gradient = turn.col(0) * turn.col(2).transpose();  // its eigenvalues are 0, but up to 1e-5 by rounding
+    EXPECT_FALSE(holds_centre(s)) << angle;
+  }
 }
 
 TEST(Drift, TheDeckDecides) {
