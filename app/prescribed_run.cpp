@@ -19,7 +19,7 @@ namespace tanktread {
 
 namespace {
 
-SurfacePicture picture(const Scene& scene, const Body& body, const RigidSolution& s) {
+SurfacePicture picture(const ParticleScene& scene, const Body& body, const RigidSolution& s) {
   const auto exact = exact_body(scene);
   return {body.rest, [&body, &s, exact](const auto& nodes) {
             const Net f = nodes.values(s.density), n = nodes.normals(body.rest), x = nodes.values(body.rest);
@@ -36,8 +36,9 @@ SurfacePicture picture(const Scene& scene, const Body& body, const RigidSolution
 
 }  // namespace
 
-int resist(const Scene& scene, const RunRequest& request) {
+int resist(const Scene& whole, const RunRequest& request) {
   refuse(request.resume, "--resume", "Particle/motion `prescribed`", "a steady problem has no time steps to continue");
+  const ParticleScene scene = whole.first();
   const auto start = std::chrono::steady_clock::now();
   coupling::Ranks ranks;
   Phases phases = started();
@@ -48,7 +49,7 @@ int resist(const Scene& scene, const RunRequest& request) {
     coupling::RigidTractions there = tractions_of(scene, on, ranks, wall.get());
     return rigid_solution(scene, on, there, phases).density;
   });
-  const output::Entries<std::string> chosen = plan(scene, body, ranks.size());
+  const output::Entries<std::string> chosen = plan(whole, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
   coupling::RigidTractions tractions = tractions_of(scene, body, ranks, around.get());
@@ -61,18 +62,18 @@ int resist(const Scene& scene, const RunRequest& request) {
   Columns row;
   ProgressRow now{.wall_seconds = seconds};
   now.counts.solver_iterations = solution.iterations;
-  now.add_columns(scene, row);
+  now.add_columns(whole, row);
   PrescribedRow{solution, surface::measures(body.space, body.rest), body.space.n_points, static_cast<double>(kernel.total())}
       .add_columns(scene, row);
   if (around) tube_row(*around, body.flow, solution.density, solution.pressure_drop).add_columns(scene, row);
-  if (const auto walls = scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(scene, row);
+  if (const auto walls = scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(whole, row);
   finish(row);
 
   Account account;
   account.plan = chosen;
   account.counts = {{"unknowns", 3L * body.space.n_points}, {"solver_iterations", solution.iterations}};
   account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
-  return record_steady(scene, request, body, ranks, phases, row, picture(scene, body, solution), std::move(account), kernel);
+  return record_steady(whole, request, body, ranks, phases, row, picture(scene, body, solution), std::move(account), kernel);
 }
 
 int record_steady(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks, Phases& phases, Columns& row,

@@ -207,7 +207,6 @@ void prepare(deck::Document& deck, const Arguments& arguments, Scene& scene) {
     find(*history->file, kept_flow_history, arguments, scene);
     history->read();
   }
-  find_shapes(scene, arguments, scene);
   for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
   if (scene.domain.present) scene.domain.check(scene.flow, scene.tube.present ? scene.tube.list() : "");
   scene.particles = with_copies(scene.particles, scene.domain);

@@ -40,18 +40,6 @@ motion::TimeOptions time_options(const Scene& scene) {
   return time;
 }
 
-/// Returns whether the mesh of any particle may change.
-bool adapts(const Scene& scene) {
-  return std::ranges::any_of(scene.alone(), [](const Scene& one) { return one.adaptation.enabled; });
-}
-
-/// Returns the scene with only the first particle that deforms, or with only the first particle if all are rigid.
-Scene first_deforming(const Scene& scene) {
-  std::vector<Scene> all = scene.alone();
-  const auto found = std::ranges::find_if(all, [](const Scene& one) { return !one.particle.rigid(); });
-  return std::move(found == all.end() ? all.front() : *found);
-}
-
 /// A time-dependent run, from its first to its last step.
 class Run {
  public:
@@ -167,7 +155,7 @@ class Run {
     ++totals_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
-    if (pictured_ && adapts(scene_)) {
+    if (pictured_ && scene_.adapts()) {
       pictured_->sampled = sample();
       particle_->dynamics().at(state_.time, began_);
     }
@@ -279,7 +267,7 @@ class Run {
   void warn_of_limits() {
     if (first_.particle.rigid()) return;
     const auto n_elements = static_cast<int>(particle_->body().space.elements.size());
-    for (const std::string& sentence : warnings_.sentences({scene_, first_, row_, quality_, n_elements})) results_.warn(sentence);
+    for (const std::string& sentence : warnings_.sentences({first_, row_, quality_, n_elements})) results_.warn(sentence);
   }
 
   void save() {
@@ -382,7 +370,7 @@ class Run {
   };
   std::optional<Pictured> pictured_;  // state of the snapshot that is due at a time within the last step, if any
   surface::Quality quality_;
-  Scene first_ = first_deforming(scene_);
+  ParticleScene first_ = scene_.first_deforming();
   Warnings warnings_{first_};  // warnings of the run; they use the parameters of the first deformable particle
 };
 

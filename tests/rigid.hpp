@@ -12,10 +12,11 @@ namespace tanktread {
 
 /// Solves a deck of inputs/ with settings `Section/key=value`, as for `--set`.
 inline RigidSolution rigid_solution(const std::string& deck_name, const std::vector<std::string>& settings) {
-  Scene scene;
+  Scene whole;
   deck::Document deck = deck::read({std::string(SOURCE_DIRECTORY) + "/inputs/" + deck_name}, settings);
-  deck.declare(scene);
-  scene.check();
+  deck.declare(whole);
+  whole.check();
+  const ParticleScene scene = whole.first();
   coupling::Ranks ranks;
   Phases phases;
   const Body body = tanktread::body(scene);

@@ -9,8 +9,7 @@ namespace {
 
 /// Returns true if `used` holds for a deforming particle of the scene.
 bool any_membrane(const Scene& scene, bool (*used)(const membrane::Options& options)) {
-  const std::vector<Scene> particles = scene.alone();
-  return std::ranges::any_of(particles, [used](const Scene& one) { return !one.particle.rigid() && used(one.membrane); });
+  return std::ranges::any_of(scene.particles, [used](const ParticleKind& one) { return !one.particle.rigid() && used(one.membrane); });
 }
 
 struct Citation {

@@ -57,21 +57,21 @@ bool coarsen(surface::MeshOptions& mesh, int divisor) {
 
 /// Divides the numbers of mesh elements of all particles by `divisor`. Returns true if any of these numbers has changed.
 bool coarsen(Scene& scene, int divisor) {
-  bool changed = coarsen(scene.surface, divisor);
+  bool changed = false;
   for (ParticleKind& kind : scene.particles) changed |= coarsen(kind.surface, divisor);
   return changed;
 }
 
 double elements(const Scene& scene) {
   double sum = 0;
-  for (const Scene& one : scene.alone()) sum += one.surface.n_elements();
+  for (const ParticleKind& one : scene.particles) sum += one.surface.n_elements();
   return sum;
 }
 
 }  // namespace
 
 output::Entries<std::string> evaluation_cost(const Scene& scene) {
-  if (!scene.in_system() && scene.particle.motion != Motion::free) return {};
+  if (!scene.in_system() && scene.first().particle.motion != Motion::free) return {};
   for (const int divisor : {4, 2}) {
     Scene coarse = scene;
     if (!coarsen(coarse, divisor)) continue;

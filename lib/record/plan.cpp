@@ -29,49 +29,49 @@ double resting_volume(const Body& body) { return surface::volume(body.space, bod
 double resting_area(const Body& body) { return surface::measures(body.space, body.rest).area; }
 
 constexpr Number named_numbers[] = {
-    {"radius", "length", "R_C: radius of the sphere with the particle's volume", [](const Scene&, const Body& b) { return b.radius; }},
-    {"volume", "length^3", "volume of the resting shape", [](const Scene&, const Body& b) { return resting_volume(b); }},
-    {"area", "length^2", "area of the resting shape", [](const Scene&, const Body& b) { return resting_area(b); }},
+    {"radius", "length", "R_C: radius of the sphere with the particle's volume", [](const ParticleScene&, const Body& b) { return b.radius; }},
+    {"volume", "length^3", "volume of the resting shape", [](const ParticleScene&, const Body& b) { return resting_volume(b); }},
+    {"area", "length^2", "area of the resting shape", [](const ParticleScene&, const Body& b) { return resting_area(b); }},
     {"reduced_volume", "1", "reduced volume 6 sqrt(pi) V/A^(3/2), with volume V and area A of the resting shape; 1 for a sphere",
-     [](const Scene&, const Body& b) { return 6 * std::sqrt(std::numbers::pi) * resting_volume(b) / std::pow(resting_area(b), 1.5); }},
+     [](const ParticleScene&, const Body& b) { return 6 * std::sqrt(std::numbers::pi) * resting_volume(b) / std::pow(resting_area(b), 1.5); }},
     {"speed", "length/time", "velocity scale of the capillary number: rate of the flow times R_C; in a tube the mean velocity",
-     [](const Scene& s, const Body&) { return s.speed() > 0 ? s.speed() : none; }},
+     [](const ParticleScene& s, const Body&) { return s.speed() > 0 ? s.speed() : none; }},
     {"viscosity_ratio", "1", "lambda: viscosity of the inner fluid divided by the viscosity of the outer fluid",
-     [](const Scene& s, const Body&) { return s.particle.rigid() ? none : s.particle.viscosity_ratio; }},
+     [](const ParticleScene& s, const Body&) { return s.particle.rigid() ? none : s.particle.viscosity_ratio; }},
     {"capillary_number", "1",
      "capillary number mu speed/G_s, with the outer viscosity mu and the surface shear modulus G_s; for a drop mu speed/sigma, with the "
      "surface tension sigma",
-     [](const Scene& s, const Body&) { return !s.particle.rigid() && s.speed() > 0 ? s.flow.viscosity * s.speed() / s.modulus() : none; }},
+     [](const ParticleScene& s, const Body&) { return !s.particle.rigid() && s.speed() > 0 ? s.flow.viscosity * s.speed() / s.modulus() : none; }},
     {"shear_modulus", "force/length", "surface shear modulus G_s of the membrane",
-     [](const Scene& s, const Body&) { return s.elastic() ? s.modulus() : none; }},
+     [](const ParticleScene& s, const Body&) { return s.elastic() ? s.modulus() : none; }},
     {"area_modulus", "force/length",
      "area modulus K_s of the membrane at small strains: (1 + 2 C) G_s for the laws `Skalak` and `Evans-Skalak` with Membrane/area "
      "dilatation C, 3 G_s for rubber",
-     [](const Scene& s, const Body& b) { return s.elastic() ? area_modulus(b.law) : none; }},
+     [](const ParticleScene& s, const Body& b) { return s.elastic() ? area_modulus(b.law) : none; }},
     {"surface_tension", "force/length", "surface tension sigma of the drop",
-     [](const Scene& s, const Body&) { return s.particle.rigid() || s.elastic() ? none : s.modulus(); }},
+     [](const ParticleScene& s, const Body&) { return s.particle.rigid() || s.elastic() ? none : s.modulus(); }},
     {"bending_modulus", "force length", "bending modulus E_b of the membrane",
-     [](const Scene& s, const Body&) { return s.elastic() && s.bending_modulus() > 0 ? s.bending_modulus() : none; }},
+     [](const ParticleScene& s, const Body&) { return s.elastic() && s.bending_modulus() > 0 ? s.bending_modulus() : none; }},
     {"bending_number", "1", "bending number E_b/(G_s R_C^2)",
-     [](const Scene& s, const Body& b) {
+     [](const ParticleScene& s, const Body& b) {
        return s.elastic() && s.bending_modulus() > 0 ? s.bending_modulus() / (s.modulus() * b.radius * b.radius) : none;
      }},
     {"relaxation_time", "time", "relaxation time of the shape: mu R_C/G_s; for a drop mu R_C/sigma",
-     [](const Scene& s, const Body& b) { return s.particle.rigid() ? none : s.flow.viscosity * b.radius / s.modulus(); }},
+     [](const ParticleScene& s, const Body& b) { return s.particle.rigid() ? none : s.flow.viscosity * b.radius / s.modulus(); }},
     {"tube_radius", "length", "radius R_T of the circle with the area of the cross-section",
-     [](const Scene&, const Body& b) { return b.duct ? b.duct->radius() : none; }},
+     [](const ParticleScene&, const Body& b) { return b.duct ? b.duct->radius() : none; }},
     {"tube_length", "length", "length of the computed part of the tube",
-     [](const Scene&, const Body& b) { return b.wall ? b.wall->length() : none; }},
+     [](const ParticleScene&, const Body& b) { return b.wall ? b.wall->length() : none; }},
     {"confinement", "1", "confinement R_C/R_T: radius of the sphere with the particle's volume divided by the tube radius",
-     [](const Scene&, const Body& b) { return b.duct ? b.radius / b.duct->radius() : none; }},
+     [](const ParticleScene&, const Body& b) { return b.duct ? b.radius / b.duct->radius() : none; }},
     {"flow_rate", "length^3/time", "flow rate of the empty tube",
-     [](const Scene& s, const Body& b) {
+     [](const ParticleScene& s, const Body& b) {
        return b.duct && s.flow.type == "duct" ? b.duct->mean_velocity() * std::numbers::pi * std::pow(b.duct->radius(), 2) : none;
      }},
     {"pressure_gradient", "force/length^3", "decrease of the pressure per length along the empty tube",
-     [](const Scene& s, const Body& b) { return b.duct && s.flow.type == "duct" ? b.duct->pressure_gradient() : none; }},
+     [](const ParticleScene& s, const Body& b) { return b.duct && s.flow.type == "duct" ? b.duct->pressure_gradient() : none; }},
     {"reynolds_number", "1", "Reynolds number: always 0, because the fluids have no inertia",
-     [](const Scene&, const Body&) { return 0.0; }},
+     [](const ParticleScene&, const Body&) { return 0.0; }},
 };
 
 }  // namespace
@@ -80,9 +80,10 @@ std::span<const Number> all_numbers() { return named_numbers; }
 
 output::Entries<double> numbers(const Scene& scene, const Body& body) {
   output::Entries<double> found;
-  if (!scene.particles.empty() || scene.only_solids) return found;  // named_numbers are defined only if there is a single particle
+  if (scene.particles.size() > 1 || scene.only_solids) return found;  // named_numbers are defined only if there is a single particle
+  const ParticleScene only = scene.first();
   for (const Number& one : named_numbers)
-    if (const double value = one.value(scene, body); !std::isnan(value)) found.emplace_back(one.name, value);
+    if (const double value = one.value(only, body); !std::isnan(value)) found.emplace_back(one.name, value);
   return found;
 }
 
@@ -107,7 +108,8 @@ std::string surface_line(const Body& body) {
 std::string wall_solver(const Scene& scene) {
   if (!scene.in_system()) return "eliminated from the system of the traction";
   if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
-  return std::ranges::any_of(scene.alone(), &Scene::has_velocity_system) ? "eliminated from the system of the velocity" : "solved for directly";
+  const bool system = std::ranges::any_of(scene.alone(), &ParticleScene::has_velocity_system);
+  return system ? "eliminated from the system of the velocity" : "solved for directly";
 }
 
 void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
@@ -157,7 +159,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; ", unknowns, wall_solver(scene).c_str()) + how);
 }
 
-std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
+std::string viscosity_line(const ParticleScene& scene, int n_points, bool tree) {
   if (scene.particle.viscosity_ratio == 1 && scene.kelvin_voigt_membrane())
     return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns per velocity",
                      scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
@@ -167,7 +169,7 @@ std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
                    3 * n_points);
 }
 
-std::string membrane_line(const Scene& scene) {
+std::string membrane_line(const ParticleScene& scene) {
   const std::size_t forces = scene.membrane.forces.all.size();
   const std::string pulled = forces > 0 ? formatted(", pulled at %d patch%s", static_cast<int>(forces), forces > 1 ? "es" : "") : "";
   const auto own = scene.membrane.strain_energy();
@@ -183,12 +185,12 @@ std::string membrane_line(const Scene& scene) {
   return load + " per current area (3.6), mass matrix factored every evaluation";
 }
 
-std::string surfactant_line(const Scene& scene) {
+std::string surfactant_line(const ParticleScene& scene) {
   return formatted("%s equation of state, initial tension %.6g times that of the clean interface: one unknown per control point",
                    scene.surfactant->equation_of_state.c_str(), scene.surfactant->tension(1));
 }
 
-std::string mesh_line(const Scene& scene) {
+std::string mesh_line(const ParticleScene& scene) {
   if (!scene.adaptation.enabled) return "fixed";
   const char* where = scene.adaptation.indicator == "error" ? "by estimated errors (1.5)" : "where curvature, traction or velocity varies (1.4)";
   return std::string("refined as the particle deforms, ") + where;
@@ -215,7 +217,7 @@ void add_steady(Lines& lines, const Scene& scene, const Body& body) {
   if (const auto& second = scene.continuation.second_parameter)
     lines.emplace_back("folds", formatted("the first one at %zu values of %s", scene.continuation.second_values->size(), second->c_str()));
   if (!scene.spectrum.present) return;
-  const auto unknowns = static_cast<int>(body.symmetry.fundamental().size()) * (scene.interface_motion() == "material" ? 3 : 1);
+  const auto unknowns = static_cast<int>(body.symmetry.fundamental().size()) * (scene.first().interface_motion() == "material" ? 3 : 1);
   const bool dense = scene.spectrum.method == "dense";
   lines.emplace_back("spectrum", dense ? formatted("%d unknowns at most: as many pairs of velocities for the Jacobian, all its eigenvalues", unknowns)
                                        : formatted("%d unknowns at most: block Krylov-Schur on the shift-inverted motion", unknowns));
@@ -232,7 +234,7 @@ std::string symmetry_line(const Scene& scene, const Body& body) {
 }
 
 /// Returns the line of the plan about a rigid particle: that its motion is prescribed, or how its free motion is computed.
-std::string rigid_line(const Scene& scene, const Body& body) {
+std::string rigid_line(const ParticleScene& scene, const Body& body) {
   if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
   if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
   return std::string("rigid and free, no membrane: six rigid motions") +
@@ -240,7 +242,7 @@ std::string rigid_line(const Scene& scene, const Body& body) {
          ", solved once, determine its motion";
 }
 
-std::string forces_line(const Scene& scene) {
+std::string forces_line(const ParticleScene& scene) {
   const ParticleOptions& particle = scene.particle;
   if (particle.motion == Motion::free) return particle.force || particle.torque || particle.density_difference ? "as given" : "none";
   return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
@@ -260,7 +262,7 @@ std::string solvers_line(const Scene& scene) {
     return line.empty() ? "no iterative solver" : line;
   }
   const bool blocks = scene.tube.present && solvers.tube != "schur";
-  if (blocks || std::ranges::any_of(scene.alone(), &Scene::has_velocity_system)) add("velocity", solvers.velocity);
+  if (blocks || std::ranges::any_of(scene.alone(), &ParticleScene::has_velocity_system)) add("velocity", solvers.velocity);
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
   if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);
@@ -269,17 +271,18 @@ std::string solvers_line(const Scene& scene) {
 
 Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   const int n = body.space.n_points;
+  const ParticleScene only = scene.first();
   Lines lines = {{"surface", std::to_string(n) + " control points: " + body.space.description},
                  {"unknowns", formatted("%d of the traction: single layer of the first kind, its null space made regular", 3 * n)}};
   add_fluid(lines, scene, body, ranks);
-  lines.emplace_back("particle", rigid_line(scene, body));
-  lines.emplace_back("forces", forces_line(scene));
-  lines.emplace_back("time", scene.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
+  lines.emplace_back("particle", rigid_line(only, body));
+  lines.emplace_back("forces", forces_line(only));
+  lines.emplace_back("time", only.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
   lines.emplace_back("solvers", solvers_line(scene));
   lines.emplace_back("assembled", formatted("%.1f MB on every rank, factored", (scene.tube.present ? 144e-6 : 72e-6) * n * n));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
-  if (scene.adaptation.enabled)
+  if (only.adaptation.enabled)
     lines.emplace_back("mesh", "refined once at the initial position, where the shape, a film or the traction needs it");
   lines.emplace_back("symmetry", "none used");
   return lines;
@@ -288,14 +291,14 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
 /// Returns the lines of the plan about one particle. `n_points`: number of control points of all particles. `tree`: true if far-field sums use
 /// clusters. `responds`: true if the tractions of rigid bodies are found by GMRES, because the scene has a tube, a periodic domain, or a deforming
 /// particle whose velocity is found from a linear system.
-Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
+Lines particle_lines(const ParticleScene& one, int n_points, bool tree, bool responds) {
   if (!one.particle.rigid()) {
     Lines lines = {{"viscosity", viscosity_line(one, n_points, tree)}, {"membrane", membrane_line(one)}};
     if (one.surfactant) lines.emplace_back("surfactant", surfactant_line(one));
     lines.emplace_back("mesh", mesh_line(one));
     return lines;
   }
-  const bool first_kind = one.by_tractions();
+  const bool first_kind = one.solvers.rigid_bodies == coupling::BodyEquation::first_kind;
   const char* by_traction = responds ? "its traction, by GMRES preconditioned with factors of the bodies, for each velocity (2.40)"
                                      : "its traction, in a factored system for each velocity (2.40)";
   return {{"body", formatted("rigid, %s: no membrane, no moving mesh; ", one.particle.motion == Motion::free ? "free" : "with prescribed motion") +
@@ -304,12 +307,12 @@ Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
 
 /// Adds the lines about all particles to the plan. A single particle has several lines. If there are several particles, the lines of each are joined
 /// into one, and consecutive particles with equal lines share one line.
-void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, bool tree) {
+void add_particles(Lines& lines, const std::vector<ParticleScene>& alone, int n_points, bool tree) {
   std::string last;
-  const bool responds = std::ranges::any_of(alone, [](const Scene& one) {
+  const bool responds = std::ranges::any_of(alone, [](const ParticleScene& one) {
     return one.tube.present || one.domain.present || (!one.particle.rigid() && one.has_velocity_system());
   });
-  for (const Scene& one : alone) {
+  for (const ParticleScene& one : alone) {
     const Lines own = particle_lines(one, n_points, tree, responds);
     if (alone.size() == 1) {
       lines.insert(lines.end(), own.begin(), own.end());
@@ -335,7 +338,7 @@ std::string far_sum_line(const Scene& scene, bool tree) {
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
   if (!scene.in_system()) return plan_of_rigid(scene, body, ranks);
   const bool tree = stokes::sums_by_tree(body.space, scene.quadrature, scene.domain.present && !scene.tube.present ? 27 : 1);
-  const std::vector<Scene> alone = scene.alone();
+  const std::vector<ParticleScene> alone = scene.alone();
   const bool several = alone.size() > 1;
   const int n = body.space.n_points;
   Lines lines;
@@ -345,7 +348,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   add_fluid(lines, scene, body, ranks);
   if (!several && !alone.front().particle.rigid()) {
     lines.emplace_back("deformation", body.plane.description());
-    lines.emplace_back("numbers", numbers_text(numbers(alone.front(), body)));
+    lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   }
   lines.emplace_back("far sum", far_sum_line(scene, tree));
   lines.emplace_back("kernels", instructions());

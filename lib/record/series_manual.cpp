@@ -84,13 +84,15 @@ struct Kind {
 
 std::vector<Kind> kinds() {
   Scene deforming, free, free_in_tube, prescribed, several, returning;
-  free.particle.motion = free_in_tube.particle.motion = Motion::free, prescribed.particle.motion = Motion::prescribed;
+  for (Scene* scene : {&deforming, &free, &free_in_tube, &prescribed, &returning}) scene->particles.resize(1);
+  free.particles.front().particle.motion = free_in_tube.particles.front().particle.motion = Motion::free;
+  prescribed.particles.front().particle.motion = Motion::prescribed;
   free_in_tube.tube.present = true;
-  several.particles.resize(2), returning.periodic.present = true;
-  Scene among_others = free;
+  several.particles.resize(2), several.particles.front().name = "one", returning.periodic.present = true;
+  ParticleScene among_others = free.first();
   among_others.name = "one";
   Columns capsule = run_columns(deforming, true), spectrum, branch, folds, periodic;
-  capsule.append(particle_columns(deforming, true));
+  capsule.append(particle_columns(deforming.first(), true));
   motion::add_columns(std::vector<motion::Mode>(), false, spectrum);
   motion::Mode().add_columns("k", spectrum);
   motion::BranchPoint().add_columns(false, branch), motion::BranchPoint().add_columns(true, folds);

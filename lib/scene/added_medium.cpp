@@ -25,7 +25,7 @@ void DomainOptions::declare_medium(deck::Section& section) {
       throw UserError(section.path(key) + " belongs to Domain/kind `lattice`, but Domain/kind is `" + kind + "`.");
 }
 
-void DomainOptions::reject_medium(const Scene& scene, Rejections& to) const {
+void DomainOptions::reject_medium(const ParticleScene& scene, Rejections& to) const {
   const Chosen added("Domain/kind `" + kind + "`", "Domain/kind of an added medium");
   to.pair(scene.tube.present, added, scene.duct_choice(), "a duct encloses all of its fluid");
   to.pair(scene.wall.present, added, "Wall", "a plane wall is a medium itself");
@@ -42,12 +42,12 @@ void check_flow(const stokes::FlowOptions& flow, const stokes::Medium& medium, c
       throw UserError(name + " and Flow/type `" + flow.type + "` contradict each other: " + reason);
 }
 
-std::shared_ptr<const stokes::Medium> Scene::medium() const {
+std::shared_ptr<const stokes::Medium> SharedOptions::medium() const {
   const auto plane = wall.plane();
   return plane ? std::make_shared<stokes::PlaneWall>(*plane) : domain.medium;
 }
 
-void check_in_medium(const Scene& scene, const Body& body) {
+void check_in_medium(const ParticleScene& scene, const Body& body) {
   if (stokes::contains(scene.domain.medium.get(), coupling::collocation_matrix(body.space) * body.initial)) return;
   throw UserError((scene.name.empty() ? "The particle" : "Particles/" + scene.name) + " is not inside the fluid of Domain/kind `" +
                   scene.domain.kind + "` at the start.");

@@ -103,7 +103,7 @@ membrane::Repulsion repulsion(const surface::TubeOptions& tube, const surface::T
 
 }  // namespace
 
-void lay_out(const Scene& scene, spline::TMesh mesh, Body& body) {
+void lay_out(const ParticleScene& scene, spline::TMesh mesh, Body& body) {
   body.mesh = std::move(mesh);
   if (scene.surface.polar()) {
     const spline::PolarMesh polar = scene.surface.polar_mesh();
@@ -116,14 +116,14 @@ void lay_out(const Scene& scene, spline::TMesh mesh, Body& body) {
   }
 }
 
-bool alike(const Scene& one, const Scene& other) {
+bool alike(const ParticleScene& one, const ParticleScene& other) {
   const surface::ParticleShape &here = one.particle.shape, &there = other.particle.shape;
-  const auto levels = [](const Scene& scene) { return scene.adaptation.enabled ? scene.adaptation.levels : 0; };
+  const auto levels = [](const ParticleScene& scene) { return scene.adaptation.enabled ? scene.adaptation.levels : 0; };
   return here.shape == there.shape && here.shape != "file" && !here.initial && !there.initial && one.surface == other.surface &&
          levels(one) == levels(other);
 }
 
-Body body(const Scene& scene, const Member* alike) {
+Body body(const ParticleScene& scene, const Member* alike) {
   Body b;
   const int levels = scene.adaptation.enabled ? scene.adaptation.levels : 0;
   if (alike) {
@@ -169,7 +169,7 @@ Body body(const Scene& scene, const Member* alike) {
   return b;
 }
 
-surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
+surface::Symmetry symmetry(const ParticleScene& scene, const Body& body, const Net& x) {
   const bool channel = body.wall && body.wall->channel;
   const bool unused = scene.domain.present && (channel || scene.adaptation.enabled || !scene.posts.empty());
   if (scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
@@ -180,7 +180,7 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
                             walls.empty() ? scene.domain.medium.get() : &walls.front(), scene.domain.cell());
 }
 
-coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall) {
+coupling::LoadList loads(const ParticleScene& scene, const Body& body, const surface::TubeWall* wall) {
   coupling::LoadList all;
   if (wall && scene.tube.repulsion)
     all.push_back(std::make_shared<membrane::WallRepulsion>(body.space, body.unstressed, repulsion(scene.tube, *wall)));
@@ -196,7 +196,7 @@ coupling::LoadList loads(const Scene& scene, const Body& body, const surface::Tu
   return all;
 }
 
-stokes::Measure load_measure(const Scene& scene) {
+stokes::Measure load_measure(const ParticleScene& scene) {
   const bool reference =
       scene.membrane.load == "weak" && scene.membrane.load_measure == "reference" && scene.membrane.law != "surface tension";
   return reference ? stokes::Measure::reference : stokes::Measure::current;

@@ -82,26 +82,26 @@ struct Body {
 
 /// Builds the body of a scene with one particle. If the member `alike` is given, its mesh and resting shape are used, and the shape is moved to the
 /// position of this scene's particle.
-Body body(const Scene& scene, const Member* alike = nullptr);
+Body body(const ParticleScene& scene, const Member* alike = nullptr);
 
 /// Returns true if body() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
-bool alike(const Scene& one, const Scene& other);
+bool alike(const ParticleScene& one, const ParticleScene& other);
 
 /// Sets the mesh of the body, and builds on it the spline space that the deck requests.
-void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);
+void lay_out(const ParticleScene& scene, spline::TMesh mesh, Body& body);
 
 /// Returns the common symmetry of the scene, the body and the current shape x, restricted to the symmetries that the deck allows the program to use.
-surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
+surface::Symmetry symmetry(const ParticleScene& scene, const Body& body, const Net& x);
 
-/// Throws UserError if the body does not start inside the fluid of the medium that Domain/kind chooses (see Scene::medium).
-void check_in_medium(const Scene& scene, const Body& body);
+/// Throws UserError if the body does not start inside the fluid of the medium that Domain/kind chooses (see SharedOptions::medium).
+void check_in_medium(const ParticleScene& scene, const Body& body);
 
 /// Returns the loads of a particle on its current mesh, except elasticity and bending. A rigid particle only has the repulsion from the wall. `wall`:
 /// wall of the tube, or null.
-coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall);
+coupling::LoadList loads(const ParticleScene& scene, const Body& body, const surface::TubeWall* wall);
 
 /// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and if the
 /// load is computed in the strong form.
-stokes::Measure load_measure(const Scene& scene);
+stokes::Measure load_measure(const ParticleScene& scene);
 
 }  // namespace tanktread

@@ -103,7 +103,7 @@ void DomainOptions::check_duct(const std::string& duct) const {
   if (!(side_lengths->front() > 0)) throw UserError("Domain/side lengths must be positive in the directions of Domain/periodic.");
 }
 
-void DomainOptions::reject(const Scene& scene, Rejections& to) const {
+void DomainOptions::reject(const ParticleScene& scene, Rejections& to) const {
   if (medium || to.every()) reject_medium(scene, to);
   if (!present && !to.every()) return;
   if (to.every()) reject_duct("Tube or Channel", to);
@@ -146,7 +146,7 @@ void DomainRow::set_stress(double viscosity, const Mat3& gradient, const stokes:
                                         : 1 + stress.cwiseProduct(strain).sum() / (2 * viscosity * strain.squaredNorm());
 }
 
-void DomainRow::add_columns(const Scene& scene, Columns& to) const {
+void DomainRow::add_columns(const SharedOptions& scene, Columns& to) const {
   if (!to.when(scene.domain.present)) return;
   to.add(cell.reshaped(), "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3",
          {"cell_", "length",

@@ -26,11 +26,11 @@ bool ExactBody::presses() const {
   return result;
 }
 
-coupling::RigidMotion prescribed_motion(const Scene& scene) {
+coupling::RigidMotion prescribed_motion(const ParticleScene& scene) {
   return {scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
 }
 
-std::optional<ExactBody> exact_body(const Scene& scene) {
+std::optional<ExactBody> exact_body(const ParticleScene& scene) {
   if (scene.wall.present || scene.domain.medium) return {};
   const surface::ParticleShape& shape = scene.particle.shape;
   const coupling::RigidMotion motion = prescribed_motion(scene);

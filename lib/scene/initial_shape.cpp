@@ -44,12 +44,12 @@ Net net_of_file(const spline::Space& space, const std::string& name, const std::
 
 /// Throws UserError if the scene cannot start from the surface of the run: the run has several particles, its mesh options differ from the scene's,
 /// or the mesh adapts and the resting shapes differ. Material properties may differ.
-void check_surface(const Scene& scene, const output::Checkpoint& run, const std::string& name) {
+void check_surface(const ParticleScene& scene, const output::Checkpoint& run, const std::string& name) {
   Scene of_run(*scene.registry);
   deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
   deck.declare(of_run);
   if (of_run.particles.size() > 1) throw UserError(key + "run: " + name + " is the run of several particles; it must be that of one.");
-  const Scene before = of_run.alone().front();
+  const ParticleScene before = of_run.first();
   const auto refuse = [&](const char* what) { throw UserError(key + "run: " + what + " must be the same as in " + name + "."); };
   if (!(before.surface == scene.surface)) refuse("Surface");
   const motion::AdaptationOptions &then = before.adaptation, &now = scene.adaptation;
@@ -75,7 +75,7 @@ Net mode_of_run(const output::Checkpoint& run, int number, Eigen::Index n_points
 
 }  // namespace
 
-std::optional<output::Checkpoint> run_before(const Scene& scene) try {
+std::optional<output::Checkpoint> run_before(const ParticleScene& scene) try {
   const auto& initial = scene.particle.shape.initial;
   if (!initial || !initial->run) return {};
   const std::string name = deck::shortened(*initial->run, 80);
@@ -97,7 +97,7 @@ std::optional<output::Checkpoint> run_before(const Scene& scene) try {
   throw UserError(key + "run: " + error.what());
 }
 
-Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint* before) {
+Net initial_shape(const ParticleScene& scene, const Body& body, const output::Checkpoint* before) {
   const surface::ParticleShape& shape = scene.particle.shape;
   if (!shape.initial) return body.rest;
   const surface::InitialShape& initial = *shape.initial;
@@ -114,7 +114,7 @@ Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint
   return image(x, measures.centroid, scale * Mat3::Identity());
 }
 
-Net stress_free_shape(const Scene& scene, const Body& body, const Body& first) {
+Net stress_free_shape(const ParticleScene& scene, const Body& body, const Body& first) {
   const membrane::Options& membrane = scene.membrane;
   if (membrane.stress_free == "resting") return body.rest;
   if (membrane.stress_free == "file") return net_of_file(body.space, membrane.stress_free_file.value(), "Membrane/stress-free file");

@@ -13,7 +13,7 @@ namespace tanktread {
 
 namespace {
 
-membrane::Material material(const Scene& scene, const Body& body) {
+membrane::Material material(const ParticleScene& scene, const Body& body) {
   if (scene.particle.rigid()) return {body.law, {}, {}};
   return {body.law, {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed", scene.membrane.spontaneous_curvature.value_or(0)},
           scene.kelvin_voigt_membrane() ? scene.membrane.viscosity : membrane::SurfaceViscosity{}, scene.membrane.area_order};
@@ -57,7 +57,7 @@ void share_or_make(std::vector<Member>& members, std::size_t p) {
 
 }  // namespace
 
-coupling::Rigid rigid(const Scene& scene, const Body& body) {
+coupling::Rigid rigid(const ParticleScene& scene, const Body& body) {
   const ParticleOptions& particle = scene.particle;
   const auto given = [](const std::optional<Vec3>& vector) { return vector.value_or(Vec3::Zero()); };
   return {particle.motion == Motion::prescribed, prescribed_motion(scene),
@@ -66,7 +66,7 @@ coupling::Rigid rigid(const Scene& scene, const Body& body) {
 
 std::vector<Member> members(const Scene& scene) {
   std::vector<Member> all;
-  for (Scene& one : scene.alone()) {
+  for (ParticleScene& one : scene.alone()) {
     const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
     auto its_body = std::make_unique<Body>(body(one, equal == all.end() ? nullptr : &*equal));
     Member& member = all.emplace_back();
@@ -125,7 +125,7 @@ std::unique_ptr<Body> stacked_body(const std::vector<Member>& members) {
 namespace {
 
 /// Throws UserError if a load changes when its particle is displaced by a period of the lattice.
-void check_periods(const Scene& scene, const coupling::LoadList& loads) {
+void check_periods(const ParticleScene& scene, const coupling::LoadList& loads) {
   const auto cell = scene.domain.cell();
   const auto changes = [&](const auto& load) {
     return (load->rigid_conditions().template leftCols<3>() * cell->vectors().leftCols(cell->n())).norm() > 1e-9 * cell->vectors().norm();
@@ -139,12 +139,12 @@ void check_periods(const Scene& scene, const coupling::LoadList& loads) {
 
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube, const std::optional<coupling::SolidScene>& solids) {
-  const Scene& scene = members.front().scene;
+  const ParticleScene& scene = members.front().scene;
   coupling::CapsuleParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
   parameters.particles.clear();
   for (const Member& member : members) {
-    const Scene& own = member.scene;
+    const ParticleScene& own = member.scene;
     const Body& body = *member.body;
     coupling::Particle& particle = parameters.particles.emplace_back();
     particle.space = &body.space;
@@ -153,7 +153,8 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.loads = loads(own, body, all.wall.get());
     check_periods(own, particle.loads);
     particle.radius = body.radius;
-    if (own.particle.rigid()) particle.rigid = rigid(own, body), particle.by_traction = scene.by_tractions();
+    if (own.particle.rigid()) particle.rigid = rigid(own, body);
+    particle.by_traction = own.particle.rigid() && own.solvers.rigid_bodies == coupling::BodyEquation::first_kind;
     particle.interface_motion = own.interface_motion();
     const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);
     particle.interface_speed = own.interface.relaxation * (own.flow.type == "duct" ? own.speed() : rate * body.radius);

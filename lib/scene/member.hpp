@@ -20,7 +20,7 @@ namespace tanktread {
 /// One particle of a run: its own scene, its body, and its rows in the nets of all particles.
 struct Member {
   std::string name;  ///< empty if it is the only particle
-  Scene scene;
+  ParticleScene scene;
   std::unique_ptr<Body> body;
   spline::Block block;
   std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; this object is shared by members with equal spaces
@@ -39,7 +39,7 @@ struct Member {
 };
 
 /// Returns what drives a rigid body: the prescribed motion, or the force (including the weight) and the torque.
-coupling::Rigid rigid(const Scene& scene, const Body& body);
+coupling::Rigid rigid(const ParticleScene& scene, const Body& body);
 
 /// Builds all particles of a scene in their resting shapes.
 std::vector<Member> members(const Scene& scene);

@@ -22,12 +22,12 @@ constexpr double doubles = 72;             // bytes of a 3 x 3 block of doubles
 constexpr double most_vector_bytes = 4e9;  // largest size of the vectors of an iterative solver, on one rank
 
 /// Return the numbers of control points: points() of the particle, wall_points() of the tube wall.
-double points(const Scene& scene) {
+double points(const ParticleScene& scene) {
   const auto& imported = scene.particle.shape.imported;
   return imported ? imported->space.n_points : scene.surface.n_points();
 }
 
-double wall_points(const Scene& scene) {
+double wall_points(const SharedOptions& scene) {
   const int of_tube = scene.tube.axial_elements.value_or(surface::TubeOptions::default_axial_elements);
   const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : of_tube;
   return scene.tube.azimuthal_elements * (along + 3.0);
@@ -35,7 +35,7 @@ double wall_points(const Scene& scene) {
 
 /// Returns the bytes of all assembled operators of the particle per pair of control points. A layer operator has 3 x 3 doubles per pair, and a frozen
 /// operator six numbers of 16 bits. An operator with the option `auto` is not counted, because it is not assembled if it is too large.
-double bytes_a_pair(const Scene& scene) {
+double bytes_a_pair(const ParticleScene& scene) {
   if (scene.particle.rigid()) return doubles * coupling::Ranks().size() * (scene.tube.present ? 2 : 1);  // LU factors; in a tube, also the matrix
   const bool viscous = scene.particle.viscosity_ratio != 1;
   const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
@@ -54,7 +54,7 @@ void check_bytes(const std::string& keys, const std::string& must, double n_poin
 }
 
 /// Throws UserError if the assembled operators of the particle or of the wall of a duct are too large.
-void check_size(const Scene& scene) {
+void check_size(const ParticleScene& scene) {
   const double bytes = bytes_a_pair(scene), most = std::floor(std::sqrt(most_bytes / bytes));
   const std::string few = formatted("give at most %.0f control points", most);
   if (scene.particle.shape.imported)
@@ -71,7 +71,7 @@ void check_size(const Scene& scene) {
 }
 
 /// Throws UserError if the vectors that each rank stores for an iterative solver, and the matrix of their inner products, are too large.
-void check_vectors(const Scene& scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
+void check_vectors(const ParticleScene& scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
   const double unknowns = 3 * (points(scene) + (scene.tube.present ? wall_points(scene) : 0));
   double vectors = 1;
   std::string keys;
@@ -90,7 +90,7 @@ void check_vectors(const Scene& scene, const std::string& path, const std::share
 
 double most_wall_points() { return std::floor(std::sqrt(most_bytes / (doubles * coupling::Ranks().size()))); }
 
-void check_memory(const Scene& scene) {
+void check_memory(const ParticleScene& scene) {
   check_size(scene);
   check_vectors(scene, "Solvers", scene.solvers.belos);
   for (const coupling::IterativeOptions* system : scene.solvers.systems()) check_vectors(scene, system->path, system->belos);
@@ -98,7 +98,7 @@ void check_memory(const Scene& scene) {
 
 void check_first_kind(const Scene& scene) {
   double n_points = 0;
-  for (const Scene& one : scene.alone())
+  for (const ParticleScene& one : scene.alone())
     if (one.particle.rigid()) n_points += points(one);
   if (n_points == 0) throw UserError("Solvers/rigid bodies `first kind` is for rigid bodies, but every Particle deforms.");
   check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);

@@ -3,11 +3,12 @@
 
 namespace tanktread {
 
+struct ParticleScene;
 struct Scene;
 
 /// Throws UserError if the operators assembled for the particle or for the wall of its duct, or the vectors of an iterative solver, take more memory
 /// than the program allows. `scene`: scene with one particle.
-void check_memory(const Scene& scene);
+void check_memory(const ParticleScene& scene);
 
 /// Throws UserError if the scene has no rigid bodies for the first-kind equation (2.40), or if the matrix of this equation is too large.
 void check_first_kind(const Scene& scene);

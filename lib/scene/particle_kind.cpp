@@ -15,7 +15,7 @@ std::string text(Motion motion) { return "`" + motion_words[static_cast<std::siz
 
 std::string ParticleOptions::choice() const { return "Particle/motion " + text(motion); }
 
-void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
+void ParticleOptions::reject(const ParticleScene& scene, Rejections& to) const {
   const bool told = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
   const std::string forced = "the force on a body with prescribed motion follows from its motion", gradient = "whose gradient is uniform";
   const Chosen moved = "Particle/motion `prescribed`", stiff(choice(), "Particle/motion `prescribed` or `free`");
@@ -145,7 +145,7 @@ void ParticleKind::declare_lists(deck::Section& section) {
   section.section("Adaptation", adaptation, "refinement and coarsening of the particle's surface mesh");
 }
 
-void ParticleKind::reject(const Scene& scene, Rejections& to) const {
+void ParticleKind::reject(const ParticleScene& scene, Rejections& to) const {
   const bool drop = membrane.law == "surface tension", strong = scene.load_is_strong(), rigid = particle.rigid();
   const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = surface.polar() && surface.poles == "plain";
   const std::string plain = "Surface/poles `plain`";
@@ -172,7 +172,7 @@ void ParticleKind::reject(const Scene& scene, Rejections& to) const {
     to.pair(with && strong, what, "Membrane/load `strong`", "its forces are included by virtual work, in the form `weak` only");
 }
 
-void ContactOptions::reject(const Scene& scene, Rejections& to) const {
+void ContactOptions::reject(const SharedOptions& scene, Rejections& to) const {
   to.pair(limiter && !scene.runs_in_time(), "Contact/limiter", scene.sought(), "it acts on steps of a run in time");
 }
 

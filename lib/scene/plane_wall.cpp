@@ -26,7 +26,7 @@ WallRow row_of(std::span<const stokes::PlaneWall> walls, const spline::Space& sp
 
 }  // namespace
 
-void check_in_front(const Scene& scene, const Body& body) {
+void check_in_front(const ParticleScene& scene, const Body& body) {
   const WallRow row = row_of(scene.wall.planes(), body.space, body.initial, 1);
   const Vec3& place = row.place;
   const double gap = row.gap, least = scene.wall.contact_gap * scene.radius();

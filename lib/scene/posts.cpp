@@ -80,26 +80,19 @@ void take_posts(Scene& scene) {
   scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
   scene.flow.plates = scene.wall.plates();
   const bool films = scene.wall.present || scene.tube.present || scene.domain.present;
-  if (films && scene.name.empty() && !scene.adaptation.film_resolution)
-    scene.adaptation.film_resolution = motion::AdaptationOptions::default_film_resolution;
-  if (is_post(scene)) {
-    scene.posts.push_back(post_of(scene));
-    scene.only_solids = true;
-    scene.particle.shape = surface::ParticleShape();
-    scene.particle.shape.radius = scene.posts.front().radius;
-    return;
-  }
-  std::vector<ParticleKind> others;
-  for (const ParticleKind& kind : scene.particles) {
+  for (ParticleKind& kind : scene.particles)
+    if (films && kind.name.empty() && !kind.adaptation.film_resolution)
+      kind.adaptation.film_resolution = motion::AdaptationOptions::default_film_resolution;
+  for (const ParticleKind& kind : scene.particles)
     if (is_post(kind)) scene.posts.push_back(post_of(kind));
-    else others.push_back(kind);
-  }
-  scene.only_solids = !scene.particles.empty() && others.empty();
-  scene.particles = std::move(others);
-  if (scene.only_solids) scene.particle.shape.radius = scene.posts.front().radius;
+  std::erase_if(scene.particles, is_post);
+  scene.only_solids = scene.particles.empty();
+  if (!scene.only_solids) return;
+  scene.particles.emplace_back().registry = scene.parts;
+  scene.particles.front().particle.shape.radius = scene.posts.front().radius;
 }
 
-void check_posts(const Scene& scene) {
+void check_posts(const SharedOptions& scene) {
   const std::optional<stokes::PeriodicCell> cell = scene.domain.cell();
   if (scene.posts.empty()) {
     if (scene.flow.pressure_gradient && !scene.wall.solid)

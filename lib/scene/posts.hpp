@@ -11,6 +11,7 @@ namespace tanktread {
 
 struct ParticleKind;
 struct Scene;
+struct SharedOptions;
 
 /// A circular cylinder along a periodic direction, at rest. One period of the cylinder is in the cell.
 struct Post {
@@ -32,6 +33,6 @@ Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell);
 void take_posts(Scene& scene);
 
 /// Throws UserError if posts do not fit into the scene.
-void check_posts(const Scene& scene);
+void check_posts(const SharedOptions& scene);
 
 }  // namespace tanktread

@@ -12,7 +12,7 @@ namespace tanktread {
 namespace {
 
 /// Adds to `to` the choices that contradict user-defined loads and fields.
-void reject_registered(const Scene& scene, Rejections& to) {
+void reject_registered(const ParticleScene& scene, Rejections& to) {
   to.pair(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`",
           "loads are included by virtual work, in the form `weak` only");
   if (to.every())  // for a given deck, the load itself tells (Load::rigid_conditions)
@@ -23,9 +23,9 @@ void reject_registered(const Scene& scene, Rejections& to) {
 
 }  // namespace
 
-std::string_view Scene::why_in_system() const {
+std::string_view ParticleScene::why_in_system() const {
   if (only_solids) return {};
-  if (!particles.empty() || !name.empty()) return "Particles";
+  if (!name.empty()) return "Particles";
   if (!particle.rigid()) return "Particle/motion";
   if (domain.present) return "Domain";
   if (output.power_balance) return "Output/power balance";
@@ -36,18 +36,19 @@ std::string_view Scene::why_in_system() const {
   return flow.user && !flow.user->affine() ? "Flow/type" : "";
 }
 
-void Scene::reject_power(Rejections& to) const {
-  const bool asked = output.power_balance && name.empty();
+void reject_power(const SharedOptions& scene, bool strong, Rejections& to) {
+  const auto& [output, flow, domain, wall, tube] = std::tie(scene.output, scene.flow, scene.domain, scene.wall, scene.tube);
+  const bool asked = output.power_balance;
   const std::string word = "Output/power balance";
   to.pair(asked && flow.type == "parabolic" && domain.present && !(wall.solid && wall.distance), word,
           {"Domain and " + flow.choice(), "Domain and Flow/type `parabolic`"},
           "the pressure of that flow does work on the flow that particles cause through a cell, which is included only between two plates");
   to.pair(asked && !tube.present && flow.user && !flow.user->affine(), word, {flow.choice(), "Flow/type of an added flow"},
           "the pressure of an added flow is not known unless its gradient is uniform");
-  to.pair(asked && alone().front().load_is_strong(), word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
+  to.pair(asked && strong, word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
 }
 
-void Scene::reject(Rejections& to) const {
+void ParticleScene::reject(Rejections& to) const {
   reject_searches(*this, to);
   particle.reject(*this, to);
   ParticleKind::reject(*this, to);
@@ -57,7 +58,7 @@ void Scene::reject(Rejections& to) const {
   wall.reject(*this, to);
   reject_registered(*this, to);
   if (to.every()) {
-    reject_power(to);
+    reject_power(*this, load_is_strong(), to);
     flow.reject(to);
     membrane.reject(to);
   }
@@ -65,7 +66,9 @@ void Scene::reject(Rejections& to) const {
 
 std::string rejection_table(const Registry& registry) {
   Rejections all(true);
-  Scene(registry).reject(all);
+  ParticleScene scene;
+  scene.parts = scene.registry = &registry;
+  scene.reject(all);
   std::vector<Rejections::Row> rows = all.rows();
   std::ranges::stable_sort(rows, {}, &Rejections::Row::one);
   std::string text = "| choice | with | why not |\n|---|---|---|\n";

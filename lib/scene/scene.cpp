@@ -22,7 +22,7 @@ struct OutputList {
 
   void declare(deck::Section& section) {
     scene.output.declare(section);
-    scene.series = scene.registry->series.read(section, "series", "series that this program adds to the record; none without this section");
+    scene.series = scene.parts->series.read(section, "series", "series that this program adds to the record; none without this section");
   }
 };
 
@@ -48,7 +48,7 @@ struct ChannelList {
 /// Section Particles.
 struct Kinds {
   std::vector<ParticleKind>& all;
-  const ParticleKind& scene;  // values before any key is read
+  const ParticleKind& defaults;  // values before any key is read
 
   void declare(deck::Section& section) {
     section.each(
@@ -56,7 +56,7 @@ struct Kinds {
         "particle. Keys that are not set are taken from the particle that its key `like` names, or otherwise from Particles/defaults",
         [this](const std::string& name, deck::Section& inner) {
           if (name.find_first_of("/=") != name.npos) throw UserError(inner.path() + ": the name of a particle must not contain `/` or `=`.");
-          all.emplace_back(scene).name = name;
+          all.emplace_back(defaults).name = name;
           all.back().declare(inner);
         },
         true);
@@ -67,7 +67,7 @@ struct Kinds {
 
 /// Throws UserError if the viscosity ratio is too large. The system for the velocity loses one digit to round-off per factor of ten in the ratio. The
 /// solver stagnates at a ratio of 1e15 times the tolerance in a tube, and at higher ratios without a tube.
-void check_viscosity_ratio(const Scene& scene) {
+void check_viscosity_ratio(const ParticleScene& scene) {
   const double ratio = scene.particle.viscosity_ratio, most = 1e14 * scene.solvers.tolerance;
   if (ratio > most)
     throw UserError(
@@ -77,7 +77,7 @@ void check_viscosity_ratio(const Scene& scene) {
 }
 
 /// Throws UserError if a key lacks another key that it requires, or has no meaning in combination with another key.
-void check_motion(const Scene& scene) {
+void check_motion(const ParticleScene& scene) {
   const ParticleOptions& particle = scene.particle;
   if (particle.motion != Motion::prescribed && (particle.velocity || particle.angular_velocity))
     throw UserError(std::string("Particle/") + (particle.velocity ? "velocity" : "angular velocity") +
@@ -93,7 +93,7 @@ void check_motion(const Scene& scene) {
     throw UserError("Flow/type `duct` needs a section Tube, with at least Tube/section, or a section Channel.");
   if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present && !scene.tube.present && !scene.domain.present)
     throw UserError("Adaptation/film resolution needs several particles, a Domain or a wall, because otherwise there are no films.");
-  if (std::isnan(scene.time.final_time) && scene.has_time())
+  if (std::isnan(scene.time.final_time) && scene.runs_in_time() && !scene.only_solids && !scene.is_resistance_problem())
     throw UserError("Time/final time is missing: give the time at which the run ends, in the deck's unit of time.");
   if (scene.periodic.present && std::isnan(scene.periodic.period))
     throw UserError("Periodic/period is missing: give the expected period, in the deck's unit of time.");
@@ -108,9 +108,9 @@ void check_motion(const Scene& scene) {
 /// Checks each of several particles as a separate scene, and checks that the particles can be combined in one scene. Throws UserError with the name
 /// of the particle in the message.
 void check_several(const Scene& scene) {
-  const std::vector<Scene> alone = scene.alone();
+  const std::vector<ParticleScene> alone = scene.alone();
   const bool strong = alone.front().load_is_strong();
-  for (Scene one : alone) {
+  for (ParticleScene one : alone) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies only to deformable particles
     const std::string list = "Particles/" + one.name;
     if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load must be the same for all particles.");
@@ -126,11 +126,32 @@ void check_several(const Scene& scene) {
 }
 
 /// Throws UserError if the mesh cannot have the element lengths that the adaptation requires.
-void check_adaptation(const Scene& scene) {
+void check_adaptation(const ParticleScene& scene) {
   if (!scene.adaptation.enabled) return;
   // Element length: side of a square with the mean element area on the sphere of equal volume.
   const double area = 4 * std::numbers::pi * scene.radius() * scene.radius();
   scene.adaptation.check(static_cast<int>(scene.surface.n_points()), std::sqrt(area / scene.surface.n_elements()));
+}
+
+/// Declares the sections of particles. Returns the particles of the section Particles or, if the deck does not have it, the particle `only` of the
+/// section Particle. `only`: default values; replaced by those of the section Particle.
+std::vector<ParticleKind> declare_particles(deck::Section& root, ParticleKind& only) {
+  std::vector<ParticleKind> all;
+  const bool several = root.given("Particles");
+  if (several) {
+    for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
+      refuse(root.given(list), std::string(list), "Particles",
+             "give it for each particle in Particles/<name>, or for all particles in Particles/defaults");
+  } else {
+    root.section("Particle", only.particle, "resting shape, initial shape and motion of the particle");
+    only.declare_lists(root);
+  }
+  if (Kinds kinds{all, only}; several || root.documenting())
+    root.section("Particles", kinds, "several particles, instead of the sections Particle, Membrane, Surface, Interface and Adaptation");
+  else
+    root.mention("Particles");
+  if (!several) all = {only};
+  return all;
 }
 
 }  // namespace
@@ -140,7 +161,7 @@ void Scene::declare(deck::Section& root) {
                                                      "physical units of the deck: the meaning of a length, time or force of 1. With this section a "
                                                      "value may have a unit, `5.3 uN/m`, and results are labelled with SI units"))
     root.take(units = std::make_shared<const deck::Units>(given));
-  flow.registered = &registry->flows, domain.registered = &registry->media;
+  flow.registered = &parts->flows, domain.registered = &parts->media;
   root.section("Flow", flow, "the ambient flow and the outer fluid");
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
   surface::TubeOptions documented;
@@ -148,20 +169,11 @@ void Scene::declare(deck::Section& root) {
   refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one duct; give one of them");
   if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;
-  if (tube.present) duct_half_width = tube.half_width();
+  ParticleKind only;  // the particle of the section Particle
+  only.registry = parts;
+  if (tube.present) only.duct_half_width = tube.half_width();
   const bool several = root.given("Particles");
-  if (several) {
-    for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
-      refuse(root.given(list), std::string(list), "Particles",
-             "give it for each particle in Particles/<name>, or for all particles in Particles/defaults");
-  } else {
-    root.section("Particle", particle, "resting shape, initial shape and motion of the particle");
-    declare_lists(root);
-  }
-  if (Kinds kinds{particles, *this}; several || root.documenting())
-    root.section("Particles", kinds, "several particles, instead of the sections Particle, Membrane, Surface, Interface and Adaptation");
-  else
-    root.mention("Particles");
+  particles = declare_particles(root, only);
   if (several || root.given("Domain") || root.documenting())
     root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
   volume_given = root.given("Volume");
@@ -173,7 +185,7 @@ void Scene::declare(deck::Section& root) {
   }
   if (tube.present && domain.present && domain.side_lengths && !domain.side_lengths->empty()) tube.period = domain.side_lengths->front();
   wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
-  if (!particle.rigid() || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
+  if (!only.particle.rigid() || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
   root.section("Quadrature", quadrature, "numerical integration of the boundary integrals of the flow");
   root.section("Time", time, "time integration: scheme, step length and end of the run");
   steady.present = root.optional_section("Steady", steady, "search for the steady shape that the initial shape leads to, instead of a run in time");
@@ -197,10 +209,15 @@ void Scene::declare(deck::Section& root) {
 
 void Scene::check() const {
   quadrature.check();
-  if (solvers.rigid_bodies == coupling::BodyEquation::first_kind && name.empty()) check_first_kind(*this);
+  if (solvers.rigid_bodies == coupling::BodyEquation::first_kind) check_first_kind(*this);
   Rejections found;
-  reject_power(found);
-  if (!particles.empty()) return check_several(*this), found.throw_if_any();
+  reject_power(*this, first().load_is_strong(), found);
+  if (!named()) return first().check(std::move(found));
+  check_several(*this);
+  found.throw_if_any();
+}
+
+void ParticleScene::check(Rejections found) const {
   flow.check();
   check_motion(*this);
   if (tube.present) tube.check();
@@ -227,38 +244,36 @@ void Scene::check() const {
   check_memory(*this);
 }
 
-std::string Scene::interface_motion() const {
+motion::TimeOptions ParticleScene::time_options() const {
+  motion::TimeOptions in_its_unit = time;
+  in_its_unit.unit = 1 / rate();
+  return in_its_unit;
+}
+
+std::string ParticleScene::interface_motion() const {
   return interface.motion.value_or(membrane.law == "surface tension" ? "relaxed" : "material");
 }
 
-double Scene::radius() const { return particle.shape.equivalent_radius(); }
+double ParticleScene::speed() const { return flow.speed(radius()); }
 
-double Scene::speed() const { return flow.speed(radius()); }
-
-double Scene::rate() const {
-  const auto is_rigid = [](const Scene& one) { return one.particle.rigid(); };
-  if (!particles.empty()) return std::ranges::min(alone(), {}, is_rigid).rate();  // the first particle that deforms, if one does
+double ParticleScene::rate() const {
   if (speed() > 0) return speed() / radius();
   return particle.rigid() ? 1 : modulus() / (flow.viscosity * radius());
 }
 
-double Scene::modulus() const {
+double ParticleScene::modulus() const {
   if (particle.rigid()) return 0;
   return tube.present ? membrane.modulus(flow.viscosity, speed(), 1.0) : membrane.modulus(flow.viscosity, flow.rate(), radius());
 }
 
-Vec3 Scene::body_force() const { return particle.density_difference.value_or(0.) * flow.gravity.value_or(Vec3::Zero()); }
-double Scene::bending_modulus() const { return membrane.bending(modulus(), radius()); }
+Vec3 ParticleScene::body_force() const { return particle.density_difference.value_or(0.) * flow.gravity.value_or(Vec3::Zero()); }
+double ParticleScene::bending_modulus() const { return membrane.bending(modulus(), radius()); }
 
-bool Scene::reciprocal_forces() const { return particle.forces ? *particle.forces == "reciprocal" : quadrature.rule == "adaptive"; }
+bool ParticleScene::reciprocal_forces() const { return particle.forces ? *particle.forces == "reciprocal" : quadrature.rule == "adaptive"; }
 
-bool Scene::lands_on_snapshots() const {
-  return output.between_steps ? *output.between_steps == "land" : !time.fixed_step || adaptation.enabled;
-}
+double SharedOptions::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
 
-double Scene::snapshot_interval() const { return output.interval.value_or(time.final_time / 20.0); }
-
-double Scene::next_snapshot(double now) const {
+double SharedOptions::next_snapshot(double now) const {
   const double interval = snapshot_interval(), next = (std::floor(now / interval * (1 + 1e-12)) + 1) * interval;
   return next < time.final_time * (1 - 1e-12) ? next : time.final_time;
 }

@@ -38,7 +38,8 @@ namespace deck {
 class Units;
 }
 
-struct Scene;
+struct ParticleScene;
+struct SharedOptions;
 
 /// `Particle/motion`.
 enum class Motion { deforming, prescribed, free };
@@ -60,7 +61,7 @@ struct ParticleOptions {
   bool rigid() const { return motion != Motion::deforming; }
   std::string choice() const;  ///< returns for example "Particle/motion `free`", for messages
   void declare(deck::Section& section);
-  void reject(const Scene& scene, Rejections& to) const;  ///< adds the choices that contradict the motion of the scene's particle
+  void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices that contradict the motion of the particle
 };
 
 /// Options that may differ between particles.
@@ -83,7 +84,7 @@ struct ParticleKind {
   void declare(deck::Section& section);        ///< declares Particles/<name>: the keys of Particle, and the inner sections `copies`, Membrane,
                                                ///< Surface, Interface and Adaptation
   void declare_lists(deck::Section& section);  ///< declares the sections Membrane, Surface, Interface and Adaptation
-  void reject(const Scene& scene, Rejections& to) const;  ///< adds the choices that contradict the particle's mesh, membrane or interface
+  void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices that contradict the mesh, membrane or interface
 };
 
 /// Options `Contact/*` of the deck: contacts between several particles or periodic images.
@@ -95,15 +96,14 @@ struct ContactOptions {
   double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap below which the run ends, divided by the smallest radius R_C
 
   void declare(deck::Section& section);
-  void reject(const Scene& scene, Rejections& to) const;
+  void reject(const SharedOptions& scene, Rejections& to) const;
 };
 
-/// Options of all modules, with one section of the deck each.
-struct Scene : ParticleKind {
+/// Options of a deck that all particles share, with one section of the deck each.
+struct SharedOptions {
+  const Registry* parts = &no_parts;  ///< user-defined loads, fields, flows, media and series
   stokes::FlowOptions flow;
   std::shared_ptr<const deck::Units> units;  ///< units of the deck's values; null if the deck does not set them
-  std::vector<ParticleKind> particles;  ///< particles of the sections Particles/<name>; if empty, the scene has one particle, whose options are in
-                                        ///< the base class ParticleKind
   ContactOptions contact;
   DomainOptions domain;
   WallOptions wall;
@@ -126,15 +126,6 @@ struct Scene : ParticleKind {
   bool volume_given = false;  ///< true if the deck has the section Volume
   std::vector<std::pair<std::string, std::string>> files;  ///< files that the deck names: path, and name of the copy that the run keeps
 
-  Scene() = default;
-  explicit Scene(const Registry& parts) { registry = &parts; }
-
-  void declare(deck::Section& root);
-
-  /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
-  void check() const;
-  void reject(Rejections& to) const;  ///< adds the combinations of choices that the program rejects in a scene with one particle
-  void reject_power(Rejections& to) const;  ///< adds the choices that exclude the power balance (6.11) of all particles
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
   /// Returns the section of the deck (Steady, Periodic or Spectrum) that replaces the simulation in time.
   Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }
@@ -145,32 +136,33 @@ struct Scene : ParticleKind {
   /// Returns the medium, which replaces the free-space kernels: the plane wall of the section Wall, or a medium chosen by Domain/kind that a program
   /// built on this library has added. Null in all other scenes.
   std::shared_ptr<const stokes::Medium> medium() const;
+  double snapshot_interval() const;        ///< simulated time between snapshots
+  double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, but at most the final time
+};
+
+/// One particle of a scene, with the options that it shares with the others.
+struct ParticleScene : SharedOptions, ParticleKind {
+  ParticleScene() = default;
+  ParticleScene(const SharedOptions& shared, const ParticleKind& kind) : SharedOptions(shared), ParticleKind(kind) {}
+
+  /// Throws UserError if options of this particle, or shared options, contradict each other or if the problem is too large. `found`: rejected
+  /// combinations of the whole scene.
+  void check(Rejections found = Rejections()) const;
+  void reject(Rejections& to) const;  ///< adds the combinations of choices that the program rejects
   bool load_is_strong() const { return membrane.load == "strong"; }
 
-  /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the motion or resistance problem of one rigid body.
+  /// Returns true if the particle is solved for in a coupled system of all particles. Otherwise it is the only particle, and the scene is the motion
+  /// or resistance problem of one rigid body.
   bool in_system() const { return !why_in_system().empty(); }
-  /// Returns the key or section of the deck that requires one coupled system of all particles; empty if there is none.
+  /// Returns the key or section of the deck that requires a coupled system; empty if there is none.
   std::string_view why_in_system() const;
   /// Returns true if the scene is the resistance problem of one body with prescribed motion.
   bool is_resistance_problem() const { return !only_solids && particle.motion == Motion::prescribed && !in_system(); }
-  /// Returns true if the scene changes in time, so that its run can be resumed; false for steady problems, searches and spectra.
-  bool has_time() const { return runs_in_time() && !only_solids && !is_resistance_problem(); }
-  /// Returns true if gaps exist: between several particles, or between a particle and its periodic images.
-  bool has_gaps() const { return particles.size() > 1 || domain.present; }
 
-  /// Returns one scene for each particle, with the options of this particle only.
-  std::vector<Scene> alone() const;
-  bool by_tractions() const;  ///< returns true if the unknowns of rigid bodies are tractions, by the integral equation of the first kind (2.40)
-
-  /// Returns the options of the time integration, with `unit` set to the time scale 1/rate() of the scene.
-  motion::TimeOptions time_options() const {
-    motion::TimeOptions in_its_unit = time;
-    in_its_unit.unit = 1 / rate();
-    return in_its_unit;
-  }
+  /// Returns the options of the time integration, with `unit` set to the time scale 1/rate() of the particle.
+  motion::TimeOptions time_options() const;
   bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem, as set by `Particle/forces` or by default
-  double radius() const;             ///< R_C, radius of the sphere of equal volume
-  double least_radius() const;       ///< smallest radius R_C of all particles, by which gaps are divided
+  double radius() const { return particle.shape.equivalent_radius(); }  ///< R_C, radius of the sphere of equal volume
   double rate() const;               ///< speed/R_C; if the speed is 0, modulus/(viscosity x R_C), or 1 for a rigid body; units 1/time
   double speed() const;              ///< speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without
                                      ///< gradient
@@ -183,9 +175,47 @@ struct Scene : ParticleKind {
   Vec3 body_force() const;           ///< density difference x gravity, units force/length^3
   double bending_modulus() const;    ///< E_b, units force x length
   std::string interface_motion() const;  ///< motion of the control points along the interface: as set in the deck, or the default of the law
+};
+
+/// Adds the choices that exclude the power balance (6.11) of all particles. `strong`: true for Membrane/load `strong`.
+void reject_power(const SharedOptions& scene, bool strong, Rejections& to);
+
+/// Options of all modules: those of the particles, and those that they share.
+struct Scene : SharedOptions {
+  /// Particles in the order of the deck, at least one after declare(). A deck with the section Particle has one, without a name. In a scene of posts
+  /// only, the one particle stands for their size.
+  std::vector<ParticleKind> particles;
+
+  Scene() = default;
+  explicit Scene(const Registry& registered) { parts = &registered; }
+
+  void declare(deck::Section& root);
+
+  /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
+  void check() const;
+
+  bool named() const { return !particles.front().name.empty(); }  ///< returns true if the deck has the section Particles
+
+  /// Returns the scenes of all particles. In them, Solvers/rigid bodies is not `auto`.
+  std::vector<ParticleScene> alone() const;
+  ParticleScene first() const { return {*this, particles.front()}; }
+  /// Returns the first particle that deforms, or the first particle if all are rigid.
+  ParticleScene first_deforming() const;
+  bool by_tractions() const;  ///< returns true if the unknowns of rigid bodies are tractions, by the integral equation of the first kind (2.40)
+
+  /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the motion or resistance problem of one rigid body.
+  bool in_system() const { return !only_solids && first().in_system(); }
+  bool is_resistance_problem() const { return first().is_resistance_problem(); }  ///< see ParticleScene
+  /// Returns true if the scene changes in time, so that its run can be resumed; false for steady problems, searches and spectra.
+  bool has_time() const { return runs_in_time() && !only_solids && !is_resistance_problem(); }
+  /// Returns true if gaps exist: between several particles, or between a particle and its periodic images.
+  bool has_gaps() const { return particles.size() > 1 || domain.present; }
+
+  motion::TimeOptions time_options() const { return first_deforming().time_options(); }  ///< see ParticleScene
+  double rate() const { return first_deforming().rate(); }                               ///< see ParticleScene
+  double least_radius() const;       ///< smallest radius R_C of all particles, by which gaps are divided
+  bool adapts() const;               ///< returns true if the mesh of a particle may change
   bool lands_on_snapshots() const;   ///< true if steps are shortened so that they end at snapshots
-  double snapshot_interval() const;  ///< simulated time between snapshots
-  double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, but at most the final time
 };
 
 /// Returns true if the key at this path may change when a run is resumed, because the data of the checkpoint do not depend on it.

@@ -30,7 +30,7 @@ membrane::RigidConditions conditions(std::span<const coupling::Particle> particl
 }
 
 /// Returns the lattice vectors of a periodic scene. Returns none if the scene is not periodic, or if it has a tube or channel.
-std::vector<Vec3> lattice_vectors(const Scene& scene) {
+std::vector<Vec3> lattice_vectors(const SharedOptions& scene) {
   std::vector<Vec3> all;
   if (!scene.domain.present || scene.tube.present) return all;
   const stokes::PeriodicCell cell = scene.domain.cell().value();
@@ -39,7 +39,7 @@ std::vector<Vec3> lattice_vectors(const Scene& scene) {
 }
 
 /// Returns true if the flow has a uniform gradient with nonzero vorticity.
-bool turns(const Scene& scene) {
+bool turns(const SharedOptions& scene) {
   if (scene.flow.type == "duct") return false;
   const stokes::AmbientFlow ambient(scene.flow);
   const Mat3 gradient = ambient.gradient(Vec3::Zero());
@@ -48,7 +48,7 @@ bool turns(const Scene& scene) {
 
 }  // namespace
 
-void reject_searches(const Scene& scene, Rejections& to) {
+void reject_searches(const ParticleScene& scene, Rejections& to) {
   const bool search = !scene.runs_in_time(), steady = scene.steady.present, drop = scene.membrane.law == "surface tension";
   const std::string& unstressed = scene.membrane.stress_free == "resting" ? scene.particle.shape.shape : scene.membrane.stress_free;
   to.pair(steady && scene.periodic.present, "Steady", "Periodic", "a steady shape has no period; give one of them");
@@ -113,12 +113,12 @@ double steady_step(const Scene& scene) {
   constexpr double most_relaxation_times = 10;
   if (scene.steady.step) return *scene.steady.step;
   double step = 0.5 / scene.rate();
-  for (const Scene& one : scene.alone())
+  for (const ParticleScene& one : scene.alone())
     if (!one.particle.rigid()) step = std::min(step, most_relaxation_times * one.flow.viscosity * one.radius() / one.modulus());
   return step;
 }
 
-bool holds_centre(const Scene& scene) {
+bool holds_centre(const ParticleScene& scene) {
   if (scene.particle.drift) return *scene.particle.drift == "held";
   if (scene.tube.present || scene.wall.present || scene.medium() || scene.particle.rigid()) return false;
   if (!scene.body_force().isZero(0) || !scene.membrane.forces.total().isZero(0) || !scene.loads.empty()) return false;

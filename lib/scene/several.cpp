@@ -1,20 +1,23 @@
 // The particles of a scene: one scene for each of them, and the equation of the rigid bodies among them.
 
 #include <algorithm>
-#include <span>
+#include <limits>
 
 #include "scene/scene.hpp"
 
 namespace tanktread {
 
-std::vector<Scene> Scene::alone() const {
-  Scene common = *this;
-  common.solvers.rigid_bodies = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
-  if (particles.empty()) return {common};
-  std::vector<ParticleKind>().swap(common.particles);  // frees the memory, which clear() would keep in each copy
-  std::vector<Scene> scenes(particles.size(), common);
-  for (std::size_t p = 0; p < particles.size(); ++p) static_cast<ParticleKind&>(scenes[p]) = particles[p];
+std::vector<ParticleScene> Scene::alone() const {
+  std::vector<ParticleScene> scenes;
+  for (const ParticleKind& kind : particles) scenes.emplace_back(*this, kind);
+  const auto equation = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
+  for (ParticleScene& one : scenes) one.solvers.rigid_bodies = equation;
   return scenes;
+}
+
+ParticleScene Scene::first_deforming() const {
+  const auto found = std::ranges::find_if(particles, [](const ParticleKind& kind) { return !kind.particle.rigid(); });
+  return {*this, found == particles.end() ? particles.front() : *found};
 }
 
 /// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for several bodies of
@@ -24,11 +27,9 @@ std::vector<Scene> Scene::alone() const {
 bool Scene::by_tractions() const {
   using enum coupling::BodyEquation;
   if (solvers.rigid_bodies != automatic || !runs_in_time()) return solvers.rigid_bodies == first_kind;
-  const ParticleKind* first = particles.empty() ? this : particles.data();
-  const std::span kinds(first, std::max<std::size_t>(1, particles.size()));
-  const bool alone = tube.present && kinds.size() == 1 && solvers.tube == "schur";
+  const bool alone = tube.present && particles.size() == 1 && solvers.tube == "schur";
   double bodies = 0, points = 0;
-  for (const ParticleKind& kind : kinds) {
+  for (const ParticleKind& kind : particles) {
     if (!kind.particle.rigid()) continue;
     if (!kind.adaptation.enabled && !alone) return false;
     ++bodies, points += kind.particle.shape.imported ? kind.particle.shape.imported->space.n_points : kind.surface.n_points();
@@ -37,8 +38,17 @@ bool Scene::by_tractions() const {
 }
 
 double Scene::least_radius() const {
-  const auto radius_of = [](const ParticleKind& kind) { return kind.particle.shape.equivalent_radius(); };
-  return particles.empty() ? radius() : radius_of(std::ranges::min(particles, {}, radius_of));
+  double least = std::numeric_limits<double>::infinity();
+  for (const ParticleKind& kind : particles) least = std::min(least, kind.particle.shape.equivalent_radius());
+  return least;
+}
+
+bool Scene::adapts() const {
+  return std::ranges::any_of(particles, [](const ParticleKind& kind) { return kind.adaptation.enabled; });
+}
+
+bool Scene::lands_on_snapshots() const {
+  return output.between_steps ? *output.between_steps == "land" : !time.fixed_step || adapts();
 }
 
 }  // namespace tanktread

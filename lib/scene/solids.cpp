@@ -33,7 +33,7 @@ std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell
 }
 
 /// Returns the free directions of (2.46), in which the walls do not determine the mean velocity.
-std::vector<Vec3> free_directions(const Scene& scene, const stokes::PeriodicCell& cell) {
+std::vector<Vec3> free_directions(const SharedOptions& scene, const stokes::PeriodicCell& cell) {
   std::vector<Vec3> free;
   if (cell.n() == 3)
     for (int c = 0; c < 3; ++c) free.push_back(Vec3::Unit(c));
@@ -88,7 +88,7 @@ std::string solids_line(const Scene& scene, int ranks) {
   return line + formatted("factored once: %.1f MB on each of %d rank%s", 72e-6 * points * points, ranks, ranks > 1 ? "s" : "");
 }
 
-void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
+void SolidsRow::add_columns(const SharedOptions& scene, Columns& to) const {
   constexpr const char *walls = "; with walls in a Domain", *posts = "; with posts", *both = "; with two walls or posts in a Domain";
   if (to.when(scene.wall.solid)) {
     to.add(wall_force, "x1 x2 x3",
@@ -128,7 +128,7 @@ void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
          both});
 }
 
-SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient, const Solids::Flow& flow,
+SolidsRow solids_row(const SharedOptions& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient, const Solids::Flow& flow,
                      const Vec3& particle_force, const Vec3& velocity_integral) {
   const Solids& solids = *of.solids;
   const Vec3 gradient = ambient.change() * scene.flow.pressure_gradient.value_or(Vec3::Zero());

@@ -17,7 +17,7 @@ namespace {
 
 /// Throws UserError if the particle does not fit into the channel: if a sample point of its surface is in the wall or too close to an end, or if the
 /// gap to the wall is too small.
-void check_fits_channel(const Scene& scene, const Body& body, const surface::TubeWall& wall) {
+void check_fits_channel(const ParticleScene& scene, const Body& body, const surface::TubeWall& wall) {
   const surface::Channel& channel = *wall.channel;
   const surface::Patches particle(surface::BezierMap(body.space), body.initial), around(surface::BezierMap(wall.space), wall.net);
   double first = channel.end(), last = channel.start();
@@ -43,7 +43,7 @@ void check_fits_channel(const Scene& scene, const Body& body, const surface::Tub
                               gap, scene.tube.contact_gap, least));
 }
 
-void check_fits(const Scene& scene, const Body& body) {
+void check_fits(const ParticleScene& scene, const Body& body) {
   if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get()))
     return check_fits_channel(scene, body, *channel->surface());
   const surface::Outline& outline = body.duct->outline();
@@ -78,7 +78,7 @@ TubeRow with_channel(const coupling::Tube& tube, const stokes::AmbientFlow& flow
 
 }  // namespace
 
-void reject_with_tube(const Scene& scene, Rejections& to) {
+void reject_with_tube(const ParticleScene& scene, Rejections& to) {
   const stokes::FlowOptions& flow = scene.flow;
   const coupling::SolverOptions& solvers = scene.solvers;
   const bool tube = scene.tube.present, straight = tube && !scene.tube.channel, all_blocks = solvers.tube != "schur";
@@ -100,7 +100,7 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
           "the system of all blocks prescribes the flow rate; give `schur`");
 }
 
-void check_fit(const Scene& scene, const Body& body) {
+void check_fit(const ParticleScene& scene, const Body& body) {
   if (!scene.tube.present) return;
   try {
     check_fits(scene, body);
@@ -110,7 +110,7 @@ void check_fit(const Scene& scene, const Body& body) {
   }
 }
 
-std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene) {
+std::shared_ptr<const stokes::DuctFlow> duct(const ParticleScene& scene) {
   if (!scene.tube.present) return {};
   const double speed = scene.flow.mean_velocity ? *scene.flow.mean_velocity : scene.rate() * scene.radius();
   if (scene.tube.channel)
@@ -119,7 +119,7 @@ std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene) {
   return std::make_shared<const stokes::DuctFlow>(scene.tube, scene.flow.viscosity, speed);
 }
 
-std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body) {
+std::shared_ptr<const surface::TubeWall> wall(const SharedOptions& scene, const Body& body) {
   if (!scene.tube.present) return {};
   if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get())) return channel->surface();
   const surface::Outline& outline = body.duct->outline();
@@ -144,7 +144,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   return wall;
 }
 
-std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases) {
+std::unique_ptr<coupling::Tube> tube(const SharedOptions& scene, const Body& body, Phases& phases) {
   if (!body.wall) return {};
   coupling::TubeParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
@@ -157,7 +157,7 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
   return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
 }
 
-void TubeRow::add_columns(const Scene& scene, Columns& to) const {
+void TubeRow::add_columns(const SharedOptions& scene, Columns& to) const {
   if (!to.when(scene.tube.present)) return;
   constexpr const char *tube = "; in a tube", *channel = "; in a channel";
   to.add(pressure_drop,
@@ -169,11 +169,8 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
           tube});
   add_gap(gap, to);
   if (to.when(scene.flow.held == "pressure drop"))
-    to.add(flow_rate, {"flow_rate",
-                       "length^3/time",
-                       "flow rate through the tube or channel with the particles in it, if Flow/held is `pressure drop`",
-                       {},
-                       "; if Flow/held is `pressure drop`"});
+    to.add(flow_rate, {"flow_rate", "length^3/time",
+                       "flow rate through the tube or channel with the particles in it, if Flow/held is `pressure drop`", {}, "; if Flow/held is `pressure drop`"});
   if (to.when(scene.tube.channel.has_value())) {
     to.add(channel_pressure_drop,
            {"channel_pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel, at this time (2.30)", {}, channel});
@@ -200,10 +197,9 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
   if (to.when(!scene.domain.present))
     to.add(checks.cap_velocity, {"cap_velocity",
                                  "1",
-                                 "largest disturbance velocity on the ends of the computed part of the tube divided by the mean velocity; "
-                                 "a measure of error that decreases with the length of the tube. In other flows than `duct`, this series, "
-                                 "`disturbance_flux` and `force_imbalance` refer to a duct flow with the mean velocity R_C times the rate of "
-                                 "the flow or, in fluid at rest, shear modulus or surface tension divided by the viscosity",
+                                 "largest disturbance velocity on the ends of the computed part of the tube divided by the mean velocity of "
+                                 "the empty duct (if Flow/type is not `duct`: R_C times the rate of the flow or of relaxation); a measure of "
+                                 "error that decreases with the length of the tube",
                                  {},
                                  tube});
   to.add(checks.pressure_by_flux, {"pressure_drop_by_flux",
@@ -239,7 +235,7 @@ void check_spread(const Scene& scene, const surface::TubeWall& wall, const surfa
     throw RunFailure(
         formatted("%s, from x1 = %.4g to %.4g seen from the centroid: with less than R_T = %.4g left at an end, Tube/length = %.4g is "
                   "too short",
-                  scene.particles.empty() ? "the particle has become long" : "the particles have drawn apart", x1.minCoeff(), x1.maxCoeff(),
+                  scene.particles.size() == 1 ? "the particle has become long" : "the particles have drawn apart", x1.minCoeff(), x1.maxCoeff(),
                   wall.radius(), wall.length()));
 }
 
@@ -252,7 +248,7 @@ double least_way(const Scene& scene, const Body& body, const Columns& row) {
   return least;
 }
 
-std::string coarse_wall(const Scene& scene, const Body& body, const Columns& row) {
+std::string coarse_wall(const SharedOptions& scene, const Body& body, const Columns& row) {
   const double gap = row.value("gap"), widest = body.wall->widest;
   if (gap > 0.6 * widest) return {};
   const std::string list = scene.tube.list();

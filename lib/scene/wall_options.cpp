@@ -70,7 +70,7 @@ void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<sto
         "Wall/normal.");
 }
 
-void WallOptions::reject(const Scene& scene, Rejections& to) const {
+void WallOptions::reject(const ParticleScene& scene, Rejections& to) const {
   if (!present && !to.every()) return;
   // This row is only for the table of rejected combinations in the documentation. For a given deck, check() throws UserError if the flow is not along
   // the wall or not uniform on it.

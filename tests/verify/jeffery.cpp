@@ -36,7 +36,7 @@ struct Tumbling {
   }
 
   void step() { scheme->advance(body->dynamics(), state, scene.time.final_time); }
-  Vec3 axis() const { return coupling::rotation_of(state.x) * scene.particle.shape.rotation() * Vec3(1, 0, 0); }
+  Vec3 axis() const { return coupling::rotation_of(state.x) * scene.particles.front().particle.shape.rotation() * Vec3(1, 0, 0); }
 
   double inclination() {
     return body->row(state, {}).value("inclination");

@@ -86,7 +86,8 @@ std::pair<Vec3, Vec3> on_a_held_ellipsoid(const Vec3& semi_axes, const std::vect
   deck::Document deck = deck::read({SOURCE_DIRECTORY "/inputs/spheroid_cube.yaml"}, settings);
   deck.declare(scene);
   const stokes::AmbientFlow flow(scene.flow);
-  const Mat3 axes = scene.particle.shape.rotation();
+  const surface::ParticleShape& shape = scene.particles.front().particle.shape;
+  const Mat3 axes = shape.rotation();
   const stokes::Ellipsoid ellipsoid(semi_axes);
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   const quadrature::GaussRule& height = quadrature::gauss(4);
@@ -96,7 +97,7 @@ std::pair<Vec3, Vec3> on_a_held_ellipsoid(const Vec3& semi_axes, const std::vect
       const double z = 2 * height.nodes[i] - 1, angle = 2 * std::numbers::pi * j / around, r = std::sqrt(1 - z * z);
       const Vec3 x = semi_axes.cwiseProduct(Vec3(r * std::cos(angle), r * std::sin(angle), z));
       const double h = x.dot(ellipsoid.normal(x)), weight = 4 * std::numbers::pi / around * height.weights[i] * semi_axes.prod() / h;
-      const Vec3 v = axes.transpose() * flow.velocity(scene.particle.shape.center + axes * x);
+      const Vec3 v = axes.transpose() * flow.velocity(shape.center + axes * x);
       for (int k = 0; k < 3; ++k) {
         force[k] += weight * v.dot(ellipsoid.force_density(scene.flow.viscosity, Vec3::Unit(k), Vec3::Zero(), x));
         torque[k] += weight * v.dot(ellipsoid.force_density(scene.flow.viscosity, Vec3::Zero(), Vec3::Unit(k), x));

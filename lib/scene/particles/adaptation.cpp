@@ -24,7 +24,7 @@ namespace {
 
 /// Particle whose mesh is adapted, together with the state of all particles.
 struct Subject {
-  const Scene& scene;
+  const ParticleScene& scene;
   const Body& body;
   const spline::Block& block;
   const motion::State& state;
@@ -165,7 +165,7 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction, con
 
 /// Removes the marks of T-mesh elements with a side at a pole, if the poles are degenerate or `Adaptation/indicator` is not `error`. As in Maestre et
 /// al. (2017), such elements are then refined only if the refinement of a neighbour requires it.
-void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>& marks) {
+void leave_poles(const ParticleScene& scene, const Body& body, std::vector<spline::Mark>& marks) {
   if (body.mesh.lattice->pad == 0 || (scene.surface.poles != "plain" && scene.adaptation.indicator == "error")) return;
   const spline::Tiling tiling = spline::elements(body.mesh);
   const auto degenerate = [&](const spline::Mark& mark) {
@@ -229,7 +229,7 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
 
 }  // namespace
 
-Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
+Adapted adapted(const ParticleScene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields) {
   const Subject particle{scene, body, block, state, block.rows(state.x), films};
   const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.nested(), body.unstressed, particle.x, load)
@@ -243,7 +243,7 @@ Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block
   return coarser;
 }
 
-void refine_alone(const Scene& scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
+void refine_alone(const ParticleScene& scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
   if (!scene.adaptation.enabled) return;
   constexpr int most = 10;
   for (int k = 0; k < most; ++k) {

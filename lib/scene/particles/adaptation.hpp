@@ -31,7 +31,7 @@ struct Adapted {
 /// of this particle; the rows of other particles do not change. `load`: control values of this particle's load at state.x, per area of the unstressed
 /// surface if `per_unstressed_area`. `films`: width of the film at each element of the space body.nested(), or empty. `fields`: values of the fields
 /// on the surface, scaled to order 1. The results of all ranks are equal.
-Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
+Adapted adapted(const ParticleScene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields = {});
 
 /// Returns the warnings about an adaptation at this time: one for each limit of the section Adaptation that prevented a refinement, and one if the
@@ -42,6 +42,6 @@ std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& cha
 /// the film between body and wall, and the traction. After each refinement, fits the known shape on the new mesh. The mesh does not change afterwards
 /// because the body does not deform. `force_density` returns the force per area on the mesh of its argument, as control values of shape (N, 3). It is
 /// called only if Adaptation limits the error or the variation of the load. Collective.
-void refine_alone(const Scene& scene, Body& body, const std::function<Net(const Body& on)>& force_density);
+void refine_alone(const ParticleScene& scene, Body& body, const std::function<Net(const Body& on)>& force_density);
 
 }  // namespace tanktread

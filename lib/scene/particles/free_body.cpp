@@ -16,8 +16,8 @@ namespace {
 class Free : public ParticleSystem {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), ranks_(ranks), body_(refined(scene, ranks, phases)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
-        tractions_(tractions_of(scene, body_, ranks, tube_.get())), free_(driven(scene, body_, tractions_)) {}
+      : whole_(scene), scene_(scene.first()), ranks_(ranks), body_(refined(scene_, ranks, phases)), geometry_(body_.space),
+        tube_(tube(scene_, body_, phases)), tractions_(tractions_of(scene_, body_, ranks, tube_.get())), free_(driven(scene_, body_, tractions_)) {}
 
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
@@ -65,11 +65,11 @@ class Free : public ParticleSystem {
       const double pressure_drop = free_->pressure_drop(state.x);
       tube_row(*tube_, free_->flow(), free_->force_density(state.x), pressure_drop).add_columns(scene_, row);
     }
-    if (const auto walls = scene_.wall.planes(); !walls.empty()) wall_row(walls, body_, free_->surface(state.x)).add_columns(scene_, row);
+    if (const auto walls = scene_.wall.planes(); !walls.empty()) wall_row(walls, body_, free_->surface(state.x)).add_columns(whole_, row);
     turn_to(state.x, progress.step.step, now);
     now.add_columns(scene_, row);
     progress.time = state.time, progress.counts = counts();
-    progress.add_columns(scene_, row);
+    progress.add_columns(whole_, row);
     finish(row);
     return row;
   }
@@ -83,7 +83,7 @@ class Free : public ParticleSystem {
   }
 
  private:
-  static Body refined(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  static Body refined(const ParticleScene& scene, coupling::Ranks& ranks, Phases& phases) {
     Body body = tanktread::body(scene);
     refine_alone(scene, body, [&](const Body& on) {
       const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
@@ -95,7 +95,7 @@ class Free : public ParticleSystem {
   }
 
   /// Returns the free body with the given equation for its traction, in a tube or a medium if the scene has one.
-  static std::unique_ptr<coupling::LoneRigidBody> driven(const Scene& scene, const Body& body, coupling::RigidTractions& tractions) {
+  static std::unique_ptr<coupling::LoneRigidBody> driven(const ParticleScene& scene, const Body& body, coupling::RigidTractions& tractions) {
     const Vec3& centre = scene.particle.shape.center;
     if (scene.tube.present || scene.medium())
       return std::make_unique<coupling::BoundedFreeBody>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
@@ -115,7 +115,8 @@ class Free : public ParticleSystem {
     now.phase = phase_angle_.degrees;
   }
 
-  const Scene& scene_;
+  const Scene& whole_;
+  const ParticleScene scene_;
   const coupling::Ranks& ranks_;
   Body body_;
   surface::Geometry geometry_;

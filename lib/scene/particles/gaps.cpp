@@ -331,7 +331,7 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
 
 std::string touching(const Scene& scene, int first, int second) {
   const auto name = [&](int number) {
-    return scene.particles.empty() ? "Particle" : "Particles/" + scene.particles[static_cast<std::size_t>(number) - 1].name;
+    return !scene.named() ? "Particle" : "Particles/" + scene.particles[static_cast<std::size_t>(number) - 1].name;
   };
   return name(first) + (first == second ? " touches its image" : " and " + name(second) + " touch");
 }

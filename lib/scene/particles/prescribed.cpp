@@ -13,7 +13,7 @@ double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 
 
 }  // namespace
 
-void PrescribedRow::add_columns(const Scene& scene, Columns& to) const {
+void PrescribedRow::add_columns(const ParticleScene& scene, Columns& to) const {
   add_size(measures, to);
   add_stresslet(solution.stresslet, to);
   add_points(n_points, to);
@@ -43,11 +43,11 @@ void PrescribedRow::add_columns(const Scene& scene, Columns& to) const {
          {"kernel_evaluations", "1", "number of evaluations of the Stokes kernels for the boundary integrals, by all quadrature rules"});
 }
 
-coupling::RigidTractions tractions_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
+coupling::RigidTractions tractions_of(const ParticleScene& scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
   return {body.space, body.rest, body.radius, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, tube, scene.medium()};
 }
 
-RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases) {
+RigidSolution rigid_solution(const ParticleScene& scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases) {
   const Vec3& centre = scene.particle.shape.center;
   const coupling::Rigid driven{true, prescribed_motion(scene)};
   coupling::Tube* const tube = tractions.tube();

@@ -14,7 +14,7 @@ namespace {
 Vec3 force_on_fluid(const std::vector<Member>& members, coupling::Evaluation& here) {
   Vec3 force = Vec3::Zero();
   for (std::size_t p = 0; p < members.size(); ++p) {
-    const Scene& one = members[p].scene;
+    const ParticleScene& one = members[p].scene;
     if (one.particle.rigid()) force += here.rigid().force(p);
     else if (one.loads.empty()) force += members[p].body->volume * one.body_force() + one.membrane.forces.total();
     else force -= members[p].own(here.work()).colwise().sum().transpose();

@@ -28,10 +28,10 @@ constexpr double stiff_area = 3e4;  // threshold of K/G_s and K R_C^2/E_b, with 
 double wave_number(double h) { return std::numbers::pi / h; }
 
 /// Returns the mean of the viscosities of the inner and the outer fluid.
-double mean_viscosity(const Scene& scene) { return scene.flow.viscosity * (1 + scene.particle.viscosity_ratio) / 2; }
+double mean_viscosity(const ParticleScene& scene) { return scene.flow.viscosity * (1 + scene.particle.viscosity_ratio) / 2; }
 
 /// Returns the advice to the user for elements that are too coarse, as a part of a sentence.
-std::string finer_mesh(const Scene& scene) {
+std::string finer_mesh(const ParticleScene& scene) {
   return scene.adaptation.enabled ? "set a finer mesh, or smaller limits in Adaptation" : "set a finer mesh, or Adaptation/enabled";
 }
 
@@ -47,13 +47,13 @@ surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& rank
 
 }  // namespace
 
-double stiffness(const Scene& scene, double h) {
+double stiffness(const ParticleScene& scene, double h) {
   const double k = wave_number(h), g = scene.modulus(), mu = mean_viscosity(scene);
   const double in_plane = std::max(1 + scene.membrane.area_dilatation.value_or(1), 1.0) * g * k / (2 * mu);
   return std::max(in_plane, scene.bending_modulus() * k * k * k / (4 * mu));
 }
 
-StepFindings::StepFindings(const Scene& scene, const Scene& first, const Columns& row, const surface::Quality& quality, int n_elements)
+StepFindings::StepFindings(const ParticleScene& scene, const Columns& row, const surface::Quality& quality, int n_elements)
     : time(row.value("time")),
       step(row.value("time_step")),
       smallest_tension(row.smallest("smallest_tension")),
@@ -61,14 +61,14 @@ StepFindings::StepFindings(const Scene& scene, const Scene& first, const Columns
       volume_error(std::max(row.largest("volume_error"), -row.smallest("volume_error"))),
       jacobian_ratio(quality.jacobian_ratio),
       aspect_ratio(quality.aspect_ratio) {
-  if (scene.tube.present || (scene.wall.present && !first.adaptation.enabled)) gap = row.value("gap");
+  if (scene.tube.present || (scene.wall.present && !scene.adaptation.enabled)) gap = row.value("gap");
   const std::vector<double> areas = row.of_particles("area");
   element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
 }
 
 std::vector<Warning> first_warnings(const Scene& scene) {
   std::vector<Warning> found;
-  const auto forgets = [](const Scene& one) {
+  const auto forgets = [](const ParticleScene& one) {
     return one.particle.shape.initial && one.particle.shape.initial->run && (one.surfactant || one.maxwell_membrane() || !one.fields.empty());
   };
   if (std::ranges::any_of(scene.alone(), forgets))

@@ -68,7 +68,7 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
 }
 
 /// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. If the flow has none, the rate is that of relaxation (Scene::rate).
-double unit_speed(const Scene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : scene.rate() * body.radius; }
+double unit_speed(const ParticleScene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : scene.rate() * body.radius; }
 
 /// Returns an array with one number per rank: `mine` for this rank and 0 for all others, so that a sum over ranks collects the numbers.
 std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
@@ -93,7 +93,7 @@ std::vector<int> own_elements(const surface::Geometry& geometry, const coupling:
 
 }  // namespace
 
-void ParticleRow::add_moving(const Scene& one, Columns& to) const {
+void ParticleRow::add_moving(const ParticleScene& one, Columns& to) const {
   to.add(shape.inclination,
          {"inclination", "degree",
           "inclination: angle of the particle's longest axis of inertia with the first direction of the plane of the flow (x1), positive "
@@ -111,7 +111,7 @@ void ParticleRow::add_moving(const Scene& one, Columns& to) const {
                                  "the rate of strain of the flow is zero at this time"});
 }
 
-void ParticleRow::add_turning(const Scene& one, Columns& to) const {
+void ParticleRow::add_turning(const ParticleScene& one, Columns& to) const {
   to.add(axes.lengths, "1 2 3",
          {"axis_", "length", "semi-axis # of the ellipsoid with the particle's second moments (6.1); 1 is the longest"});
   to.add(axes.longest_defined ? Vec3(axes.directions.col(0)) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), axes_of_space,
@@ -140,7 +140,7 @@ void ParticleRow::add_turning(const Scene& one, Columns& to) const {
           "; in a tube"});
 }
 
-void DeformingRow::add_columns(const Scene& one, Columns& to) const {
+void DeformingRow::add_columns(const ParticleScene& one, Columns& to) const {
   to.add(shape.taylor_inertia, {"taylor_inertia", "1",
                                 "Taylor deformation parameter D = (L - B)/(L + B) (6.2), with the longest and shortest semi-axis L and B, "
                                 "in the plane of the flow, of the ellipsoid with the particle's second moments"});
@@ -180,7 +180,7 @@ void DeformingRow::add_columns(const Scene& one, Columns& to) const {
   add_turning(one, to);
 }
 
-void RigidRow::add_columns(const Scene& one, Columns& to) const {
+void RigidRow::add_columns(const ParticleScene& one, Columns& to) const {
   add_moving(one, to);
   to.add(angular_velocity, axes_of_space, {"angular_velocity_", "1/time", "component # of the angular velocity of the rigid body"});
   to.add(quaternion, "0 1 2 3",
@@ -202,9 +202,8 @@ void RigidRow::add_columns(const Scene& one, Columns& to) const {
 
 void Together::add_columns(const Scene& scene, Columns& to) const {
   if (!scene.has_gaps()) return;
-  const bool only = scene.particles.empty();  // true if the run has only one particle; this particle already adds columns with the names used here
-  if (!only || scene.particle.rigid()) add_energy(energy, to);
-  if (only) return;
+  if (scene.named() || scene.particles.front().particle.rigid()) add_energy(energy, to);
+  if (!scene.named()) return;  // the columns of the only particle have the names used here
   add_stresslet(stresslet, to);
   add_points(n_points, to);
   add_velocity(velocity, to);
@@ -236,7 +235,7 @@ Eigen::Vector<double, 6> components(const Mat3& tensor) {
   return Eigen::Vector<double, 6>{{tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1), tensor(0, 2), tensor(1, 2)}};
 }
 
-bool strains(const Scene& scene) {
+bool strains(const SharedOptions& scene) {
   if (scene.tube.present) return false;
   const stokes::AmbientFlow flow(scene.flow);
   const Mat3 gradient = flow.gradient(Vec3::Zero());
@@ -270,7 +269,7 @@ double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, co
   return now.stresslet.cwiseProduct(strain).sum() / (2 * viscosity * now.measures.volume * strain.squaredNorm());
 }
 
-RigidRow rigid_row(const Scene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
+RigidRow rigid_row(const ParticleScene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
                    const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
                    const coupling::Ranks& ranks) {
   RigidRow now;
@@ -315,8 +314,8 @@ surface::Deformation deformation(const surface::Geometry& geometry, const FlowPl
   return result;
 }
 
-DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
-                           const Net& slope, const coupling::Ranks& ranks) {
+DeformingRow deforming_row(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane,
+                           const Net& x, const Net& slope, const coupling::Ranks& ranks) {
   const std::vector<int> blocks = ranks.share(geometry.n_blocks());
   const std::vector<int> elements = own_elements(geometry, ranks);
   const std::vector<int>& sites = body.symmetry.fundamental();  // fundamental collocation sites; all other sites are symmetry images of these
@@ -342,7 +341,7 @@ DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::
   return now;
 }
 
-void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now) {
+void add_treading(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now) {
   const FlowPlane& plane = body.plane;
   now.velocity = surface::centroid_velocity(geometry.bezier(), x, v);
   const bool elastic = scene.membrane.law != "surface tension";
@@ -350,7 +349,7 @@ void add_treading(const Scene& scene, const Body& body, const surface::Geometry&
                                         plane.components(now.centre), plane.components(now.velocity));
 }
 
-double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
+double normal_velocity(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites) {
   double largest = 0;
   const Vec3 frame = surface::centroid_velocity(geometry.bezier(), x, slope);

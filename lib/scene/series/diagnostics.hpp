@@ -26,24 +26,24 @@ struct ParticleRow {
 
   virtual ~ParticleRow() = default;
   /// Adds the columns of this particle to a row. `one`: scene with the options of this particle only.
-  virtual void add_columns(const Scene& one, Columns& to) const = 0;
+  virtual void add_columns(const ParticleScene& one, Columns& to) const = 0;
 
  protected:
-  void add_moving(const Scene& one, Columns& to) const;   ///< adds the columns that every moving particle has
-  void add_turning(const Scene& one, Columns& to) const;  ///< adds semi-axes, tank-treading and migration
+  void add_moving(const ParticleScene& one, Columns& to) const;   ///< adds the columns that every moving particle has
+  void add_turning(const ParticleScene& one, Columns& to) const;  ///< adds semi-axes, tank-treading and migration
 };
 
 struct DeformingRow : ParticleRow {
   double volume_error = 0, refit_error = 0, dissipation = 0, normal_velocity = 0, shape_velocity = 0;
   membrane::TensionSummary tension;
-  void add_columns(const Scene& one, Columns& to) const override;
+  void add_columns(const ParticleScene& one, Columns& to) const override;
 };
 
 struct RigidRow : ParticleRow {
   Vec3 angular_velocity = Vec3::Zero(), drag = Vec3::Zero(), torque = Vec3::Zero();
   Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< quaternion of the rotation since the start, the scalar part first
   double shape_velocity = 0;                             ///< shape velocity (6.8), computed only if Time/steady tolerance is given
-  void add_columns(const Scene& one, Columns& to) const override;
+  void add_columns(const ParticleScene& one, Columns& to) const override;
 };
 
 /// Totals over all particles (control points, energy and stresslet), and the mean velocity of all particles.
@@ -66,15 +66,15 @@ void add_gap(double to_wall, Columns& to);
 Eigen::Vector<double, 6> components(const Mat3& tensor);
 
 /// Returns true if the flow is unbounded and affine with a nonzero rate of strain, so that `intrinsic_viscosity` is defined.
-bool strains(const Scene& scene);
+bool strains(const SharedOptions& scene);
 
 /// Computes the row data of a capsule or drop that follow from its shape x and velocity `slope`. Other data, such as the stresslet, are not set.
 /// Collective.
-DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
-                           const Net& slope, const coupling::Ranks& ranks);
+DeformingRow deforming_row(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane,
+                           const Net& x, const Net& slope, const coupling::Ranks& ranks);
 
 /// Sets in `now` the velocity of the centroid and the tank-treading of the surface x, whose material moves at the velocity v.
-void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
+void add_treading(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
 
 /// Computes the Taylor parameter D and the inclination in the plane of the flow, and the extents along x1, x2 and x3. If the flow is not planar, uses
 /// the plane of the longest and the shortest axis of inertia instead. If the middle axis is as long as the longest or the shortest axis, this plane
@@ -88,7 +88,7 @@ double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, co
 
 /// Returns the row of a rigid body with the surface x, the velocities `motion` and the rotation `turn` since the start. `flow`: flow at the time of
 /// the row. Drag and torque are not set. Collective.
-RigidRow rigid_row(const Scene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
+RigidRow rigid_row(const ParticleScene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
                    const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
                    const coupling::Ranks& ranks);
 
@@ -99,9 +99,9 @@ double angle_in(const FlowPlane& plane, const Vec3& y);
 /// Returns the parametric point at which the ray from `from` along the first in-plane direction (a in FlowPlane) meets the surface.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
-/// Returns the largest normal velocity |v.n| at the collocation sites `sites`, with v = `slope`, divided by Scene::speed(), or by R_C per unit time
-/// if this speed is 0. v is relative to the velocity of the centroid. The result is zero if the shape is steady.
-double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
+/// Returns the largest normal velocity |v.n| at the collocation sites `sites`, with v = `slope`, divided by ParticleScene::speed(), or by R_C per
+/// unit time if this speed is 0. v is relative to the velocity of the centroid. The result is zero if the shape is steady.
+double normal_velocity(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 
 }  // namespace tanktread

@@ -46,7 +46,7 @@ std::size_t rank(const std::string& name) {
 /// Adds the columns of all registered series of the type Series. If arguments `of` are given, the values of the columns are computed by calling each
 /// series with these arguments. Otherwise the columns have no values.
 template <class Series, class... Of>
-void add_series_of(const Scene& scene, Columns& to, const Of&... of) {
+void add_series_of(const SharedOptions& scene, Columns& to, const Of&... of) {
   for (const SeriesParts::Chosen& part : scene.series) {
     const auto made = part.make();
     const Series* const series = std::get_if<Series>(&made);
@@ -58,11 +58,11 @@ void add_series_of(const Scene& scene, Columns& to, const Of&... of) {
 
 }  // namespace
 
-void add_series(const Scene& scene, double time, const RecordedParticle& particle, Columns& to) {
+void add_series(const SharedOptions& scene, double time, const RecordedParticle& particle, Columns& to) {
   add_series_of<ParticleSeries>(scene, to, time, particle);
 }
 
-void add_series(const Scene& scene, double time, std::span<const RecordedParticle> particles, Columns& to) {
+void add_series(const SharedOptions& scene, double time, std::span<const RecordedParticle> particles, Columns& to) {
   add_series_of<RunSeries>(scene, to, time, particles);
 }
 
@@ -105,7 +105,8 @@ Columns run_columns(const Scene& scene, bool every) {
   WallRow().add_columns(scene, all);
   SolidsRow().add_columns(scene, all);
   if (!scene.in_system()) {
-    scene.particle.motion == Motion::free ? RigidRow().add_columns(scene, all) : PrescribedRow().add_columns(scene, all);
+    const ParticleScene one = scene.first();
+    one.particle.motion == Motion::free ? RigidRow().add_columns(one, all) : PrescribedRow().add_columns(one, all);
   } else {
     Together().add_columns(scene, all);
     if (all.when(scene.output.power_balance)) coupling::Powers().add_columns(all);
@@ -120,7 +121,7 @@ Columns run_columns(const Scene& scene, bool every) {
   return all;
 }
 
-Columns particle_columns(const Scene& one, bool every) {
+Columns particle_columns(const ParticleScene& one, bool every) {
   Columns all(every);
   if (one.particle.rigid()) {
     RigidRow().add_columns(one, all);
@@ -138,7 +139,7 @@ Columns particle_columns(const Scene& one, bool every) {
 Columns columns(const Scene& scene) {
   Columns all = run_columns(scene);
   if (!scene.in_system()) return all;
-  for (const Scene& one : scene.alone()) all.append(particle_columns(one), one.name.empty() ? "" : one.name + "/");
+  for (const ParticleScene& one : scene.alone()) all.append(particle_columns(one), one.name.empty() ? "" : one.name + "/");
   SteadyRow found;
   found.modes.resize(static_cast<std::size_t>(scene.spectrum.number));
   found.add_columns(scene, all);
@@ -148,7 +149,7 @@ Columns columns(const Scene& scene) {
 void SteadyRow::add_columns(const Scene& scene, Columns& to) const {
   if (scene.continuation.present) point.add_columns(scene.continuation.second_parameter.has_value(), to);
   if (scene.periodic.present) to.add(period, {"period", "time", "period of the periodic motion, after which the shape recurs"});
-  const auto rigid = [](const Scene& one) { return one.particle.rigid(); };
+  const auto rigid = [](const ParticleScene& one) { return one.particle.rigid(); };
   if (scene.spectrum.present) motion::add_columns(modes, std::ranges::all_of(scene.alone(), rigid), to);
 }
 

@@ -11,15 +11,14 @@
 namespace tanktread {
 
 Scene with_field_lengths_of(const Scene& first, Scene scene) {
-  const std::vector<Scene> alone = first.alone();
-  scene.field_length = alone.front().radius();
-  for (std::size_t p = 0; p < std::min(alone.size(), scene.particles.size()); ++p) scene.particles[p].field_length = alone[p].radius();
+  for (std::size_t p = 0; p < std::min(first.particles.size(), scene.particles.size()); ++p)
+    scene.particles[p].field_length = first.particles[p].particle.shape.equivalent_radius();
   return scene;
 }
 
 SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule) : members_(members), capsule_(capsule) {
   for (std::size_t p = 0; p < members.size(); ++p) {
-    const Scene& scene = members[p].scene;
+    const ParticleScene& scene = members[p].scene;
     Body& body = *members[p].body;
     if (scene.surfactant) {
       auto surfactant = std::make_unique<membrane::Surfactant>(body.space, body.rest, *scene.surfactant, body.modulus,

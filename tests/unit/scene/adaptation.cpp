@@ -21,7 +21,7 @@ TEST(Adaptation, AllShapesOfAParticleAreOnItsNewMesh) {
   const Body& body = *refined.front().body;
   motion::State state;
   state.x = body.initial;
-  Adapted change = adapted(scene, body, spline::whole(body.space), state, Net::Zero(body.space.n_points, 3), false, {});
+  Adapted change = adapted(scene.first(), body, spline::whole(body.space), state, Net::Zero(body.space.n_points, 3), false, {});
   ASSERT_TRUE(change.body);
   ASSERT_GT(change.body->space.n_points, body.space.n_points);
   EXPECT_EQ(change.body->initial, change.state.x);

@@ -22,13 +22,14 @@ namespace {
 
 TEST(Series, AreDeclaredOnce) {
   Scene deforming, free, prescribed, several;
-  free.particle.motion = Motion::free, prescribed.particle.motion = Motion::prescribed;
+  for (Scene* one : {&deforming, &free, &prescribed}) one->particles.resize(1);
+  free.particles[0].particle.motion = Motion::free, prescribed.particles[0].particle.motion = Motion::prescribed;
   several.particles.resize(2);
   several.particles[0].name = "a", several.particles[1].name = "b", several.particles[1].particle.motion = Motion::free;
   for (const Scene& scene : {deforming, free, prescribed, several}) {
     std::set<std::string> names;
     for (const Column& one : columns(scene).all()) EXPECT_TRUE(names.insert(one.name).second) << one.name;
-    EXPECT_TRUE(names.contains(scene.particles.empty() ? "volume" : "b/volume") || scene.particle.motion == Motion::free);
+    EXPECT_TRUE(names.contains(scene.named() ? "b/volume" : "volume") || scene.particles[0].particle.motion == Motion::free);
   }
 }
 
@@ -47,7 +48,7 @@ TEST(Series, ThatMayBeUndefinedDoNotEndTheRun) {
   now.axes.lengths = Vec3(2, 1, 1);
   now.axes.directions = Mat3::Identity();
   Columns row;
-  now.add_columns(Scene(), row);
+  now.add_columns(ParticleScene(), row);
   EXPECT_NO_THROW(finish(row));
   std::set<std::string> undefined;
   for (const Column& one : row.all())
@@ -55,11 +56,11 @@ TEST(Series, ThatMayBeUndefinedDoNotEndTheRun) {
   EXPECT_EQ(undefined, (std::set<std::string>{"inclination", "axis_1_x1", "axis_1_x2", "axis_1_x3"}));
   now.axes.longest_defined = true;
   Columns defined;
-  now.add_columns(Scene(), defined);
+  now.add_columns(ParticleScene(), defined);
   EXPECT_EQ(defined.value("axis_1_x1"), 1);
   now.volume_error = std::numeric_limits<double>::quiet_NaN();
   Columns failed;
-  now.add_columns(Scene(), failed);
+  now.add_columns(ParticleScene(), failed);
   EXPECT_THROW(finish(failed), RunFailure);
 }
 

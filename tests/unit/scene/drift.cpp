@@ -11,8 +11,8 @@
 namespace tanktread {
 namespace {
 
-Scene scene(const std::string& flow) {
-  Scene s;
+ParticleScene scene(const std::string& flow) {
+  ParticleScene s;
   s.flow.type = flow;
   if (flow == "four-roll") s.flow.roll_parameter = 0.6;
   s.particle.shape.radius = 1;
@@ -25,13 +25,13 @@ TEST(Drift, AParticleIsHeldAtThePointOfRestOfAFlowThatDrawsAwayFromIt) {
 }
 
 TEST(Drift, AParticleThatStartsElsewhereIsCarriedAway) {
-  Scene s = scene("planar hyperbolic");
+  ParticleScene s = scene("planar hyperbolic");
   s.particle.shape.center = {0.1, 0, 0};
   EXPECT_FALSE(holds_centre(s));
 }
 
 TEST(Drift, AParticleOnWhichAForceActsIsNotHeld) {
-  Scene heavy = scene("planar hyperbolic");
+  ParticleScene heavy = scene("planar hyperbolic");
   heavy.flow.gravity = Vec3(0, 0, -1), heavy.particle.density_difference = 1;
   EXPECT_FALSE(holds_centre(heavy));
   heavy.particle.density_difference = 0;
@@ -40,7 +40,7 @@ TEST(Drift, AParticleOnWhichAForceActsIsNotHeld) {
 
 TEST(Drift, AShearInAnyDirectionsHoldsNothing) {
   for (const double angle : {0.3, 1.1, 2.5}) {
-    Scene s = scene("linear");
+    ParticleScene s = scene("linear");
     const Mat3 turn = Eigen::AngleAxisd(angle, Vec3(1, 2, -1).normalized()).toRotationMatrix();
     s.flow.gradient = turn.col(0) * turn.col(2).transpose();  // its eigenvalues are 0, but up to 1e-5 by rounding
     EXPECT_FALSE(holds_centre(s)) << angle;
@@ -48,7 +48,7 @@ TEST(Drift, AShearInAnyDirectionsHoldsNothing) {
 }
 
 TEST(Drift, TheDeckDecides) {
-  Scene s = scene("planar hyperbolic");
+  ParticleScene s = scene("planar hyperbolic");
   s.particle.drift = "free";
   EXPECT_FALSE(holds_centre(s));
   s = scene("simple shear");

@@ -54,15 +54,16 @@ TEST(RunTotals, WarningsGoOnWhereTheyWere) {
   Scene scene;
   deck::Document deck = deck::read({}, {"Membrane/capillary number=0.1"});
   deck.declare(scene);
-  Warnings whole(scene);
+  const ParticleScene only = scene.first();
+  Warnings whole(only);
   int steps = 0;
   while (whole.memory().said.empty() && steps < 100) look(whole), ++steps;
   ASSERT_GT(steps, 3);
-  Warnings first(scene), second(scene);
+  Warnings first(only), second(only);
   for (int k = 1; k < steps; ++k) EXPECT_TRUE(look(first).empty());
   second.remember(first.memory());
   EXPECT_EQ(look(second).size(), 1u);
-  Warnings third(scene);
+  Warnings third(only);
   third.remember(second.memory());
   for (int k = 0; k < steps; ++k) EXPECT_TRUE(look(third).empty());  // the warning was shown already
 }

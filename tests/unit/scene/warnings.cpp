@@ -9,12 +9,14 @@ namespace tanktread {
 namespace {
 
 struct Told {
-  Scene scene;
+  ParticleScene scene;
   Warnings warnings{scene};
   explicit Told(const std::vector<std::string>& settings) {
+    Scene whole;
     deck::Document deck = deck::read({}, settings, "Tanktread: {Time: {final time: 1}}\n");
-    deck.declare(scene);
-    scene.check();
+    deck.declare(whole);
+    whole.check();
+    scene = whole.first();
   }
   std::string first(const StepFindings& signs) {
     const auto sentences = warnings.sentences(signs);
@@ -120,7 +122,7 @@ TEST(Soundness, EndsARunWhoseElementFolds) {
   Scene scene;
   deck::Document deck = deck::read({}, {"Surface/elements per side=4"});
   deck.declare(scene);
-  const Body sphere = body(scene);
+  const Body sphere = body(scene.first());
   const surface::BezierMap map(sphere.space);
   const coupling::Ranks ranks;
   EXPECT_GT(soundness(map, sphere.rest, ranks).jacobian_ratio, 0.4);
