@@ -170,7 +170,8 @@ void TubeRow::add_columns(const SharedOptions& scene, Columns& to) const {
   add_gap(gap, to);
   if (to.when(scene.flow.held == "pressure drop"))
     to.add(flow_rate, {"flow_rate", "length^3/time",
-                       "flow rate through the tube or channel with the particles in it, if Flow/held is `pressure drop`", {}, "; if Flow/held is `pressure drop`"});
+                       "flow rate through the tube or channel with the particles in it, if Flow/held is `pressure drop`",
+                       {}, "; if Flow/held is `pressure drop`"});
   if (to.when(scene.tube.channel.has_value())) {
     to.add(channel_pressure_drop,
            {"channel_pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel, at this time (2.30)", {}, channel});
