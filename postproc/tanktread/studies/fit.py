@@ -30,9 +30,9 @@ and `next`:
         settings of possible further experiments with the same kind of data as the first one. The standard errors that
         each of them would give are printed
 
-The position of an outline in its picture is always fitted. Derivatives are finite differences: each step makes one run
-for each pair of an unknown and an experiment. Positions and scales need no runs. Runs are kept, and they are found
-again if all their keys are equal. Therefore it is best not to change a `start`.
+The position of an outline in its picture is always fitted. Derivatives are finite differences: each step of the
+iteration makes one run for each pair of an unknown and an experiment. Positions and scales need no runs. Runs are kept,
+and they are found again if all their keys are equal. Therefore it is best not to change a `start`.
 
 Standard errors follow from the errors of the data and, if the deck requests an accuracy, from the estimated errors of
 the series. If a key of the deck is a measured value with an error, give it under `unknown`, for example

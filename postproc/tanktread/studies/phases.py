@@ -6,6 +6,7 @@
 For each value of the second key, bisection finds the value of the first key at which the motion changes.
 
 A study is a YAML file with the keys
+
     deck         the deck
     motion       the motions that are distinguished, `shear` or `capillary`, see below
     set          settings of all runs

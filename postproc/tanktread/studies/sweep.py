@@ -5,6 +5,7 @@
     tanktread-sweep inputs/studies/study.yaml --plot 'D(t)' time                     # whole series, one line per run
 
 A study is a YAML file; inputs/studies/study.yaml is an example. Its keys are
+
     deck       the deck, or several decks of which later ones override earlier ones
     set        settings of all runs
     grid       {key: values}. All combinations of the values are run
