@@ -43,9 +43,9 @@ def surfactant(runs, cut, along, deformation, extremes):
         log.info(line)
     cut.autoscale()
     cut.set(aspect="equal", xlabel="$x_1$ / R$_C$", ylabel="$x_3$ / R$_C$")
-    along.set(xlabel="$x_3$ / R$_C$", ylabel="concentration / initial concentration")
+    along.set(xlabel="$x_3$ / R$_C$", ylabel="concentration / initial value")
     style.finish(deformation, xlabel=time_label(runs), ylabel="D")
-    extremes.set(xlabel=time_label(runs), ylabel="largest (line), smallest (dashed) conc.")
+    extremes.set(xlabel=time_label(runs), ylabel="largest, smallest (dashed)")
 
 
 @figure()

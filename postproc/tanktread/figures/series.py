@@ -173,7 +173,7 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
         upper.legend()
     if rated:
         axes[1].axhline(0, color=style.INK, linewidth=0.6)
-        axes[1].set_ylabel(runs[0].axis("leading_rate").replace("_", " "))
+        axes[1].set_ylabel(runs[0].axis("leading_rate").replace("leading_rate", "growth rate"))
     axes[-1].set_xlabel(runs[0].deck["Continuation"]["parameter"])
     return figure
 
