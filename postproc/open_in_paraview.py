@@ -1,10 +1,10 @@
-"""A run as ParaView shows it: curved elements, exact normals, coloured by a field, with the time slider.
+"""Opens a run in ParaView: its curved elements with exact normals, coloured by a field, at all times.
 
     pvpython postproc/open_in_paraview.py results/shear_neo_hookean --state run.pvsm          # then: paraview run.pvsm
     xvfb-run -a pvpython postproc/open_in_paraview.py results/shear_neo_hookean -o last.png   # without a display (xvfb)
 
-ParaView 5.11 (Debian 12: package python3-paraview) or newer. The wall of a tube is not in its files:
-postproc/tanktread-figure tube draws it. This file must not be called paraview.py: it would hide the module.
+ParaView 5.11 (Debian 12: package python3-paraview) or newer is needed. The files of a run do not contain the wall of a
+tube; postproc/tanktread-figure tube draws it. This file must not be called paraview.py: it would hide the module.
 """
 
 import argparse
@@ -19,12 +19,12 @@ except ImportError:
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("results", help="directory of a run's results")
-parser.add_argument("--field", default="traction", help="what colours the surface (default: %(default)s)")
+parser.add_argument("--field", default="traction", help="field that colours the surface (default: %(default)s)")
 parser.add_argument("--time", type=float, help="simulated time to show (default: the last)")
 parser.add_argument("--state", metavar="FILE", help="save a state file for the ParaView program")
 parser.add_argument("-o", "--output", metavar="FILE", help="save a picture")
 parser.add_argument("--offscreen", action="store_true",
-                    help="this ParaView draws without a display (Debian's does not)")
+                    help="set this if your ParaView can draw without a display (Debian's cannot)")
 arguments = parser.parse_args()
 if not (arguments.offscreen or os.environ.get("DISPLAY")):
     sys.exit(f"there is no display, without which Debian's ParaView crashes: xvfb-run -a pvpython "

@@ -99,10 +99,10 @@ def sphere(elements):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("shape", type=pathlib.Path)
-    parser.add_argument("-o", "--output", type=pathlib.Path, required=True, metavar="FILE")
+    parser.add_argument("shape", type=pathlib.Path, help="file of the shape, see above")
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True, metavar="FILE", help="file of the particle")
     parser.add_argument("--elements", type=int, default=6, help="elements per side (default: %(default)s)")
-    parser.add_argument("--degree", type=int, default=4, help="of the harmonics through points (default: %(default)s)")
+    parser.add_argument("--degree", type=int, default=4, help="largest degree of the harmonics that are fitted to points (default: %(default)s)")
     words = parser.parse_args()
     center = numpy.zeros(3)
     if words.shape.suffix == ".stl":

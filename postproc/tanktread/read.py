@@ -1,4 +1,4 @@
-"""Lists what a run recorded, or prints some of its series."""
+"""Lists the series of a run with their last values, or prints some of them."""
 
 from .mistakes import command_line, log
 from .runs import run
@@ -6,7 +6,7 @@ from .runs import run
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("results", help="directory of a run's results, or a deck")
+    parser.add_argument("results", help="directory of a run's results, or a deck; a deck without results is run")
     parser.add_argument("-s", "--series", nargs="+", metavar="NAME",
                         help="print these series, one line per step, instead of the list")
     arguments = parser.parse_args()

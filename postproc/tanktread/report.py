@@ -1,8 +1,11 @@
-"""One HTML file, which opens without a network, about a run, a sweep or a fit: the particle in three dimensions to turn
-and to play, curves with values under the pointer, deck, plan, phases, warnings, expectations, what to cite.
+"""Writes one HTML file about a run, a sweep or a fit. It can be opened without a network.
 
     tanktread-report results/shear_neo_hookean                    # results/shear_neo_hookean/report.html
-    tanktread-report results/study -o sweep.html                  # of a sweep, or of a fit
+    tanktread-report results/study -o sweep.html                  # a sweep; a fit likewise
+
+The page of a run shows the moving particle in three dimensions, which can be rotated, and curves of its series, with
+the value under the pointer. It also contains the deck, the plan and the warnings of the run, the computing time of its
+phases, its results compared with the expectations of the deck, and the paper to cite.
 """
 
 import base64
@@ -168,7 +171,7 @@ def main():
     parser = command_line(__doc__)
     parser.add_argument("directory", metavar="results", help="directory of a run's, a sweep's or a fit's results")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
-                        help="the page (default: report.html in that directory)")
+                        help="HTML file (default: report.html in the directory of the results)")
     parser.add_argument("--field", help="field of the snapshots that colours the surface (default: traction)")
     path = write(**vars(parser.parse_args()))
     log.info(f"{path}: {path.stat().st_size / 1e6:.2f} MB")

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""Which mesh and tolerances an accuracy takes, and what it costs: the table of inputs/manual/accuracy/index.md, or that
-of any deck.
+"""Finds the mesh and the tolerances with which a requested accuracy costs least, for several scenes or for your own
+deck. It makes the table of inputs/manual/accuracy/index.md.
 
     tests/benchmark/accuracy.py                      # a quarter of an hour; runs are kept under results/accuracy
-    tests/benchmark/accuracy.py --scene shear tube   # these scenes
+    tests/benchmark/accuracy.py --scene shear tube   # only these scenes
     tests/benchmark/accuracy.py --deck mine.yaml --series inclination --mesh 'Surface/elements per side' 3 4 6
 
-Every scene runs on several meshes with loose, default and tight tolerances. Of the runs that meet a demand, the one
-with the fewest kernel evaluations is printed. The error of a run is the largest difference of the series over the run
-from a finer run, relative to the largest value. Kernel evaluations are the same on every machine; seconds of one core
-are printed as multiples of those that the first deck takes.
+Every scene runs on several meshes with loose, default and tight tolerances. For each requested error, the run with the
+fewest kernel evaluations is printed. The error of a run is the largest difference of the series from a finer run,
+divided by the largest value of the series. The number of kernel evaluations is the same on every machine. The computing
+time on one core is divided by that of the first deck (inputs/shear_neo_hookean.yaml).
 """
 
 import itertools
@@ -26,12 +26,13 @@ SCENES = scenes_of(__file__)
 def main():
     parser = command_line(__doc__)
     choice_of(parser, SCENES)
-    parser.add_argument("--deck", help="a deck of yours instead of the scenes")
+    parser.add_argument("--deck", help="your own deck, used instead of the scenes")
     parser.add_argument("--series", default="taylor_inertia", help="series of that deck (default: %(default)s)")
     parser.add_argument("--mesh", nargs="+", default=[SIDE, "3", "4", "6", "8"], metavar="WORD",
-                        help="key of that deck's mesh and its values, coarse to fine; the reference has 1.5 times the "
-                             "last one (default: %(default)s)")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="another key of that deck")
+                        help="key of the mesh of that deck and its values, coarse to fine; the reference run has 1.5 "
+                             "times the last value (default: %(default)s)")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
+                        help="sets another key of that deck (repeatable)")
     studies.arguments(parser, "results/accuracy")
     parsed = parser.parse_args()
     study = studies.study(parsed)
@@ -51,7 +52,7 @@ def main():
                 yield [scene["title"], met, *choice, float(kernels), seconds / unit]
 
     table(["scene", "error", "mesh", "`Time/tolerance`", "`Quadrature/tolerance`", "kernel evaluations",
-           "seconds over the first deck's"], lines())
+           "seconds / first deck's"], lines())
     studies.write_table(parsed.output / "accuracy.csv", [
         "scene", "mesh", "time", "quadrature", "error", "kernel_evaluations", "seconds"], rows)
 

@@ -1,14 +1,16 @@
 #!/usr/bin/python3
-"""Cubic arrays of spheres: the drag of held ones, and how the viscosity that free ones add begins to grow with the
-volume fraction.
+"""Drag and viscosity of cubic arrays of rigid spheres, compared with the literature.
 
     tests/benchmark/arrays.py drag 0.2 0.45 --elements 6 8
     tests/benchmark/arrays.py viscosity
 
-`drag`: K = F/(6 pi mu a U), U the mean velocity over the cell, by the tractions of the first kind. `viscosity`: at time
-zero the stress is 2 mu (1 + v) E, v = 5/2 phi/(1 - k phi + ...), where the array is stretched along its axes (alpha) or
-sheared in them (beta); k from v at three volume fractions, less what grows like phi^(2/3) and phi^(4/3), beside that of
-Nunan & Keller (J. Fluid Mech. 142, 1984).
+`drag` prints K = F/(6 pi mu a U) for spheres that are held fixed, by the integral equation of the first kind. F is the
+drag of a sphere, a its radius, mu the viscosity and U the mean velocity over the cell.
+
+`viscosity` prints a coefficient k for free spheres. At time zero the mean stress is 2 mu (1 + v) E, where E is the rate
+of strain, v = 5/2 phi/(1 - k phi + ...) and phi the volume fraction. In the flow alpha the array is stretched along its
+axes, in the flow beta it is sheared. k is extrapolated to phi = 0 from three volume fractions, with further terms
+proportional to phi^(2/3) and phi^(4/3). The last column is k of Nunan & Keller (J. Fluid Mech. 142, 1984).
 """
 
 import itertools
@@ -25,10 +27,11 @@ def main():
     parser = command_line(__doc__)
     parser.add_argument("what", choices=("drag", "viscosity"))
     parser.add_argument("fractions", nargs="*", type=float,
-                        help="volume fractions (default: 0.001 0.064 0.2; 0.0025 0.005 0.01)")
-    parser.add_argument("--elements", nargs="+", type=int, default=[6], help="per side of a sphere (default: 6)")
+                        help="volume fractions (default: 0.001 0.064 0.2 for drag, 0.0025 0.005 0.01 for viscosity)")
+    parser.add_argument("--elements", nargs="+", type=int, default=[6],
+                        help="elements per side of a sphere (default: 6)")
     parser.add_argument("--quadrature", type=float, default=1e-7, help="Quadrature/tolerance (default: %(default)g)")
-    parser.add_argument("--arrays", nargs="+", choices=ARRAYS, default=list(ARRAYS), help="(default: all)")
+    parser.add_argument("--arrays", nargs="+", choices=ARRAYS, default=list(ARRAYS), help="arrays (default: all)")
     arguments = parser.parse_args()
 
     def of(array, fraction, n, settings):

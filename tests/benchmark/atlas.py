@@ -1,13 +1,12 @@
 #!/usr/bin/python3
-"""The atlas of failure: for a method, the edge where it stops working, found by bisection on short runs, drawn and
-explained.
+"""Maps of the limits of numerical methods: each map shows where a method stops working, and what works instead.
 
-    tests/benchmark/atlas.py --list  # the maps, with what each shows
+    tests/benchmark/atlas.py --list  # the maps with their titles
     tests/benchmark/atlas.py --map fixed-step  # one of them: results/atlas/fixed-step.png and fixed-step.csv
     tests/benchmark/atlas.py  # all: an hour or two on one core
 
-Runs are kept under results/atlas/runs and not made again. What a map shows is held by a test of tests/stability
-(README.md there).
+The limits are found from short runs, some by bisection. Runs are kept under results/atlas/runs and are not repeated.
+Tests in tests/stability check what the maps show (see README.md there).
 """
 
 import textwrap
@@ -46,8 +45,9 @@ def draw(name, study, output):
 def main():
     parser = command_line(__doc__)
     parser.add_argument("--map", nargs="+", default=list(MAPS), choices=list(MAPS), metavar="NAME",
-                        help="which (default: all)")
-    parser.add_argument("--list", action="store_true", help="print the maps and what they show, run nothing")
+                        help="names of maps (default: all)")
+    parser.add_argument("--list", action="store_true",
+                        help="print the names and titles of the maps without running anything")
     studies.arguments(parser, "results/atlas", jobs=1)
     parsed = parser.parse_args()
     study = studies.study(parsed)

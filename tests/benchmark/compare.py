@@ -15,8 +15,8 @@ and `Expect/<name>` stand for a changed exit code and for an expectation that is
 infinite, which the tolerance `.inf` allows.
 
 The two runs of a deck are neighbours in the queue, so that other work on the machine slows both alike. Results are kept
-in DIR, separately for each role and each content of the program, and are found again. Decks for two ranks run last,
-half as many at a time.
+in DIR and are not computed again. They are kept separately for the old and the new program, and for each version of a
+program (by a hash of its file). Decks for two ranks run last, half as many at a time.
 """
 
 import concurrent.futures
@@ -229,12 +229,14 @@ def main():
     parser = command_line(__doc__)
     parser.add_argument("programs", nargs=2, metavar="PROGRAM", help="the old and the new program")
     parser.add_argument("--decks", nargs="+", metavar="NAME", help="names of decks (default: all)")
-    parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default: %(default)s)")
-    parser.add_argument("--output", default="results/compare", metavar="DIR", help="of results (default: %(default)s)")
-    parser.add_argument("--tolerance", type=float, default=1e-9, help="largest difference that passes (%(default)s)")
+    parser.add_argument("--jobs", type=int, default=2, help="number of simultaneous runs (default: %(default)s)")
+    parser.add_argument("--output", default="results/compare", metavar="DIR",
+                        help="directory of the results (default: %(default)s)")
+    parser.add_argument("--tolerance", type=float, default=1e-9,
+                        help="largest difference that passes (default: %(default)s)")
     parser.add_argument("--differences", metavar="FILE", help="YAML list of differences that are allowed")
     parser.add_argument("--limit", type=float, default=300, metavar="SECONDS",
-                        help="processor time of a run (default: %(default)s)")
+                        help="largest processor time of a run (default: %(default)s)")
     parser.add_argument("--fresh", action="store_true", help="repeat the runs of an earlier comparison")
     arguments = parser.parse_args()
     named = yaml.safe_load(pathlib.Path(arguments.differences).read_text()) or [] if arguments.differences else []

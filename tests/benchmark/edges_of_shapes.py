@@ -94,7 +94,7 @@ def load_form(study, given, axes):
                 axis.barh(k + offset, outcome.end, 0.34, color=color, label=f"{load} form" if k == 0 else None)
                 axis.annotate(f"{outcome.end:.2f}", (0, k + offset), (3, 0), textcoords="offset points", va="center",
                               fontsize=7.5, color="white")
-    axes[1].plot(0.664, 1 - 0.19, "x", color=style.INK, ms=7, mew=1.6, label="paper")
+    axes[1].plot(0.664, 1 - 0.19, "x", color=style.INK, ms=7, mew=1.6, label="Maestre et al. 2017")
 
 
 def buckling(study, given, axes):
@@ -113,5 +113,5 @@ def pre_inflation(study, given, axes):
     filled = axes[0].contourf(ca, 100 * alpha, field, numpy.linspace(-bound, bound, 21), cmap=style.SIGNED)
     axes[0].contour(ca, 100 * alpha, field, [0], colors=style.INK, linewidths=1.4)
     axes[0].plot(ca, 100 * alpha, ".", color=style.INK, ms=2)
-    axes[0].figure.colorbar(filled, label="smallest tension over G_s")
+    axes[0].figure.colorbar(filled, label="smallest tension / G_s")
     return zip(ca.flat, alpha.flat, smallest)

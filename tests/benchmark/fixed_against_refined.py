@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A particle on a refined and on a fixed mesh: surfaces, sections, and the traction along the section (the paper's
-Figures 17 and 18).
+"""A particle on a refined and on a fixed mesh: surfaces, sections, and the traction along the section (Figures 17 and
+18 of Maestre et al. 2017).
 
-    tests/benchmark/fixed_against_refined.py  # runs inputs/hyperbolic_skalak_ca0.8.yaml, refined and not
-    tests/benchmark/fixed_against_refined.py results/refined results/fixed  # runs of yours
+    tests/benchmark/fixed_against_refined.py  # runs inputs/hyperbolic_skalak_ca0.8.yaml with and without refinement
+    tests/benchmark/fixed_against_refined.py results/refined results/fixed  # your own runs
 """
 
 from package import SIDE, answer, command_line, draw, numpy, plt, style, tanktread
@@ -15,7 +15,8 @@ DECK = "inputs/hyperbolic_skalak_ca0.8.yaml"
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("runs", nargs="*", help="directories of results: a refined run, and those compared with it")
+    parser.add_argument("runs", nargs="*",
+                        help="directories of results: a run with refinement, and the runs compared with it")
     parser.add_argument("-o", "--output", default="fixed_against_refined.png", metavar="FILE",
                         help="the picture (default: %(default)s)")
     parser.add_argument("--field", default="traction", help="field along the section (default: %(default)s)")
@@ -58,7 +59,7 @@ def draw_sections(outline, tip, along, shots, names, field, words):
     low = -0.11 * reach
     outline.add_patch(plt.Rectangle((0.9 * reach, low), -low, -2 * low, fill=False, edgecolor=style.FAINT))
     outline.set(aspect="equal", title="the section x₂ = 0", xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$")
-    tip.set(xlim=(0.9 * reach, 1.01 * reach), ylim=(low, -low), title="its tip", xlabel="x₁ / R$_C$")
+    tip.set(xlim=(0.9 * reach, 1.01 * reach), ylim=(low, -low), title="tip of the section", xlabel="x₁ / R$_C$")
     along.set(title=f"{field} on the section near the tip", xlabel="x₃ / R$_C$", ylabel=words, xlim=(low, -low),
               ylim=(0, None))
     along.legend(loc="upper left", bbox_to_anchor=(0, -0.2))

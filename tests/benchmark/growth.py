@@ -1,11 +1,14 @@
 #!/usr/bin/python3
-"""How a velocity evaluation grows with the mesh: seconds by part, interactions and bytes, with fitted exponents.
+"""Cost of a velocity evaluation against the size of the mesh: seconds of each part, pairs of points and bytes, with
+fitted exponents.
 
-    tests/benchmark/growth.py  # runs the program benchmark first: minutes
-    # what build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json wrote
+    tests/benchmark/growth.py  # first runs the program `benchmark`, which takes minutes
     tests/benchmark/growth.py growth.json
 
-Exponents are fitted by least squares to the meshes from --from control points on.
+growth.json is the file that this command writes:
+build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json
+
+The exponents are fitted by least squares to the meshes with at least --from control points.
 """
 
 import json
@@ -43,11 +46,12 @@ def draw(axis, meshes, lines, least, colors, dash="o-"):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("file", nargs="?", help="what the benchmark wrote (default: results/growth.json, "
-                        "written now if it is not there)")
+    parser.add_argument("file", nargs="?", help="results of the program `benchmark` (default: results/growth.json, "
+                        "which is made if it does not exist)")
     parser.add_argument("--from", dest="least", type=float, default=3000, metavar="POINTS",
-                        help="fit from here on (default: %(default)g)")
-    parser.add_argument("-o", "--output", default="growth.png", metavar="FILE", help="default: %(default)s")
+                        help="fewest control points of a mesh in the fit (default: %(default)g)")
+    parser.add_argument("-o", "--output", default="growth.png", metavar="FILE",
+                        help="file of the figure (default: %(default)s)")
     arguments = parser.parse_args()
     found = read(arguments.file or measured(), json.loads)["benchmarks"]
     trees, dense = ([one for one in sorted(found, key=lambda one: one.get("points", 0))

@@ -1,18 +1,20 @@
 #!/usr/bin/python3
-"""Prints the error that each tolerance but Time/tolerance causes, divided by the tolerance, as Markdown tables.
+"""Prints the error caused by each tolerance except Time/tolerance, divided by the tolerance, as Markdown tables.
 
     tests/benchmark/other_tolerances.py [quadrature] [solvers] [adaptation] [steady] [periodic]
 
-quadrature, solvers: `Quadrature/tolerance`, `Solvers/tolerance`. The error of the velocity, root mean square over the
-nodes of the last snapshot, over rate x R_C. A run with default keys deforms the particle; copies of it go on from the
-checkpoint by one explicit step of 1e-9, each with another tolerance, so that all velocities are of one shape. The
-reference has 1e-9 (integrals; 1e-7 in tubes and lattices, which take long) or 1e-12 (solver).
+quadrature, solvers: `Quadrature/tolerance` and `Solvers/tolerance`. The error is that of the velocity: root mean square
+over the nodes of the last snapshot, divided by rate x R_C. R_C is the radius of the sphere with the particle's volume.
+A run with default keys deforms the particle. Copies of this run continue from its checkpoint by one explicit step of
+1e-9, each with another tolerance, so that all velocities belong to the same shape. The reference has the tolerance 1e-9
+for quadrature (1e-7 in tubes and lattices, which are expensive) and 1e-12 for the solver.
 
-adaptation: `Adaptation/surface tolerance`. The largest distance of a node at the end of a run from the surface of a run
-with a sixteenth of the tightest tolerance, over R_C.
+adaptation: `Adaptation/surface tolerance`. The error is the largest distance, divided by R_C, of a node at the end of a
+run from the surface of the reference. The reference has 1/16 of the tightest tolerance.
 
-steady, periodic: `Steady/tolerance`, `Periodic/tolerance`. The error of the nodes of the shape found, root mean square
-over R_C, against a tolerance of 1e-11 (Steady) or 1e-7 (Periodic, Time/tolerance 1e-8 in all runs).
+steady, periodic: `Steady/tolerance` and `Periodic/tolerance`. The error is the root mean square over the nodes of the
+difference in position from the reference, divided by R_C. The reference has the tolerance 1e-11 (Steady) or 1e-7
+(Periodic; Time/tolerance is 1e-8 in all these runs).
 """
 
 import shutil
@@ -139,7 +141,7 @@ TABLES = {  # {name: (function, arguments)}
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("tables", nargs="*", choices=[[], *TABLES], help="(default: all)")
+    parser.add_argument("tables", nargs="*", choices=[[], *TABLES], help="tables (default: all)")
     studies.arguments(parser, "results/other_tolerances", limit=1800, jobs=2)
     parsed = parser.parse_args()
     for name in parsed.tables or TABLES:

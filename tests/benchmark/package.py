@@ -31,7 +31,7 @@ def scenes_of(script):
 def choice_of(parser, scenes):
     """Adds the option --scene to a parser: which of the `scenes` are measured."""
     parser.add_argument("--scene", nargs="+", default=list(scenes), choices=scenes, metavar="NAME",
-                        help=f"of {', '.join(scenes)} (default: all)")
+                        help=f"names of scenes (default: all): {', '.join(scenes)}")
 
 
 def table(head, rows):

@@ -1,19 +1,20 @@
 #!/usr/bin/python3
-"""The balance of power (6.13) on every row of every deck of inputs/: the largest share of the row's power that is left
-over, and what makes it fall.
+"""Prints the residual of the power balance for every deck of inputs/, and how it decreases with refinement.
 
     tests/benchmark/power_balance.py [deck ...]
 
-Each deck as it is, to the short end times below where it is long; where more than 1e-4 is left over again with
-Time/tolerance and Quadrature/tolerance a tenth, and with 3/2 of the elements of particles and walls as well. Where
-nothing takes power, in a spherical membrane with a tension and in what has come to rest, what the mesh leaves over has
-nothing to be a share of: rows of less than a hundredth of the run's largest power have their share of that hundredth.
-Prints a table; decks without the series with the sentence that says why. Runs are kept under results/power_balance.
+The power balance is (6.13) in lib/README.md. Its residual in a row of the series is divided by the power of the row:
+half the sum of the magnitudes of all terms. If this power is less than a hundredth of the largest power of the run, the
+residual is divided by that hundredth. This is the case if nothing moves, for example for a spherical membrane with a
+tension, where only the discretisation error is left.
+
+Each deck is run as it is; long decks are run to the shorter final times in scenes/power_balance.yaml. If the largest
+residual exceeds 1e-4, the deck is run again with a tenth of Time/tolerance and Quadrature/tolerance, and once more with
+3/2 times as many elements of particles and walls in addition. For decks without the series of the power, the table has
+the message of the program. Runs are kept under results/power_balance.
 """
 
-import sys
-
-from package import INPUTS, answer, numpy, scenes_of, table, tanktread, yaml
+from package import INPUTS, answer, command_line, numpy, scenes_of, table, tanktread, yaml
 
 ENDS = scenes_of(__file__)
 MESHES = {"elements per side", "azimuthal elements", "meridional elements", "axial elements"}
@@ -63,10 +64,12 @@ def row(study, name):
 
 
 def main():
+    parser = command_line(__doc__)
+    parser.add_argument("decks", nargs="*", metavar="deck", help="names of decks of inputs/ (default: all)")
     study = tanktread.Study(directory="results/power_balance", limit=600)
-    names = sys.argv[1:] or sorted(path.stem for path in INPUTS.glob("*.yaml"))
-    table(["deck", "rows", "largest share", "at time", "root mean square", "tolerances a tenth",
-           "and 3/2 of the elements"], (row(study, name) for name in names))
+    names = parser.parse_args().decks or sorted(path.stem for path in INPUTS.glob("*.yaml"))
+    table(["deck", "rows", "largest residual / power", "at time", "root mean square", "tolerances / 10",
+           "and elements x 3/2"], (row(study, name) for name in names))
 
 
 if __name__ == "__main__":

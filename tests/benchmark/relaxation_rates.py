@@ -1,18 +1,17 @@
 #!/usr/bin/python3
-"""Rates of the harmonics 2 to 6 of drops and of a neo-Hookean capsule in a fluid at rest, against their closed forms
-(4.18), (4.19).
+"""Relaxation rates of the spherical harmonics of degrees 2 to 6 on drops and on a neo-Hookean capsule in a fluid at
+rest, compared with the exact rates (4.18) and (4.19) in lib/README.md.
 
     tests/benchmark/relaxation_rates.py [n ...]
 
-On meshes of n elements a side, 6, 8 and 12 if none is given. Of each harmonic those modes count that keep all three
-mirror planes, or all but x3 = 0 if it is odd, for which velocities are of the whole surface: they are left out where n
-is above 8. The error is the largest of theirs, the order that between the last two meshes. Prints a table; runs are
-kept under results/relaxation_rates.
+The meshes have n elements per side (default: 6, 8 and 12). Of each degree, only modes with certain mirror symmetries
+are computed: for even degrees those symmetric about all three coordinate planes, for odd degrees those symmetric about
+x1 = 0 and x2 = 0 but antisymmetric about x3 = 0. Odd degrees need velocities on the whole surface and are left out if n
+is above 8. The error of a degree is the largest relative error of its modes. The order is the convergence order between
+the last two meshes. Runs are kept under results/relaxation_rates.
 """
 
-import sys
-
-from package import RATIO, SCENES, SIDE, answer, expect, numpy, table, tanktread
+from package import RATIO, SCENES, SIDE, answer, command_line, expect, numpy, table, tanktread
 
 HARMONICS = range(2, 7)
 LARGEST_ODD = 8  # n
@@ -68,7 +67,9 @@ def rows(study, meshes):
 
 
 def main():
-    meshes = sorted(map(int, sys.argv[1:])) or [6, 8, 12]
+    parser = command_line(__doc__)
+    parser.add_argument("meshes", nargs="*", type=int, metavar="n", help="elements per side (default: 6 8 12)")
+    meshes = sorted(parser.parse_args().meshes) or [6, 8, 12]
     study = tanktread.Study(directory="results/relaxation_rates")
     table(["scene", "harmonic", "rate", *(f"n = {n}" for n in meshes), "order"], rows(study, meshes))
 

@@ -1,16 +1,17 @@
 #!/usr/bin/python3
-"""Are requested accuracies met, how good are the estimates, and what does a ladder cost?
+"""Checks whether requested accuracies (`--accuracy`) are met, how good the error estimates are, and what they cost.
 
     tests/benchmark/requests.py                          # all scenes; results are kept under results/requests
-    tests/benchmark/requests.py --scene shear drop       # these
+    tests/benchmark/requests.py --scene shear drop       # only these scenes
     tests/benchmark/requests.py --scene shear --search   # also the cheapest single run that meets each request
 
-For each scene and each of its series, `--accuracy` is asked for 1 %, 0.1 % and 0.01 % of the largest value. Levels that
-are finished are used again by the next request. The true error is the difference from a run that is two levels finer
-than the finest level. A ladder that stops at its limit and says so is neither met nor missed.
+For each scene and each of its series, `--accuracy` is requested at 1 %, 0.1 % and 0.01 % of the largest value. To meet
+a request, the program makes runs at several levels, each more accurate than the previous one. Finished levels are used
+again by the next request. The true error is the difference from a run that is two levels finer than the finest level. A
+request for which the program reports that it has reached its limit is counted neither as met nor as missed.
 
-`--search` looks for the cheapest single run that meets the request among n = 3 to 12 and the five pairs of tolerances
-of accuracy.py. The cost is the number of processor seconds.
+`--search` looks for the cheapest single run that meets the request among 3 to 12 elements per side and the five pairs
+of tolerances of accuracy.py. The cost is the number of processor seconds.
 """
 
 import collections
@@ -30,7 +31,7 @@ COLUMNS = ["scene", "request", "level", "allowed", "true error", "estimate", "es
 def main():
     parser = command_line(__doc__)
     choice_of(parser, SCENES)
-    parser.add_argument("--search", action="store_true", help="also search the cheapest single run")
+    parser.add_argument("--search", action="store_true", help="also search for the cheapest single run")
     studies.arguments(parser, "results/requests", limit=60)
     parsed = parser.parse_args()
     limit, parsed.limit = parsed.limit, 6 * parsed.limit  # references may take five times as long as the ladders

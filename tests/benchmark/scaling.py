@@ -1,18 +1,19 @@
 #!/usr/bin/python3
-"""How the phases of a run scale with the number of ranks.
+"""Measures how the phases of a run scale with the number of MPI ranks.
 
     tests/benchmark/scaling.py [deck] [--ranks 2] [--set "Section/key=value"] [--no-capacity]
 
-Runs the deck on one rank, on several, and as that many one-rank runs at the same time, in turns, and prints medians
-over the repetitions:
+The deck is run in three ways, alternately: on one rank; on several ranks (--ranks N); and as N independent one-rank
+runs at the same time. The table has one row per phase, with medians over the repetitions:
 
-    ratio       seconds a phase of one rank alone over those of the first of several ranks
-    capacity    what the machine gives: ranks x seconds of one rank alone over those of one of the runs side by side.
-                No program scales better: cores that share memory, cache, power or a host slow each other down
-    efficiency  ratio over capacity
+    ratio       seconds on one rank / seconds on N ranks (of the first rank)
+    capacity    N x seconds of one run without others / seconds of one of N independent runs at the same time. It is the
+                largest ratio that the machine allows: cores share memory bandwidth, caches, power and the host
+    efficiency  ratio / capacity
 
-Waiting and messages are the phase `exchange`, so that a phase is a rank's own work; `start` holds that of MPI. The last
-lines say whether both runs did the same. The machine should have a free core for every rank.
+Communication and waiting are the phase `exchange`; the other phases contain only the work of the rank itself. The phase
+`start` includes the start of MPI. The last lines compare the counts and the results of the runs on one and on several
+ranks. The machine should have an idle core for every rank.
 """
 
 import argparse
@@ -47,14 +48,14 @@ def seconds(summary):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("deck", nargs="?", default=tanktread.SOURCE / SHEAR)
-    parser.add_argument("--ranks", type=int, default=2)
-    parser.add_argument("--repeat", type=int, default=5, help="runs of each kind (default: %(default)s)")
+    parser.add_argument("deck", nargs="?", default=tanktread.SOURCE / SHEAR, help="the deck (default: %(default)s)")
+    parser.add_argument("--ranks", type=int, default=2, help="number of ranks (default: %(default)s)")
+    parser.add_argument("--repeat", type=int, default=5, help="number of repetitions (default: %(default)s)")
     parser.add_argument("--set", dest="settings", action="append", metavar="KEY=VALUE",
-                        help="(default: 24 elements a side, to time 0.4)")
+                        help="sets a key of the deck (repeatable; default: 24 elements per side, final time 0.4)")
     parser.add_argument("--capacity", action=argparse.BooleanOptionalAction, default=True,
-                        help="measure what the machine gives (default: do)")
-    parser.add_argument("--program", default=tanktread.PROGRAM)
+                        help="also make the independent runs that measure the capacity (default: yes)")
+    parser.add_argument("--program", default=tanktread.PROGRAM, help="path of the program (default: %(default)s)")
     arguments = parser.parse_args()
     settings = arguments.settings or ["Surface/elements per side=24", "Time/final time=0.4"]
     words = [arguments.program, arguments.deck, *(word for one in settings for word in ("--set", one))]

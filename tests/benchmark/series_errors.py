@@ -3,16 +3,17 @@
 
     tests/benchmark/series_errors.py [--scenes NAME ...] [--jobs 2] [--output DIR]
 
-Each scene is run with the defaults of Surface/elements per side (6), Time/tolerance and Quadrature/tolerance (1e-4),
-and of the elements of tubes. The finer run has twice as many elements along each direction of particles and walls, and
-a tenth of each tolerance, that of refinement included; its steps are at most 1/200 of the time. The error is the
-largest |difference| over the rows of the first run, divided by the largest absolute value of the finer one. The finer
-run is interpolated to each of these rows by a cubic and by a straight line, which is better where a series jumps, and
-the smaller difference counts.
+Each scene is run with the defaults of Surface/elements per side (6), Time/tolerance and Quadrature/tolerance (1e-4) and
+the elements of tubes. It is compared with a finer run. The finer run has twice as many elements in each direction on
+particles and walls and a tenth of each tolerance, including that of mesh refinement. Its steps are at most 1/200 of the
+time. The error is the largest |difference| over the rows of the first run, divided by the largest absolute value of the
+finer run. The finer run is interpolated to each row by a cubic polynomial and by a straight line, and the smaller
+difference counts. The straight line is better where a series jumps.
 
-Series of several particles are taken together. Those that count work, estimate errors or are below 1/1000 of their
-natural unit (most of them are 0 by symmetry) are left out. An entry is empty if the scene lacks the series or the error
-is below 1e-9. Results are kept in DIR and are found again.
+For several particles, the largest error of a series over all particles is printed. Series that count work or estimate
+errors are left out. Series below 1/1000 of their natural unit are left out too; most of them are 0 by symmetry. An
+entry is empty if the scene does not have the series or the error is below 1e-9. Results are kept in DIR and are not
+computed again.
 """
 
 import sys
@@ -93,7 +94,7 @@ def text(number):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), help="(default: all)")
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), help="scenes (default: all)")
     studies.arguments(parser, "results/series_errors", limit=1800, jobs=2)
     parsed = parser.parse_args()
     study = studies.study(parsed)

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Solvers of the linear systems, each chosen by keys of the deck: iterations, seconds and agreement of the choices.
+"""Compares the solvers of the linear systems: iterations, computing time, and agreement of their results.
 
     tests/benchmark/solvers.py krylov        # three Krylov solvers under three preconditioners
     tests/benchmark/solvers.py eliminations  # which unknowns of the coupled system are eliminated
 
 Prints a table: mean iterations per velocity solve and per implicit step, seconds in these systems, processor seconds,
-and the largest difference of all series from the first choice, as compare.py takes it.
+and the largest difference of all series from the first choice, computed as in compare.py.
 
 The scenes of `eliminations` make a few steps of fixed size with `Solvers/tolerance` 1e-12, so that the choices differ
 only by the solution of the linear systems. The steps are small, because the frozen operators also enter the estimated
-error that TR-BDF2 subtracts (4.30). Walls are coarse, because blocks without a preconditioner and iterated walls take
-minutes on finer ones.
+error that TR-BDF2 subtracts, see (4.30) in lib/README.md. Walls are coarse, because blocks without a preconditioner and
+iterated walls take minutes on finer ones.
 """
 
 from compare import differences_of

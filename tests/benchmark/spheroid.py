@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""The paper's section 4.1: Figures 8, 9 and 10 and Table 1, for every surface and every way to take the integrals.
+"""A rigid spheroid in uniform flow: Figures 8, 9, 10 and Table 1 of Maestre et al. 2017, for all meshes and quadrature
+rules.
 
-Runs inputs/spheroid_cube.yaml and inputs/spheroid_polar.yaml with one key or another changed; a run that has been made
-already is not made again. The largest meshes take minutes; `--largest 2` leaves them out. Error against work is the
-study spheroid.yaml of work_precision.py.
+Runs inputs/spheroid_cube.yaml and inputs/spheroid_polar.yaml with several settings. A run that exists already is not
+repeated. The largest meshes take minutes; `--largest 2` leaves them out. To plot the error against the cost, use
+work_precision.py with the study spheroid.yaml.
 """
 
 import pathlib
@@ -99,7 +100,7 @@ def figure_10(found):
         axes.set_aspect("equal")
         axes.set_axis_off()
         axes.set_title(f"{title}\n{outcome.final['n_control_points']:.0f} control points", fontsize=8.5)
-    figure.colorbar(mesh, ax=grid, label="|p − exact| over the largest exact p", shrink=0.8)
+    figure.colorbar(mesh, ax=grid, label="|p − exact p| / largest exact |p|", shrink=0.8)
     return figure
 
 
@@ -131,11 +132,12 @@ def table_of_options(found):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("--results", default="results/spheroid", metavar="DIR", help="of runs (default: %(default)s)")
+    parser.add_argument("--results", default="results/spheroid", metavar="DIR",
+                        help="directory of the runs (default: %(default)s)")
     parser.add_argument("-o", "--output", default=".", type=pathlib.Path, metavar="DIR",
-                        help="of the pictures (default: %(default)s)")
+                        help="directory of the figures (default: %(default)s)")
     parser.add_argument("--largest", type=int, default=3, choices=(1, 2, 3),
-                        help="largest mesh of the four (default: %(default)s)")
+                        help="largest of the four meshes, which are numbered from 0 (default: %(default)s)")
     arguments = parser.parse_args()
     study = tanktread.Study(directory=arguments.results)
     found = {name: sizes(study, option, arguments.largest) for name, option in OPTIONS.items()}

@@ -1,16 +1,19 @@
 #!/usr/bin/python3
-"""Shapes at rest: what they cost, by which solver, and what runs in time find.
+"""Compares the cost of finding steady shapes by several solvers and by simulations in time.
 
     tests/benchmark/steady.py solvers   # Newton's method by three Krylov solvers, preconditioners and two line searches
-    tests/benchmark/steady.py states    # the same states by Steady and by runs in time
-    tests/benchmark/steady.py branch    # a point on a branch around the fold of a drop
+    tests/benchmark/steady.py states    # the same steady shapes by `Steady` and by simulations in time
+    tests/benchmark/steady.py branch    # cost of a point on a branch around the fold of a drop
 
-Each prints a table of velocity evaluations; runs are kept under results/steady.
+Each command prints a table of velocity evaluations. Runs are kept under results/steady.
 
-`states`: on the deck's first mesh. A run in time goes on until `shape_velocity` is 1e-6, with the deck's time tolerance
-and with 1e-7, which the value is of. Where membranes tread or labels turn, the mesh lies elsewhere by then; `Steady`
-that starts from the end of the run has the same labels. `branch`: the branch of inputs/drop_branch.yaml, collocated and
-without its spectrum, from Ca = 0.1 up to the fold and back.
+`states` uses the initial mesh of each deck. A simulation in time ends when `shape_velocity` is 1e-6. It is made with
+the time tolerance of the deck and with 1e-7; the differences in the table are from the latter. If the membrane
+tank-treads or the material points rotate, the mesh of the simulation has moved along the surface, which changes the
+discretisation error. Therefore `Steady` is also started from the end of the simulation; then both have the same mesh.
+
+`branch` follows the branch of inputs/drop_branch.yaml from Ca = 0.1 to the fold and back, with collocation and without
+the section Spectrum.
 """
 
 import hashlib
@@ -72,8 +75,8 @@ def states(study):
         return [f"`{name}`, {series}", f"{rest.final[series]:.7f}", f"{abs(rest.final[series] - value):.1e}",
                 f"{abs(after.final[series] - value):.1e}", *counts, f"{counts[1] / counts[0]:.1f}"]
 
-    table(["deck, series", "`Steady`", "in time, off by", "the same labels", "evaluations", "in time", "in time, 1e-7",
-           "ratio of the first two"], itertools.starmap(row, STATES.items()))
+    table(["deck, series", "`Steady`", "difference from time", "on the same mesh", "evaluations", "in time",
+           "in time, 1e-7", "ratio of the first two"], itertools.starmap(row, STATES.items()))
 
 
 def branch(study):
@@ -87,7 +90,7 @@ def branch(study):
                 f"{outcome.processor_seconds / points:.1f}",
                 f"{outcome.run.summary['memory']['largest of a rank'] / 2**20:.0f} MB"]
 
-    table(["control points", "points on the branch", "evaluations a point", "processor seconds a point", "memory"],
+    table(["control points", "points on the branch", "evaluations per point", "processor seconds per point", "memory"],
           map(row, (6, 12)))
 
 

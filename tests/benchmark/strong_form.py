@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Weak and strong form of the load side by side: deformation and step size over time, and the section where the strong
-form stalls.
+"""Weak and strong form of the membrane load: deformation and step size over time, and the section at which the run with
+the strong form fails.
 
     tests/benchmark/strong_form.py  # runs inputs/shear_neo_hookean.yaml in both forms, to time 2
-    tests/benchmark/strong_form.py results/weak results/strong  # runs of yours
+    tests/benchmark/strong_form.py results/weak results/strong  # your own runs
 """
 
 from package import SHEAR, SIDE, answer, command_line, draw, plt, style, tanktread
@@ -12,8 +12,9 @@ from matplotlib.collections import LineCollection
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("runs", nargs="*", help="directories of runs in the weak and in the strong form")
-    parser.add_argument("-o", "--output", default="strong_form.png", metavar="FILE", help="default: %(default)s")
+    parser.add_argument("runs", nargs="*", help="two directories of results: weak form, then strong form")
+    parser.add_argument("-o", "--output", default="strong_form.png", metavar="FILE",
+                        help="file of the figure (default: %(default)s)")
     arguments = parser.parse_args()
     weak, strong = map(tanktread.run, arguments.runs or [made("weak"), made("strong")])
     figure, axes = plt.subplot_mosaic("AC;BC", figsize=(9.6, 4.6), width_ratios=[1.1, 1])

@@ -1,17 +1,19 @@
 #!/usr/bin/python3
-"""Whether tanktread-fit gives moduli back, and its errors are right: profiles of a capsule in a tube at five speeds,
-made with one modulus and law.
+"""Tests whether tanktread-fit recovers known moduli from synthetic outlines, and whether its standard errors are
+correct. The outlines are those of a capsule in a tube at five speeds.
 
-    # no noise, from a start a factor of 10 off, by runs of the program: minutes
+    # outlines without noise; the start value is wrong by a factor of 10; runs of the program, minutes
     tests/benchmark/synthetic_profiles.py --exact
-    # noise of 0.5 % and 2 % of the radius, both laws fitted to each sample: minutes
+    # 100 samples with noise of 0.5 % and 2 % of the radius; both laws are fitted to each sample; minutes
     tests/benchmark/synthetic_profiles.py --samples 100
-    tests/benchmark/synthetic_profiles.py --pictures 20  # from pictures, 256 pixels across, blurred and noisy
-    # outlines with noise, from a finer mesh, as inputs/studies has them
+    # 20 samples of outlines that are found in synthetic pictures, 256 pixels wide, with blur and noise
+    tests/benchmark/synthetic_profiles.py --pictures 20
+    # writes outlines with noise, computed on a finer mesh, like those in inputs/studies
     tests/benchmark/synthetic_profiles.py --write DIR
 
-The steady shape depends on the capillary number alone, so fits to samples and pictures use an emulator: outlines of
-NODES runs a law, interpolated by Chebyshev polynomials in its logarithm; how far it is from runs in between is printed.
+The steady shape depends only on the capillary number. Therefore fits to samples and pictures do not run the program.
+They interpolate the outlines of 11 runs per law by Chebyshev polynomials in the logarithm of the capillary number.
+The largest error of this interpolation is printed.
 """
 
 import functools
@@ -120,7 +122,7 @@ def print_rows(study, rows, number, seed):
         off = max(abs(one.curve(number).distances(curve.even(POINTS))).max() for number, curve in known.items())
         print(f"{law}: the emulator is {off / RADIUS:.1e} of the radius from runs in between")
     table(["law", "noise", "mean error of G_s ± its standard error", "spread", "stated error", "spread / stated",
-           "law told (AIC + 10)", "runs test refuses the other"], rows(made, numpy.random.default_rng(seed), number))
+           "law found (AIC + 10)", "runs test rejects the other"], rows(made, numpy.random.default_rng(seed), number))
 
 
 def fits_of(law, made, number, measured):
@@ -186,13 +188,13 @@ def write(study, directory):
 def main():
     parser = command_line(__doc__)
     parser.add_argument("--exact", action="store_true", help="fit outlines without noise")
-    parser.add_argument("--samples", type=int, default=0, metavar="N", help="samples of noise")
-    parser.add_argument("--pictures", type=int, default=0, metavar="N", help="samples of five pictures")
-    parser.add_argument("--write", type=pathlib.Path, metavar="DIR", help="write outlines there")
+    parser.add_argument("--samples", type=int, default=0, metavar="N", help="number of samples with noise")
+    parser.add_argument("--pictures", type=int, default=0, metavar="N", help="number of samples of five pictures")
+    parser.add_argument("--write", type=pathlib.Path, metavar="DIR", help="directory to which outlines are written")
     parser.add_argument("--output", default="results/synthetic_profiles", metavar="DIR",
-                        help="of runs (default: %(default)s)")
+                        help="directory of the runs (default: %(default)s)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
-                        help="runs at a time (default: the number of cores)")
+                        help="number of simultaneous runs (default: the number of cores)")
     parsed = parser.parse_args()
     study = tanktread.Study(directory=parsed.output, jobs=parsed.jobs)
     if parsed.write:

@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""Whether Time/tolerance means what it says, and what it costs: errors of time integration alone, on one mesh.
+"""Measures the error of time integration relative to Time/tolerance, and its cost. The mesh is the same in all runs.
 
-    time_tolerance.py ratios     # viscosity ratios 0.05 to 50: error divided by tolerance, each implicit scheme
-    time_tolerance.py scenes     # the same for scenes of other kinds, default scheme
-    time_tolerance.py schemes    # evaluations and seconds of every scheme for an error below 1e-4
-    time_tolerance.py figure     # error against work at four viscosity ratios, viscosity_ratio.png
+    time_tolerance.py ratios     # error / tolerance of each implicit scheme at viscosity ratios from 0.05 to 50
+    time_tolerance.py scenes     # error / tolerance of the default scheme in other scenes
+    time_tolerance.py schemes    # evaluations and seconds that every scheme needs for an error below 1e-4
+    time_tolerance.py figure     # error against cost at four viscosity ratios, viscosity_ratio.png
 
-The error is the largest difference of D (`taylor_inertia`, of the particle where it is largest) over the run to a
-reference on the same mesh with the same integrals. Two references by different schemes are made; their difference is
-printed. Runs are made once, under results/time_tolerance.
+The error is the largest difference of the Taylor parameter D (`taylor_inertia`) over the run from a reference with the
+same mesh and quadrature. If there are several particles, the one with the largest error counts. Two references are made
+by different schemes, and their difference is printed. Runs are kept under results/time_tolerance and are not repeated.
 """
 
 

@@ -1,14 +1,17 @@
 #!/usr/bin/python3
-"""Error against work: a scene with all combinations of choices that differ from the default in one or two.
+"""Error against computing cost: runs a scene with all combinations of numerical options that differ from the default in
+one or two choices.
 
     tests/benchmark/work_precision.py tests/benchmark/shear.yaml  # results/work_precision/shear.png, .csv
     tests/benchmark/work_precision.py tests/benchmark/shear.yaml --differences 1  # one choice at a time
-    tests/benchmark/work_precision.py tests/benchmark/shear.yaml --only time mesh  # these choices
+    tests/benchmark/work_precision.py tests/benchmark/shear.yaml --only time mesh  # only these choices
 
-A study is a small YAML file (tests/benchmark/README.md): a deck, what counts as its error, and the choices, each with
-options of a few keys; the first option is the default. Work is told in kernel evaluations, which no machine changes,
-and in processor seconds of this machine, all ranks together. Each point is a run; the black line is the Pareto front,
-whose runs are numbered and told beside it by what differs from the default, the ring.
+A study is a YAML file (tests/benchmark/README.md). It contains a deck, the definition of its error, and the choices.
+Each choice has several options, which set a few keys; the first option is the default. The cost is measured in kernel
+evaluations, which do not depend on the machine, and in processor seconds of this machine, summed over all ranks.
+
+Each point of the figure is a run. The default is marked by a ring. The black line is the Pareto front. Its runs are
+numbered, and the legend lists the options in which they differ from the default.
 """
 
 import dataclasses
@@ -117,7 +120,7 @@ def draw(axis, points, cost, colors, families, numbers):
 def draw_legend(axis, colors, numbers):
     for name, color in colors.items():
         axis.plot([], [], "o", color=color, ms=5, label=name)
-    axis.plot([], [], "o", ms=10, mfc="none", mec=style.INK, label="the default")
+    axis.plot([], [], "o", ms=10, mfc="none", mec=style.INK, label="default")
     axis.plot([], [], color=style.INK, label="Pareto front:")
     axis.axis("off")
     axis.legend(loc="upper left", bbox_to_anchor=(-0.1, 1), fontsize=8)
@@ -143,12 +146,12 @@ def report(scene, points):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("study", help="the study: a file of tests/benchmark")
+    parser.add_argument("study", help="the study, a YAML file of tests/benchmark")
     parser.add_argument("--differences", type=int, default=2, choices=(1, 2),
-                        help="choices that may differ from the default at a time (default: 2)")
+                        help="largest number of choices that differ from the default in a run (default: 2)")
     parser.add_argument("--only", nargs="+", default=[], metavar="CHOICE", help="vary these choices only")
     parser.add_argument("--curves", type=pathlib.Path, metavar="DIR",
-                        help="folder of reference curves (default: none, a run of the study's `reference` instead)")
+                        help="directory of reference curves (default: the reference is a run of the study)")
     studies.arguments(parser, "results/work_precision")
     parsed = parser.parse_args()
     scene = Scene(parsed.study, parsed.curves)

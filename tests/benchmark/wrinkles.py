@@ -1,13 +1,15 @@
 #!/usr/bin/python3
-"""Wrinkles of a membrane at low Ca: without resistance to bending their length follows the mesh, with it they do not.
+"""Wrinkles of a membrane at low capillary number: without bending stiffness their wavelength is set by the mesh, with
+bending stiffness it is not.
 
     tests/benchmark/wrinkles.py  # n = 6, 9, 12: minutes
     tests/benchmark/wrinkles.py --meshes 6 9 12 18 --modulus 0.002
 
-A neo-Hookean capsule in shear at Ca = 0.1, compressed along its belt, on a mesh that is turned out of the planes of
-symmetry so that no wave is left out. The load is expanded in spherical harmonics of the place on the unstressed sphere;
-waves are degrees of 9 and more, which the flow does not force. Membranes without bending stiffness have no shortest
-unstable wave, so the shortest that elements carry grows fastest, about two elements long. Bending moduli in R^2 G_s.
+A neo-Hookean capsule in shear at Ca = 0.1 is compressed around its waist. Its mesh is not aligned with the symmetry
+planes of the flow, so that the symmetry excludes no wave. The load is expanded in spherical harmonics on the unstressed
+sphere. Degrees of 9 and more count as waves, because the flow does not force them. Without bending stiffness, shorter
+waves always grow faster. The dominant wave is then the shortest one that the mesh resolves, about two elements long.
+The bending moduli E_b are divided by R^2 G_s (R: radius, G_s: shear modulus).
 """
 
 from package import SHEAR, SIDE, answer, command_line, expect, footer, interpolation, numpy, plt, studies, style
@@ -54,7 +56,7 @@ def draw_row(study, axes, modulus, parsed):
     middle.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.9 * rows[-1][6], 1.1 * rows[-1][6]))
     right.plot(*numpy.reshape(lengths, (-1, 2)).T, "o-", color=style.RUNS[0], label="waves" if lengths else "no waves")
     right.plot(1 / sizes, 2.25 * sizes, label="2.25 elements", **style.GUIDE)
-    right.set(xlabel="elements a radius", ylabel="wavelength over R", ylim=(0, 0.9))
+    right.set(xlabel="elements per radius", ylabel="wavelength / R", ylim=(0, 0.9))
     for axis in left, right:
         axis.legend(loc="best")
     return rows
@@ -63,11 +65,11 @@ def draw_row(study, axes, modulus, parsed):
 def main():
     parser = command_line(__doc__)
     parser.add_argument("--meshes", nargs="+", type=int, default=[6, 9, 12], metavar="N",
-                        help="elements along a side of the cube (default: 6 9 12)")
+                        help="elements per side of the cube (default: 6 9 12)")
     parser.add_argument("--modulus", nargs="+", type=float, default=[0.0, 0.0005, 0.005],
-                        help="bending moduli over R^2 G_s (default: 0, 0.0005, 0.005)")
-    parser.add_argument("--ca", type=float, default=0.1, help="default: %(default)s")
-    parser.add_argument("--time", type=float, default=5.0, help="end of the runs (default: %(default)s)")
+                        help="bending moduli divided by R^2 G_s (default: 0, 0.0005, 0.005)")
+    parser.add_argument("--ca", type=float, default=0.1, help="capillary number (default: %(default)s)")
+    parser.add_argument("--time", type=float, default=5.0, help="final time of the runs (default: %(default)s)")
     studies.arguments(parser, "results/wrinkles")
     parsed = parser.parse_args()
     study, count = studies.study(parsed), len(parsed.modulus)

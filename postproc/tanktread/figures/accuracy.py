@@ -18,7 +18,7 @@ from .register import figure
 
 PARTS = {"mesh": ("Surface/", "Particles/", "Adaptation/", "Tube/", "Channel/"),
          "time": ("Time/", "Steady/", "Periodic/"), "quadrature": ("Quadrature/", "Solvers/")}
-COSTS = {"n_control_points": "control points", "wall_seconds": "seconds", "evaluations": "velocity evaluations"}
+COSTS = {"n_control_points": "control points", "wall_seconds": "wall time / s", "evaluations": "velocity evaluations"}
 SAMPLES = 400  # number of centroid positions at which extents are drawn
 
 
@@ -61,12 +61,14 @@ def largest(one, other):
 
 @figure(1, 1, 6.4, 4.4)
 def work(run, axis, *, parts: bool = True):
-    """Estimated error against seconds, for each series whose accuracy was requested, with the part that dominates.
+    """Estimated error against wall time for each series with requested accuracy, with the dominant source of error.
 
-    Each point is a level of the run. The error of a level is its difference from the finest one, whose own error is
-    estimated. The dominant part, mesh, time or quadrature, is the one whose refinement changes the result most.
+    Each point is one level: --accuracy runs the deck at several levels, each more accurate than the previous one. The
+    error of a level is its difference from the finest level. The error of the finest level is estimated by the program.
+    The sources of error are the mesh, the time steps and the quadrature. The dominant source is the one whose
+    refinement changes the result most.
 
-    parts: also make the runs that tell the dominant part"""
+    parts: also make the runs that determine the dominant source of error"""
     found = (run.summary or {}).get("accuracy") or {}
     expect(found, f"{run.directory} is no run with requested accuracy: run its deck with --accuracy SERIES=VALUE")
     expect(found.get("levels"), f"{run.directory} has no finished level")
@@ -84,23 +86,25 @@ def work(run, axis, *, parts: bool = True):
         slope = numpy.polyfit(numpy.log(seconds), numpy.log(errors), 1)[0]
         changes = changes_by_part(runs[k], settings[k:k + 2], request, study) if parts else {}
         words = f"{request['request']}: slope {slope:.1f}"
-        words += f", mostly {max(changes, key=changes.get)}" if changes else ""
+        words += f", mainly {max(changes, key=changes.get)}" if changes else ""
         axis.loglog(seconds, errors, "o-", ms=4, color=color, label=words)
         axis.axhline(request["allowed"], linewidth=0.8, **style.GUIDE | {"color": color})
         listed = ", ".join(f"{part} {change:.2g}" for part, change in changes.items())
         log.info(words + (f"; change by refinement of {listed}" if changes else ""))
-    style.finish(axis, xlabel="seconds of the level", ylabel="estimated error", title="dashed: requested accuracy")
+    style.finish(axis, xlabel="wall time of the level / s", ylabel="estimated error",
+                 title="dashed: requested accuracy")
 
 
 @figure(2, 2, 9.6, 7)
 def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None, series: str = "taylor_inertia"):
-    """Error of a run's deformation against a curve: over time, against the mesh, seconds and velocity evaluations.
+    """Error of a series relative to a reference curve: over time, and against the size of the mesh and the cost.
 
-    The curve is a CSV file with the columns `t`, which is time times the rate of the flow, and `taylor_inertia`. A line
-    joins runs that agree in Time/scheme and Time/tolerance.
+    The reference is a CSV file. Its column `t` is time times the rate of the flow. The column of values has the name of
+    the series. The last three panels show the largest error of each run against the number of control points, the wall
+    time and the number of velocity evaluations. A line joins runs with the same Time/scheme and Time/tolerance.
 
-    curve: the reference, a table with named columns
-    series: which series, and column of the curve"""
+    curve: file of the reference curve (required)
+    series: series that is compared, and name of its column in the file"""
     expect(curve, "give the reference: --curve FILE")
     known = table(curve, ("t", series))
     expect(numpy.isfinite(known["t"]).all() and ("NaN if" in runs[0].descriptions.get(series, "")
@@ -140,19 +144,22 @@ def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None,
 def step(deck, axis, *, radii: tuple[float, float] = (0.1, 0.05), finer: list[str] | None = None,
          set_: list[str] | None = None, curves: tuple[pathlib.Path, pathlib.Path, pathlib.Path] | None = None,
          between: tuple[float, float] = (-3.9, 4.9)):
-    """Extents of a capsule against its centroid in a channel that steps, with edges rounded less and less, and sharp.
+    """Extents of a capsule against its position in a channel with a step, for rounded edges and for sharp edges.
 
-    The extent along x3 has kinks, beside which it is no better than rows are close: --set 'Time/maximum step=0.01' for
-    three digits. Each --finer is made with both radii, and its change is printed; the curves add these changes. An edge
-    rounded with the radius r changes the flow around by r^2q, where q = 0.544 is the power of the velocity beside a
-    sharp edge of 90 degrees, sin(3 pi q/2) = q (Dean & Montagnon, Proc. Camb. Phil. Soc. 45, 1949); so two radii give
-    the extents beside sharp edges.
+    The deck is run with two radii of the edges of the step. The extents for sharp edges are extrapolated from the two
+    runs. The effect of a rounded edge is proportional to radius^(2q), because the velocity near a sharp edge of 90
+    degrees is proportional to distance^q. The exponent q = 0.544 solves sin(3 pi q/2) = q (Dean & Montagnon, Proc.
+    Camb. Phil. Soc. 45, 1949).
+
+    Each setting --finer is applied in two further runs, one per radius. The change that it causes is printed, and is
+    added to the extents. The extent along x3 has kinks as a function of the position. Near a kink the error is as large
+    as the distance between rows allows: --set 'Time/maximum step=0.01' gives three digits.
 
     radii: radii of the edges, the larger one first
-    finer: keys by which runs are made finer, each KEY=VALUE
-    set_: other keys of all runs, each KEY=VALUE
-    curves: published extents along x1, x2, x3: a centroid and an extent over 2 a per row
-    between: centroids between which extents are drawn"""
+    finer: settings that refine a run, each KEY=VALUE
+    set_: other settings of all runs, each KEY=VALUE
+    curves: three files of published extents along x1, x2, x3; rows of centroid position x1, extent / (2 x radius)
+    between: range of the centroid position that is drawn"""
     (large, small), (begin, end), words, finer = radii, between, set_ or [], finer or []
     expect(0 < small < large,
            f"--radii needs two positive radii, the larger one first, but is given {large:g} and {small:g}")
@@ -177,8 +184,8 @@ def step(deck, axis, *, radii: tuple[float, float] = (0.1, 0.05), finer: list[st
         axis.plot(*curve.T, mark, color=style.FAINT, markersize=3, label=f"published, {name}")
         log.info(f"along {name}: {off[at]:+.4f} off the curve at most, at {centroid[at]:.3f}; "
                  f"{numpy.sqrt(numpy.mean(off**2)):.4f} on average")
-    style.finish(axis, xlabel="centroid $x_1$", ylabel="extent over 2a",
-                 title=f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
+    style.finish(axis, xlabel="centroid $x_1$", ylabel="extent / (2 × radius)",
+                 title=f"sharp edges (lines), edges of radius {small:g} (dashed) and {large:g} (dotted)")
 
 
 def power():

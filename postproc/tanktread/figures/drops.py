@@ -20,9 +20,10 @@ COSINE, WEIGHT = legendre.leggauss(400)
 
 @figure(2, 2, 7.2, 5.6)
 def surfactant(runs, cut, along, deformation, extremes):
-    """Drops with surfactant: last section, concentration along the axis x3, and over time D and its extremes.
+    """Drops with surfactant: last section, concentration along the axis x3, and D and extreme concentrations over time.
 
-    A clean drop among the runs is drawn for comparison."""
+    D is the Taylor parameter. Concentrations are divided by the initial concentration. If one of the runs is a drop
+    without surfactant, its section and D are drawn for comparison."""
     for run in runs:
         expect(not run.several, f"{run.directory} has several particles, and this figure is of one drop")
     expect(any("surfactant_mass" in run.series for run in runs), f"{runs[0].directory} has no surfactant")
@@ -42,21 +43,24 @@ def surfactant(runs, cut, along, deformation, extremes):
         log.info(line)
     cut.autoscale()
     cut.set(aspect="equal", xlabel="$x_1$ / R$_C$", ylabel="$x_3$ / R$_C$")
-    along.set(xlabel="$x_3$ / R$_C$", ylabel="concentration / initial one")
+    along.set(xlabel="$x_3$ / R$_C$", ylabel="concentration / initial value")
     style.finish(deformation, xlabel=time_label(runs), ylabel="D")
-    extremes.set(xlabel=time_label(runs), ylabel="largest, smallest concentration")
+    extremes.set(xlabel=time_label(runs), ylabel="largest, smallest (dashed)")
 
 
 @figure()
 def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
-    """Vesicles at rest beside axisymmetric shapes of least energy that are found without tanktread.
+    """Vesicles at rest, compared with axisymmetric shapes of least energy from an independent computation.
 
-    The section of the last snapshot, the energy over time, and with --meshes its error against the mesh. The deck, or
-    the directory of its run if there are no --meshes, is axisymmetric about x3. The shapes are r(theta) = exp(a sum of
-    even Legendre polynomials of cos theta), with the run's volume, bending modulus, spontaneous curvature, tension,
-    global area dilatation and area-difference elasticity: a stationary point by Newton's method from a spheroid.
+    The panels show the section of the last snapshot, the difference of the energy from the reference over time and,
+    with --meshes, the relative error of the energy against the number of control points. Without --meshes a directory
+    of results may be given instead of a deck. The vesicle must be axisymmetric about x3.
 
-    meshes: elements per side of further runs"""
+    The reference shape is r(theta) = exp(s(theta)), where s is a sum of even Legendre polynomials of cos theta. It has
+    the volume, bending modulus, spontaneous curvature, tension, global area dilatation and area-difference elasticity
+    of the run. Newton's method finds a stationary point of its energy. The search starts from a spheroid.
+
+    meshes: numbers of elements per side; the deck is run with each of them"""
     run = run_of(deck)
     outline, energy, error = least(run)
     log.info(f"{run.name}: energy {run.series['energy'][-1]:.9g}, relative error {error:.1e}")
@@ -68,7 +72,7 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
     length = run.in_units("length")
     axes[0].set(aspect="equal", xlabel="$x_1$" + length, ylabel="$x_3$" + length)
     axes[1].semilogy(run.time, abs(run.series["energy"] - energy), color=style.RUNS[0])
-    axes[1].set(xlabel=time_label([run]), ylabel="|energy - axisymmetric shape's|" + run.in_units("force length"))
+    axes[1].set(xlabel=time_label([run]), ylabel="|energy − energy of the reference|" + run.in_units("force length"))
     if meshes:
         study = Study(directory="results/vesicles")
         outcomes = [study.run(deck, {"Surface/elements per side": n}) for n in meshes]

@@ -13,13 +13,15 @@ BARRIER = 1e-5  # B of the energy -B G_s ln(gap) per unstressed area that keeps 
 
 @figure(2, 1, 5.6, 6, sharex=True)
 def stuck(runs, upper, lower, *, elements: int = 160):
-    """Whether a capsule passes a round constriction at a given pressure drop: runs, and the drop without friction.
+    """Whether a capsule passes a round constriction at a given pressure drop: runs, and a model without friction.
 
-    Without friction an axisymmetric neo-Hookean membrane touches the wall and closes the channel, at rest. Its largest
-    pressure drop, over that of the empty channel at the mean velocity V, gives the critical Ca of any viscosity ratio.
-    The runs are drawn with the positions that they came to, and their velocities there.
+    Upper panel: capillary number Ca = μV/G_s against the position of the centroid. V is the mean velocity in the empty
+    channel, G_s the shear modulus. Each run is a horizontal line, which ends in a dot at its last position. In the
+    model an axisymmetric neo-Hookean membrane is at rest, touches the wall without friction and closes the channel. The
+    curve shows the Ca at which the pressure drop of the empty channel equals the pressure drop across the membrane. Its
+    maximum is the critical Ca for any viscosity ratio. Lower panel: velocity of the centroid divided by V.
 
-    elements: elements of the membrane, from pole to pole"""
+    elements: number of elements of the model's membrane, from pole to pole"""
     first = runs[0]
     for key, wanted in (("Channel/profile", "constriction"), ("Channel/section", "circle"),
                         ("Membrane/law", "neo-Hookean"), ("Particle/shape", "sphere")):
@@ -29,7 +31,7 @@ def stuck(runs, upper, lower, *, elements: int = 160):
     largest, there = highest(way, pressure)
     log.info(f"without friction: critical Ca = {largest / drop:.5g}, centroid there {there:.3f}, "
              f"pressure drop {largest:.5g} G_s / length")
-    upper.plot(way, pressure / drop, color=style.INK, label="at rest, without friction")
+    upper.plot(way, pressure / drop, color=style.INK, label="model: at rest, without friction")
     for run, color in style.coloured(runs):
         x, speed = run.series["centroid_x1"], run.series["velocity_x1"]
         ca = run.value("Membrane/capillary number") or of_flow(run) / run.value("Membrane/shear modulus")
@@ -41,7 +43,7 @@ def stuck(runs, upper, lower, *, elements: int = 160):
         lower.plot(x[near], speed[near] / run.value("Flow/mean velocity", 1.0), color=color, label=label)
         log.info(f"{run.name}: Ca = {ca:g}, to x = {x[-1]:.4f}, there {speed[-1]:.4g}, "
                  f"smallest film {run.series['gap'].min():.4g}")
-    style.finish(upper, ylim=(0, None), ylabel="Ca")
+    style.finish(upper, ylim=(0, None), ylabel="Ca = μV/G$_s$")
     style.finish(lower, yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$" + first.in_units("length"))
 
 

@@ -20,12 +20,12 @@ BAR = {"color": style.INK, "markersize": 4, "linewidth": 0.8, "capsize": 2}  # s
 
 @figure(1, 2, 8.2, 3.6, width_ratios=(1.2, 1))
 def tweezers(deck="inputs/red_cell_tweezers.yaml", plot=None, outlines=None, *, shear_modulus: float = 5.3):
-    """A red cell in optical tweezers: its diameters along and across the force, beside those that were measured.
+    """A red cell in optical tweezers: its diameters along and across the force, compared with measurements.
 
-    Beside them its outline from the side at each force. The deck, with lengths in radii of the disc, is run once for
-    each force.
+    The right panel shows the outline of the cell at each force. The deck is run once for each force of the
+    measurements. The unit of length of the deck must be the radius of the undeformed cell.
 
-    shear_modulus: in uN/m"""
+    shear_modulus: shear modulus of the membrane, in uN/m"""
     runs = [pulled(deck, row[0] / (RADIUS * shear_modulus), {}) for row in MEASURED["stretched"]]
     across, along = RADIUS * numpy.array([[run.series[f"length_x{k}"][-1] for run in runs] for k in (2, 1)])
     for (pn, narrow, wide, low, high), here_across, here_along in zip(MEASURED["stretched"], across, along):
@@ -33,8 +33,8 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", plot=None, outlines=None, *, 
         log.info(f"{pn:4d} pN: along {here_along:.2f} um (measured {wide}{within}), "
                  f"across {here_across:.2f} um (measured {narrow})")
     forces, narrow, wide, low, high = numpy.transpose(MEASURED["stretched"])
-    plot.plot(forces, along, color=style.RUNS[0], label=f"{runs[0].value('Membrane/law')}, along")
-    plot.plot(forces, across, color=style.RUNS[0], linestyle=style.DASHES, label="across")
+    plot.plot(forces, along, color=style.RUNS[0], label=f"{runs[0].value('Membrane/law')}, along the force")
+    plot.plot(forces, across, color=style.RUNS[0], linestyle=style.DASHES, label="across the force")
     around = numpy.linspace(0, 2 * numpy.pi, 361)
     for (pn, *_), (run, color) in zip(MEASURED["stretched"], style.shaded(runs, 0.25)):  # hull, seen along x3
         points = run.snapshots()[-1].points[:, :2] * RADIUS
@@ -42,8 +42,9 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", plot=None, outlines=None, *, 
         outlines.plot(*outline.T, color=color, linewidth=1.1, label=f"{pn} pN")
     outlines.set(aspect="equal", xlabel="x$_1$ / µm", ylabel="x$_2$ / µm")
     outlines.legend(fontsize=7, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
-    plot.errorbar(forces, wide, (wide - low, high - wide), fmt=style.MARKS[0], label="Mills and others 2004", **BAR)
-    plot.plot(forces, narrow, style.MARKS[1], color=style.INK, markersize=4, fillstyle="none", label="across, measured")
+    plot.errorbar(forces, wide, (wide - low, high - wide), fmt=style.MARKS[0], label="along, Mills et al. 2004", **BAR)
+    plot.plot(forces, narrow, style.MARKS[1], color=style.INK, markersize=4, fillstyle="none",
+              label="across, Mills et al. 2004")
     style.finish(plot, xlabel="force / pN", ylabel="diameter / µm")
 
 
@@ -57,18 +58,19 @@ def pulled(deck, force, more):
 @figure(1, 2, 8.2, 3.4)
 def treading(deck="inputs/red_cell_treading.yaml", plot=None, angles=None, *,
              viscosity: list[float] = [0.1, 0.32, 1.0], elements: int = 6):
-    """A red cell that tank-treads in shear: frequency over shear rate, and inclination, beside those measured.
+    """A tank-treading red cell in shear: frequency and inclination against the shear rate, compared with measurements.
 
-    Means of the last whole turn against the shear rate. The deck, with units, is run once for each shear rate and
-    viscosity of the membrane, to 50 over the rate.
+    The frequency and the mean inclination are those of the last full revolution of the membrane. Bands show the range
+    of the inclination in this revolution. The deck must have units. It is run for each measured shear rate and each
+    surface viscosity of the membrane, to the time 50 / shear rate.
 
-    viscosity: viscosities of the membrane, in uN s/m
+    viscosity: surface viscosities of the membrane, in uN s/m
     elements: elements per side"""
     rates, frequencies, bars = numpy.transpose(MEASURED["treading"])
     for value, color in style.coloured(sorted(viscosity)):
         found = [last_turn(deck, rate, value, elements) for rate in rates]
         turning, angle, least, largest = numpy.transpose(found)
-        pen = {"color": color, "markersize": 3, "label": f"{value:g} µN s/m"}
+        pen = {"color": color, "markersize": 3, "label": f"viscosity {value:g} µN s/m"}
         plot.plot(rates, turning / rates, "o-", **pen)
         angles.plot(rates, angle, "o-", **pen)
         angles.fill_between(rates, least, largest, color=color, alpha=0.12, linewidth=0)
@@ -76,10 +78,9 @@ def treading(deck="inputs/red_cell_treading.yaml", plot=None, angles=None, *,
             within = "within" if abs(here - frequency) <= bar else "OUTSIDE"
             log.info(f"{value:g} uN s/m, {rate} 1/s: frequency {here:.3f} 1/s (measured {frequency} +- {bar}, {within} "
                      f"its bar), inclination {mean:.2f} ({low:.2f} to {high:.2f})")
-    plot.errorbar(rates, frequencies / rates, bars / rates, fmt=style.MARKS[1], label="Tran-Son-Tay and others 1984",
-                  **BAR)
+    plot.errorbar(rates, frequencies / rates, bars / rates, fmt=style.MARKS[1], label="Tran-Son-Tay et al. 1984", **BAR)
     angles.axhspan(*MEASURED["inclination"], color=style.FAINT, alpha=0.4, label="measured")
-    style.finish(plot, xlabel="shear rate / s$^{-1}$", ylabel="frequency / shear rate")
+    style.finish(plot, xlabel="shear rate / s$^{-1}$", ylabel="angular frequency / shear rate")
     style.finish(angles, xlabel="shear rate / s$^{-1}$", ylabel="inclination / degrees")
 
 
@@ -97,10 +98,12 @@ def last_turn(deck, rate, viscosity, elements):
 
 @figure(1, 1, 5.2, 3.6)
 def recovery(deck="inputs/red_cell_tweezers.yaml", plot=None, *, elements: int = 6):
-    """A red cell let go by tweezers at a length of twice its width returns to its disc, beside the experiment.
+    """A red cell that is released by optical tweezers and returns to its resting shape, compared with an experiment.
 
-    Length over width against time, and the time constant of the exponential that fits best, for several moduli and
-    viscosities of the membrane. The deck has lengths in radii of the disc.
+    The figure shows the length of the cell divided by its width over time, for several shear moduli and surface
+    viscosities of the membrane. At time 0 this ratio equals the first measured value, 2.0. The time constant of the
+    best-fitting exponential is printed for each curve. The unit of length of the deck must be the radius of the
+    undeformed cell.
 
     elements: elements per side"""
     time, ratio = numpy.array(MEASURED["recovery"]).T
@@ -110,8 +113,8 @@ def recovery(deck="inputs/red_cell_tweezers.yaml", plot=None, *, elements: int =
         log.info(f"{modulus:g} uN/m, {viscosity:g} uN s/m: time constant {constant(seconds, found):.4f} s, "
                  f"from a length over width of {found[0]:.3f}")
         plot.plot(seconds, found, color=color, label=f"{modulus:g} µN/m, {viscosity:g} µN s/m")
-    plot.plot(time, ratio, style.MARKS[0], color=style.INK, markersize=4, label="Hochmuth and others 1979")
-    style.finish(plot, xlabel="time / s", ylabel="length over width")
+    plot.plot(time, ratio, style.MARKS[0], color=style.INK, markersize=4, label="Hochmuth et al. 1979")
+    style.finish(plot, xlabel="time / s", ylabel="length / width")
 
 
 def let_go(deck, elements, modulus, viscosity):

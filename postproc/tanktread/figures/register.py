@@ -15,8 +15,8 @@ from . import style
 
 FIGURES: dict = {}
 BENCHMARK = SOURCE / "tests/benchmark"
-RUNS = {"runs": (runs_of, "+", "directories of results, or decks, which are run if they have none"),
-        "run": (run_of, None, "directory of results, or a deck, which is run if it has none")}
+RUNS = {"runs": (runs_of, "+", "directories of results, or decks; a deck without results is run"),
+        "run": (run_of, None, "directory of results, or a deck; a deck without results is run")}
 ENDINGS = {"animation": "gif"}  # of the files of figures, by default png
 AXES = inspect.Parameter("axes", inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None)
 
@@ -81,7 +81,8 @@ def parser_of(name, program="tanktread-figure"):
     first, _, *options = inspect.signature(function).parameters.values()
     hints, doc = typing.get_type_hints(function), inspect.getdoc(function)
     texts = dict(line.split(": ", 1) for line in doc.split("\n") if ": " in line)
-    parser = argparse.ArgumentParser(prog=f"{program} {name}", description=doc,
+    shown = [line for line in doc.split("\n") if line.split(": ", 1)[0] not in {option.name for option in options}]
+    parser = argparse.ArgumentParser(prog=f"{program} {name}", description="\n".join(shown).rstrip(),
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     _, number, words = RUNS.get(first.name, (None, None, f"the {first.name}"))
     if first.default is not first.empty:
@@ -91,10 +92,12 @@ def parser_of(name, program="tanktread-figure"):
                         help=f"the picture: .png, .pdf, .svg, … (default: {name}.{ENDINGS.get(name, 'png')})")
     if first.name in RUNS:
         parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
-                            help="a key of the deck (repeatable)")
+                            help="sets a key of the deck (repeatable)")
     for option in options:
         told = "" if isinstance(option.default, bool | None) else f" (default: {option.default})"
         kind = {"action": argparse.BooleanOptionalAction} if option.default is True else _parsed_as(hints[option.name])
+        if option.name.endswith("_"):  # argparse would show the underscore, which a keyword of Python needs
+            kind["metavar"] = option.name[:-1].upper()
         parser.add_argument("--" + option.name.replace("_", "-").removesuffix("-"), **(
             {"dest": option.name, "default": option.default, "help": texts.get(option.name, "") + told} | kind))
     return parser
@@ -108,10 +111,10 @@ def measurements():
 
 
 def command():
-    """Draws one of the figures from runs, or lists all."""
+    """Draws a figure from the results of runs, or lists all figures."""
     figures = {name.replace("_", "-"): function for name, function in FIGURES.items()}
     listed = argparse.ArgumentParser(prog="tanktread-figure", description=command.__doc__,
-                                     epilog="tanktread-figure FIGURE --help shows the options of one")
+                                     epilog="tanktread-figure FIGURE --help shows the options of a figure")
     listed.add_argument("figure", nargs="?", help="the name of a figure")
     listed.add_argument("--list", action="store_true", help="print all figures with their captions")
     words = sys.argv[1:]
@@ -120,7 +123,8 @@ def command():
             listed.error("name a figure, or give --list")
         captions = {name: caption(function) for name, function in figures.items()} | measurements()
         for name, text in sorted(captions.items()):
-            print(textwrap.fill(text, 118, initial_indent=f"{name:21} ", subsequent_indent=" " * 22))
+            print(textwrap.fill(text, 118, initial_indent=f"{name:21} ", subsequent_indent=" " * 22,
+                                break_on_hyphens=False))
         return 0
     name = words[0].removesuffix(".py").replace("-", "_")
     if name.replace("_", "-") in measurements():

@@ -21,12 +21,13 @@ Deformation = Literal["taylor_inertia", "taylor_surface"]
 @figure()
 def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
                 deformation: Deformation = "taylor_inertia"):
-    """Deformation and inclination over time, beside published curves; of several particles, of each.
+    """Taylor parameter D and inclination over time, compared with published curves if they are given.
 
-    Bands are the estimated errors of a run with requested accuracy.
+    If a run has several particles, each of them is drawn. Bands show the estimated errors of a run with requested
+    accuracy.
 
-    curves: published curves, CSV files with the columns t, taylor_inertia and, if known, inclination
-    deformation: which Taylor parameter"""
+    curves: files of published curves: CSV with the columns t, taylor_inertia and, if known, inclination
+    deformation: series that is drawn as D"""
     # the angle in the plane x1 x3 has no meaning if the flow is symmetric about an axis
     inclined = [run for run in runs if run.value("Flow/type") != "uniaxial extension"]
     height, layout = (6.4, {"sharex": True, "height_ratios": [3, 2]}) if inclined else (4.2, {})
@@ -108,11 +109,13 @@ def unbroken(t, angle):
 
 @figure()
 def refinement(runs, axes=None, *, deformation: Deformation = "taylor_inertia"):
-    """D over time with a mark at every change of the mesh, and the number of control points (the paper's Figure 14).
+    """Taylor parameter D over time with a mark at every change of the mesh, and the number of control points
+    (Figure 14 of Maestre et al. 2017).
 
-    Of several runs of one scene, the difference of D from the first one stands below, at the times of snapshots.
+    If there are several runs of the same scene, a middle panel shows the difference of their D from D of the first run,
+    at the times that both runs recorded.
 
-    deformation: which Taylor parameter"""
+    deformation: series that is drawn as D"""
     first = runs[0]
     scenes = [[run.deck.get(name) for name in ("Flow", "Particle", "Membrane", "Tube")] for run in runs]
     compares = len(runs) > 1 and all(scene == scenes[0] for scene in scenes)
@@ -134,7 +137,7 @@ def refinement(runs, axes=None, *, deformation: Deformation = "taylor_inertia"):
                  f"{points[-1]:.0f} control points")
     if compares:
         axes[1].axhline(0, color=style.RUNS[0])
-        axes[1].set_ylabel("10³ (D − D of\nthe first)")
+        axes[1].set_ylabel("10³ (D − D of\nfirst run)")
     upper.set(ylabel="Taylor parameter D", ylim=(0, None))
     upper.legend(loc="lower right")
     lower.set(ylabel="control points", ylim=(0, None), xlabel=time_label(runs))
@@ -143,13 +146,14 @@ def refinement(runs, axes=None, *, deformation: Deformation = "taylor_inertia"):
 
 @figure()
 def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[float, float]] | None = None):
-    """Branches of steady shapes: D against the parameter, folds marked; below, the rate of the leading mode.
+    """Branches of steady shapes: Taylor parameter D against the varied parameter, and growth rate of the leading mode.
 
-    Unstable parts are broken lines. The runs have the section Continuation; the rate, and what is unstable, need the
-    section Spectrum too.
+    Circles mark folds. Dashed lines mark unstable shapes. The leading mode is the eigenmode with the largest growth
+    rate. The runs must have the section Continuation. The growth rate and the dashed lines also need the section
+    Spectrum.
 
-    series: what is drawn against the parameter
-    exact: a known point, as parameter and value (repeatable)"""
+    series: series that is drawn against the parameter
+    exact: a known point to mark: values of the parameter and of the series (repeatable)"""
     rated = all("leading_rate" in run.series for run in runs)
     heights = [3, 1.6] if rated else [3]
     figure, axes = style.panels(axes, len(heights), 1, 5.2, 3.4 + 1.8 * rated, sharex=True, height_ratios=heights)
@@ -169,7 +173,7 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
         upper.legend()
     if rated:
         axes[1].axhline(0, color=style.INK, linewidth=0.6)
-        axes[1].set_ylabel(runs[0].axis("leading_rate").replace("_", " "))
+        axes[1].set_ylabel(runs[0].axis("leading_rate").replace("leading_rate", "growth rate"))
     axes[-1].set_xlabel(runs[0].deck["Continuation"]["parameter"])
     return figure
 
@@ -185,12 +189,14 @@ def draw_branch(axes, run, x, y, color, label=None):
 
 @figure(2, 1, 5.2, 5.2, sharex=True, height_ratios=[3, 2])
 def folds(runs, upper, lower, *, series: str = "taylor_surface", exact: list[tuple[float, float]] | None = None):
-    """Folds of branches against a second parameter, such as where drops burst against their viscosity; D there below.
+    """Folds of branches of steady shapes against a second parameter, for example the critical capillary number of
+    drops against their viscosity ratio.
 
-    The runs have the key Continuation/second parameter. Each fold is printed.
+    The upper panel shows the first parameter at the fold, the lower panel the Taylor parameter D at the fold. The runs
+    must have the key Continuation/second parameter. Each fold is printed.
 
-    series: what is drawn below
-    exact: a known fold, as second parameter and value (repeatable)"""
+    series: series that is drawn in the lower panel
+    exact: a known fold to mark: values of the second and of the first parameter (repeatable)"""
     names, reached = set(), []
     for run, color in style.coloured(runs):
         found = numpy.flatnonzero(run.series["fold"] > 0)
@@ -215,20 +221,22 @@ def folds(runs, upper, lower, *, series: str = "taylor_surface", exact: list[tup
     if len(runs) > 1:
         upper.legend()
     upper.set_ylabel(parameter + " at the fold")
-    lower.set(xlabel=second, ylabel="Taylor parameter D there" if series.startswith("taylor") else runs[0].axis(series))
+    lower.set(xlabel=second,
+              ylabel="Taylor parameter D at the fold" if series.startswith("taylor") else runs[0].axis(series))
 
 
 @figure(1, 1, 5.2, 3.6)
 def growth_rates(run, axis, *, series: str = "taylor_surface", amplitude: float = 0.003, length: float = 2):
-    """Rates of the leading mode along a branch of steady shapes, and those of runs in time from the same shapes.
+    """Growth rate of the leading mode along a branch of steady shapes, compared with simulations in time.
 
-    The run has the section Spectrum. From each of its points except folds, two runs in time start with the mode added
-    with either sign; their difference grows or decays at the mode's rate, which is fitted to its later half. Complex
-    modes are left out. Runs are kept in results/growth_rates.
+    The leading mode is the eigenmode with the largest growth rate. The run must have the section Spectrum. From each of
+    its steady shapes except folds, two simulations in time start. The mode is added to the shape with opposite signs.
+    The difference of the two simulations is proportional to exp(rate x time). The rate is fitted to the second half of
+    the time. Complex modes are left out. The simulations are kept in results/growth_rates.
 
-    series: series whose difference is taken
-    amplitude: of the mode, over R_C
-    length: of the runs, in times of the rate"""
+    series: series whose difference is fitted
+    amplitude: largest displacement by the added mode, divided by R_C (radius of the sphere with the particle's volume)
+    length: duration of the simulations, times the magnitude of the rate"""
     study = Study(directory="results/growth_rates")
     deck = deck_in_time(run, study.directory)
     path = (run.value("Continuation") or {}).get("parameter", "Membrane/capillary number")
@@ -239,9 +247,9 @@ def growth_rates(run, axis, *, series: str = "taylor_surface", amplitude: float 
         compared = f", of runs in time {other:.6f}, relative difference {abs(other / one - 1):.1e}"
         log.info(f"{path} {p:.8g}: rate {one:.6f}{'' if numpy.isnan(other) else compared}")
     draw_branch(axis, run, parameter, rate, style.RUNS[0], "eigenvalue")
-    axis.plot(parameter, found, "o", color=style.RUNS[1], markerfacecolor="none", label="run in time")
+    axis.plot(parameter, found, "o", color=style.RUNS[1], markerfacecolor="none", label="simulation in time")
     axis.axhline(0, color=style.INK, linewidth=0.6)
-    style.finish(axis, xlabel=path, ylabel="rate of the leading mode" + run.unit(run.units["leading_rate"]))
+    style.finish(axis, xlabel=path, ylabel="growth rate of the leading mode" + run.unit(run.units["leading_rate"]))
 
 
 def deck_in_time(run, directory):

@@ -26,11 +26,14 @@ def field_of(shots, field):
 
 @figure(lambda runs: (1, len(runs) + 1, 4.4 * len(runs) + 4.6, 4.4))
 def shape(runs, *axes, time: float | None = None, field: str = "traction", view: tuple[float, float] = VIEW):
-    """The deformed surface coloured by its traction, and its section in the x1 x3 plane with the axis of inertia.
+    """Deformed surface, coloured by the magnitude of the traction, and its section in the x1 x3 plane.
+
+    The dashed line in the section has the direction of the longest axis of the ellipsoid of inertia. Its angle is the
+    inclination.
 
     time: simulated time of the snapshot (default: the last one)
     field: field of the snapshot that colours the surface
-    view: azimuth and elevation of the eye, in degrees"""
+    view: azimuth and elevation of the observer, in degrees"""
     shots = [run.snapshot_at(time).scaled(run) for run in runs]
     norm, colours, pattern = field_of(shots, field)
     for axis, run, shot in zip(axes, runs, shots):
@@ -45,14 +48,16 @@ def shape(runs, *axes, time: float | None = None, field: str = "traction", view:
 @figure()
 def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "traction",
            view: tuple[float, float] = VIEW):
-    """Meshes at some times, and below each the variation of a field along the section x2 = 0 (the paper's Figures 15,
-    16).
+    """Meshes at several times, and the variation of a field along the section x2 = 0 (Figures 15 and 16 of Maestre et
+    al. 2017).
 
-    The polar angle is that of the ellipse as long and as high as the section, which shows the tips of slender shapes.
+    The variation is the magnitude of the derivative of the field with respect to arc length. It is drawn in polar
+    coordinates. Before the polar angle is computed, the section is scaled to equal length and height, because otherwise
+    the tips of slender shapes would take up a small range of angles.
 
-    times: simulated times (default: the start, the middle and the end); of several runs the last of them is drawn
+    times: simulated times (default: the start, the middle and the end); if there are several runs, only the last one
     field: field whose variation is drawn
-    view: azimuth and elevation of the eye, in degrees"""
+    view: azimuth and elevation of the observer, in degrees"""
     end = runs[0].series["time"][-1]
     moments = times or [0, end / 2, end]
     pairs = [(run, moment) for run in runs for moment in (moments if len(runs) == 1 else moments[-1:])]
@@ -88,17 +93,18 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
 @figure()
 def animation(run, axes=None, *, field: str = "traction", view: tuple[float, float] = VIEW, rate: float = 8,
               width: int = 720, frame: float | None = None):
-    """The particle in motion, as a GIF: its surface with the elements and a field, and series over time below.
+    """The moving particle, as a GIF: its surface with the elements, coloured by a field, and two series over time.
 
-    D and the number of control points; of a rigid particle inclination and angular velocity; of several particles D of
-    each that deforms and the smallest gap. A frame is a saved step: `Output/interval` sets their number. The figure has
-    the FuncAnimation as `film`.
+    The series are D (the Taylor parameter) and the number of control points. For a rigid particle they are inclination
+    and angular velocity. For several particles they are D of each deformable particle and the smallest gap. Each
+    snapshot is one frame: `Output/interval` sets the number of frames. In Python, the attribute `film` of the figure is
+    the FuncAnimation of matplotlib.
 
     field: field that colours the surface
-    view: azimuth and elevation of the eye, in degrees
+    view: azimuth and elevation of the observer, in degrees
     rate: frames per second
-    width: of the animation, in pixels
-    frame: draw one picture of this time instead"""
+    width: width of the animation in pixels
+    frame: time of one frame; only this frame is drawn, as a picture"""
     expect(width >= 100 and rate > 0,
            f"--width must be at least 100 and --rate positive, but they are {width} and {rate:g}")
     shots = [shot.scaled(run) for shot in run.snapshots()]

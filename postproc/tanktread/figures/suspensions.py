@@ -17,19 +17,20 @@ from .draw import draw_pieces, section
 from .register import figure
 
 SYMBOLS = {"relative_viscosity": "μ_eff/μ", "normal_stress_difference_1": "N₁", "normal_stress_difference_2": "N₂"}
-DRIFTS = {"area": "area / its first value − 1", "volume_error": "V / V$_0$ − 1", "energy": "energy / its mean − 1",
+DRIFTS = {"area": "area / first value − 1", "volume_error": "V / V$_0$ − 1", "energy": "energy / mean − 1",
           "taylor_inertia": "D", "inclination": "inclination / degrees"}
 CA = "Particles/capsule/Membrane/capillary number"
 
 
 @figure(3, 1, 6.4, 8, sharex=True)
 def encounter(runs, path, gap, deformation, *, pair: tuple[str, str] | None = None, curve: pathlib.Path | None = None):
-    """Two particles that meet: the path of one past the other, the smallest gap, and how they deform.
+    """Two particles that pass each other: their relative path, the smallest gap, and their Taylor parameters D.
 
-    Drawn against dx; dx, dz are x1 and x3 of the first centroid less those of the second one, over R_C.
+    All panels are functions of dx. dx and dz are the components along x1 and x3 of the vector from the centroid of the
+    second particle to that of the first one, divided by R_C (radius of the sphere with the volume of a particle).
 
     pair: names of the two particles (default: the first two)
-    curve: a path of the literature, a CSV file with columns dx, dz over R_C"""
+    curve: file of a published path: CSV with the columns dx and dz, divided by R_C"""
     for run, color in style.coloured(runs):
         names = pair or run.particles[:2]
         expect(len(names) == 2, f"{run.directory}: an encounter is of two particles, and this run has one")
@@ -64,10 +65,12 @@ def encounter(runs, path, gap, deformation, *, pair: tuple[str, str] | None = No
 
 @figure()
 def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = None):
-    """Particles beside a plane wall: sections at several times, the gap, and the centroid's velocity along and away.
+    """Particles near a plane wall: sections at several times, the gap, and the velocities away from and along the wall.
+
+    The gap is divided by R_C (radius of the sphere with the particle's volume). The velocity is that of the centroid.
 
     times: number of times that are drawn
-    curve: a gap over time to draw beside the first one, a CSV file in the units of the figure"""
+    curve: file of a reference for the gap over time: CSV with two columns in the units of the figure"""
     figure = style.canvas(axes, 7.2, 2.6 * len(runs) + 2.8)
     grid = figure.add_gridspec(len(runs) + 1, 2, height_ratios=[1] * len(runs) + [1.1])
     gap, speed = (figure.add_subplot(grid[-1, k]) for k in (0, 1))
@@ -82,10 +85,10 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
         log.info(f"{run.name}: gap from {film[0]:.6g} to {film[-1]:.6g} R_C; "
                  f"velocity away from the wall {away[-1]:.5g}, along it {along[-1]:.5g}")
     if curve:
-        gap.plot(*table(curve).T[:2], style.MARKS[0], color=style.INK, markersize=3, label="exact")
+        gap.plot(*table(curve).T[:2], style.MARKS[0], color=style.INK, markersize=3, label="reference")
     speed.axhline(0, color=style.FAINT, linewidth=0.8)
     style.finish(gap, yscale="log", xlabel=time_label(runs), ylabel="gap / R$_C$")
-    style.finish(speed, xlabel=time_label(runs), ylabel=runs[0].label("velocity", "centroid's {}"))
+    style.finish(speed, xlabel=time_label(runs), ylabel=runs[0].label("velocity", "{} of the centroid"))
     return figure
 
 
@@ -112,8 +115,8 @@ def sections(axis, run, moments):
         axis.plot([], [], color=colour, label=f"{shot.time * run.rate[0]:.3g}")
     axis.axhspan(-0.15, 0, color=style.FAINT, alpha=0.5, linewidth=0)
     axis.autoscale_view()
-    axis.set(ylim=(-0.15, None), aspect="equal", title=f"{run.name}: section across the wall at several times",
-             xlabel="along the wall / R$_C$", ylabel="above it / R$_C$")
+    axis.set(ylim=(-0.15, None), aspect="equal", title=f"{run.name}: section normal to the wall at several times",
+             xlabel="along the wall / R$_C$", ylabel="above the wall / R$_C$")
     axis.legend(ncols=2, fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))
 
 
@@ -121,8 +124,10 @@ def sections(axis, run, moments):
 def rheology(runs, upper, lower):
     """Intrinsic viscosity and normal stress differences of a dilute suspension in simple shear, over time.
 
-    [η] = S_13/(μ γ̇ V), N1 = (S_11 − S_33)/(μ γ̇ V), N2 = (S_33 − S_22)/(μ γ̇ V) from the stresslet S, per volume of
-    particles in a volume of suspension; flow along x1, its gradient along x3. A rigid sphere has [η] = 5/2."""
+    They follow from the stresslet S of one particle of volume V: [η] = S_13/(μ γ̇ V), N1 = (S_11 − S_33)/(μ γ̇ V) and
+    N2 = (S_33 − S_22)/(μ γ̇ V). The flow is along x1 and its gradient along x3. γ̇ is the shear rate, and μ is the
+    viscosity of the outer fluid. The normal stress differences of a dilute suspension are N1 and N2 times μ γ̇ φ, where
+    φ is the volume fraction of the particles. A rigid sphere has [η] = 5/2."""
     for run, color in style.coloured(runs):
         viscosity, n1, n2 = stresses(run)
         upper.plot(run.time, viscosity, color=color, label=run.name)
@@ -147,13 +152,14 @@ def stresses(run):
 
 @figure(2, 1, 6.4, 6.4, sharex=True)
 def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
-    """Effective viscosity and normal stress differences of a lattice of particles over strain, with their averages.
+    """Effective viscosity and normal stress differences of a periodic suspension against strain, with their averages.
 
-    Averages have a standard error by blocks: the spread of the means of equal parts of the strain, over the root of
-    their number.
+    Dotted lines are averages over the strain. They are printed with standard errors: the strain is divided into equal
+    blocks, and the standard error is the standard deviation of the block averages divided by the square root of the
+    number of blocks.
 
     from_: strain at which averages begin
-    blocks: number of parts of an average"""
+    blocks: number of blocks for the standard errors"""
     for run, color in style.coloured(runs):
         strain, words, label = run.time, [], f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
         for (name, symbol), axis, line in zip(SYMBOLS.items(), (upper, lower, lower), ("-", "-", "--")):
@@ -182,16 +188,18 @@ def average(strain, values, first, blocks):
 @figure(2, 1, 6.4, 7.2, sharex=True)
 def viscosity(study, upper, lower, *, single: str = "inputs/shear_neo_hookean.yaml", from_: float = 4, blocks: int = 4,
               jobs: int = 1):
-    """Relative viscosity of a sheared suspension against its volume fraction, with standard errors by blocks.
+    """Relative viscosity of a sheared suspension against its volume fraction, with standard errors.
 
-    A curve for each capillary number, from a sweep of runs that are kept in results/<study>. Below it stands
-    (μ_eff/μ - 1)/φ, and at φ = 0 the intrinsic viscosity of one capsule, to which the straight line should go. The
-    errors do not contain what another start or more particles in the cell would change.
+    There is one curve for each capillary number. The runs are those of a sweep and are kept in results/<study>. The
+    lower panel shows (μ_eff/μ − 1)/φ, where μ_eff/μ is the relative viscosity and φ the volume fraction. Its value at
+    φ = 0 is the intrinsic viscosity of a single capsule. The dotted lines of the upper panel are this dilute limit.
+    Standard errors come from averages over blocks of the strain. They do not include the effect of other initial
+    positions or of more particles in the periodic cell.
 
-    single: deck of one capsule
+    single: deck of a single capsule
     from_: strain at which averages begin
-    blocks: number of parts of an average
-    jobs: runs at a time"""
+    blocks: number of blocks for the standard errors
+    jobs: number of simultaneous runs"""
     directory = pathlib.Path("results") / pathlib.Path(study).stem
     made = Study(directory=directory / "runs", jobs=jobs)
     runs = Sweep(study, made)
@@ -223,7 +231,7 @@ def viscosity(study, upper, lower, *, single: str = "inputs/shear_neo_hookean.ya
             log.info(f"  per volume fraction, extrapolated to 0: {limit:.3f} ± {covariance[1, 1] ** 0.5:.3f}; "
                      f"one capsule: {alone:.4f}")
     style.finish(upper, ylabel="relative viscosity μ_eff/μ")
-    lower.set(ylabel="(μ_eff/μ − 1)/φ; at 0: one capsule", xlabel="volume fraction φ", xlim=(-0.005, None))
+    lower.set(ylabel="(μ_eff/μ − 1)/φ; φ = 0: one capsule", xlabel="volume fraction φ", xlim=(-0.005, None))
 
 
 def averages(outcome, first, blocks):
@@ -244,12 +252,13 @@ def averages(outcome, first, blocks):
 
 @figure(len(DRIFTS), 1, 6.4, 7.6, sharex=True)
 def drift(run, *axes, from_: int = 10):
-    """Whether a run over many turns of a membrane drifts: series against the turns, and the mean of each turn.
+    """Drift in a run over many revolutions of the membrane: series, and their average over each revolution.
 
-    A turn is one of `phase`. A straight line through the means gives the change over all turns from --from on, with its
-    standard error. If the flow has a history that ends at rest, the steps in which the energy then rises are counted.
+    A revolution is 360 degrees of the series `phase`. A straight line is fitted to the averages, from the revolution
+    --from on. The change along this line is printed with its standard error. If the amplitude of the flow
+    (Flow/history) ends at 0, the steps after that in which the energy rises are counted.
 
-    from_: first turn of the straight line"""
+    from_: first revolution of the straight line"""
     expect(from_ >= 0, f"--from needs a turn, but is given {from_}")
     stop, rest = flow_of(run)
     flows = run.series["time"] <= stop
@@ -271,7 +280,7 @@ def drift(run, *axes, from_: int = 10):
         axis.plot(phase / 360, values, color=style.FAINT, linewidth=0.3)
         axis.plot(numpy.arange(len(means)) + 0.5, means, color=style.RUNS[0], linewidth=1)
         axis.set_ylabel(label, fontsize=8)
-    axes[-1].set_xlabel("turns of the membrane")
+    axes[-1].set_xlabel("revolutions of the membrane")
     energy = run.series["energy"][run.series["time"] >= rest]
     if len(energy) > 1:
         log.info(f"without flow the energy goes from {energy[0]:.6g} to {energy[-1]:.6g} in {len(energy)} steps; "

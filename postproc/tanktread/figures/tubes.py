@@ -15,14 +15,15 @@ FLOOR = 1e-4  # smallest distance of the centroid from the velocity maximum that
 TIMES = [0.0, 0.5, 1.0, 2.0, 5.0, 20.0]
 PANELS = {"migration_velocity": "migration velocity / vₘ", "velocity_x1": "velocity along the tube / vₘ",
           "tank_treading_velocity": "tank-treading velocity / vₘ",
-          "disturbed_pressure_drop": "disturbed pressure drop / (μ vₘ/R$_T$)"}
+          "disturbed_pressure_drop": "additional pressure drop / (μ vₘ/R$_T$)"}
 ACROSS, UP = "x₂ / R$_T$", "x₃ / R$_T$"  # labels of axes
 
 
 @figure(lambda runs: (1, len(runs), 3.9 * len(runs) + 0.9, 4.0))
 def duct(runs, *axes):
-    """The section of the tube with the velocity of the empty tube, and the path of the particle's centroid across
-    it."""
+    """Cross-section of a tube with the velocity of the empty tube, and the path of the particle's centroid in it.
+
+    R_T is the radius of the circle with the area of the cross-section."""
     ducts = [duct_of(run) for run in runs]
     largest = [d["maximum"][2] / d["mean_velocity"] for d in ducts]
     outlines = numpy.concatenate([d["outline"] for d in ducts])
@@ -34,10 +35,10 @@ def duct(runs, *axes):
         if "centroid_x2" in run.series:
             draw_path(axis, run, d, style.RUNS[1], 4, linewidth=1.6, label="path of the centroid")
         axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-        axis.set_title(f"{run.name}: largest {most:.4f}", pad=10)
+        axis.set_title(f"{run.name}: largest velocity {most:.4f}", pad=10)
     axes[0].set_ylabel(UP)
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, handlelength=1.5)
-    axes[0].figure.colorbar(filled, ax=list(axes), label="velocity of the empty tube over its mean", shrink=0.8,
+    axes[0].figure.colorbar(filled, ax=list(axes), label="velocity of the empty tube / its mean", shrink=0.8,
                             ticks=levels[:-1:2], spacing="proportional")
 
 
@@ -78,7 +79,9 @@ def draw_path(axis, run, d, color, size, **pen):
 
 @figure()
 def tube(runs, axes=None, *, times: list[float] = TIMES):
-    """Particles in tubes: shapes over time in perspective and in two sections, one row per run.
+    """Particles in tubes: their shapes at several times in perspective and in two sections, for each run.
+
+    R_T is the radius of the circle with the area of the tube's cross-section, vₘ the mean velocity of the empty tube.
 
     times: simulated times of the shapes"""
     figure = style.canvas(axes, 11.5, 4.4 * len(runs))
@@ -134,7 +137,10 @@ def draw_tube_sections(run, d, shaded, along, across):
 
 @figure(2, 3, 12.5, 6.6)
 def tube_motion(runs, paths, distance, *others):
-    """How particles move in tubes: path across the tube, migration, velocity, tank-treading and pressure drop."""
+    """Particles in tubes over time: path across the tube, migration, velocity, tank-treading and pressure drop.
+
+    R_T is the radius of the circle with the area of the tube's cross-section, vₘ the mean velocity of the empty tube.
+    The pressure drop is the one that the particle adds to that of the empty tube."""
     for run, colour in style.coloured(runs):
         d = duct_of(run)
         speed, maximum = d["mean_velocity"], d["maximum"][:2]
@@ -148,19 +154,20 @@ def tube_motion(runs, paths, distance, *others):
             axis.plot(run.time[1:], run.series[name][1:] / scale, color=colour)
             axis.set(title=label, xlabel="t vₘ / R$_T$")
     style.plt.setp(others, xlim=(0, None))
-    paths.set(aspect="equal", title="paths of the centroid; + largest velocity", xlabel=ACROSS, ylabel=UP)
+    paths.set(aspect="equal", title="paths of the centroid (+: largest velocity)", xlabel=ACROSS, ylabel=UP)
     paths.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
-    distance.set(ylim=(FLOOR, None), title="distance from the largest velocity / R$_T$", xlabel="t vₘ / R$_T$")
+    distance.set(ylim=(FLOOR, None), title="distance from the point of largest velocity / R$_T$", xlabel="t vₘ / R$_T$")
 
 
 @figure(5, 1, 10.5, 9.5, mosaic="AA;BC;DE", height_ratios=[1.1, 1, 1])
 def channel(run, cut, extents, velocity, pressure, wall, *, shapes: int = 7, across: Literal[2, 3] = 2):
-    """A channel cut open with its particle at several times; extents, velocity and pressure drop along the way.
+    """Section of a channel with its particle at several times; extents, velocity and pressure drop along the channel.
 
-    Also the wall's shear stress and the velocity on the centre line of the empty channel.
+    The velocity panel also shows the velocity of the empty channel on its centre line. The last panel shows the shear
+    stress on the wall of the empty channel.
 
-    shapes: number of times, evenly along the particle's way
-    across: the section x2 = 0 or x3 = 0 is drawn, of a bend x3 = 0"""
+    shapes: number of times; the particle is drawn at equal distances along its path
+    across: the section is normal to x2 (2) or x3 (3); that of a bend is always normal to x3"""
     expect(run.value("Channel"), f"{run.directory} is not in a channel")
     c = arrays_of(run.directory / "channel.h5")  # centre (n, 3), s (n,), wall (4, n, 3) and others
     s, way = run.series, way_along(run, c)
@@ -174,12 +181,12 @@ def channel(run, cut, extents, velocity, pressure, wall, *, shapes: int = 7, acr
     velocity.plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--",
                   label="on the centre line, empty channel")
     style.finish(velocity, xlim=(way.min(), way.max()), xlabel=label, title="velocity" + run.in_units("length/time"))
-    pressure.plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="reciprocal theorem")
+    pressure.plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="from the reciprocal theorem")
     if "pressure_drop_by_flux" in s:
-        pressure.plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":", label="by the flow rate")
+        pressure.plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":", label="from the flow rate")
     stress = run.in_units("force/length^2")
     style.finish(pressure, xlabel=label,
-                 title=f"pressure drop that the particle adds{stress} (empty channel: {c['pressure_drop']:.5g})")
+                 title=f"pressure drop added by the particle{stress} (empty channel: {c['pressure_drop']:.5g})")
     wall.plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
     wall.set(xlabel="arc length along the centre line" + run.in_units("length"),
              title="shear stress on the wall of the empty channel" + stress)
@@ -215,5 +222,5 @@ def cut_open(axis, run, c, way, n, across):
     low, high = shown.min(0), shown.max(0) + (0.1 if bent else 0)
     axis.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1] - 0.1, high[1]) if bent else (None, None),
              xlabel="x₁" + run.in_units("length"), ylabel=style.AXES[up] + run.in_units("length"),
-             title=f"{run.name}: cut open at x{across + 1} = centroid; times "
+             title=f"{run.name}: section x{across + 1} = centroid; times "
                    f"{'inside' if bent else 'below'}{run.in_units('time')}")

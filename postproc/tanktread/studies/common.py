@@ -27,14 +27,16 @@ def edge(holds, low, high, factor=1.05):
 
 def arguments(parser, results, limit=300, jobs=None):
     """Adds the options that all studies share to a parser. Adds `--jobs` only if a default is given."""
-    parser.add_argument("--program", default=PROGRAM, type=pathlib.Path, help="default: %(default)s")
+    parser.add_argument("--program", default=PROGRAM, type=pathlib.Path,
+                        help="path of the program (default: %(default)s)")
     parser.add_argument("--output", default=results, type=pathlib.Path, metavar="DIR",
-                        help="of pictures, tables and, under runs/, results (default: %(default)s)")
-    parser.add_argument("--fresh", action="store_true", help="make every run anew, also those that are there")
+                        help="directory of figures and tables, and of the runs in runs/ (default: %(default)s)")
+    parser.add_argument("--fresh", action="store_true", help="repeat runs that exist already")
     parser.add_argument("--limit", type=float, default=limit, metavar="SECONDS",
-                        help="of processor time that one run may take (default: %(default)s)")
+                        help="largest processor time of a run (default: %(default)s)" if limit else
+                        "largest processor time of a run (default: no limit)")
     if jobs:
-        parser.add_argument("--jobs", type=int, default=jobs, help="runs at a time (default: %(default)s)")
+        parser.add_argument("--jobs", type=int, default=jobs, help="number of simultaneous runs (default: %(default)s)")
 
 
 def study(parsed):

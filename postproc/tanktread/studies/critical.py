@@ -1,14 +1,18 @@
-"""The critical value of a key, above which a particle passes a constriction and below which it stays, by bisection.
+"""Finds by bisection the critical value of a key above which a particle passes a constriction and below which it stays.
 
     tanktread-critical inputs/capsule_stuck.yaml --between 0.006 0.0063 --past 0.5
     tanktread-critical inputs/capsule_stuck.yaml --between 0.006 0.0063 --past 0.5 --set 'Particle/viscosity ratio=5'
 
-A run passes if it ends beyond the position x1 = --past. It stays if, over the last ten channel radii divided by the
-mean velocity, its centroid went on average slower than a thousandth of that velocity, and in the second half of them no
-faster along the flow than in the first. Faster by a tenth of that thousandth, or by the standard error of the
-difference, counts as no faster: a particle at rest moves with the errors of its integrals. The standard error follows
-from the deviations of the centroid from the parabola through its positions. A run that does neither is made again for
-twice the time, and once more; a run that still does neither ends the search with a message.
+The particle passes if the run ends with the centroid beyond x1 = --past.
+
+Whether it stays is decided from the last part of the run, which is 10 R/V long. R is the radius of the channel and V
+the mean velocity. The particle stays if two conditions hold for its velocity along the channel. First, the average is
+less than 0.001 V in magnitude. Second, the average in the second half of this time exceeds that in the first half by
+less than 0.0001 V plus the standard error of this difference. The allowance is needed because quadrature errors move a
+particle at rest. The standard error follows from the deviations of the positions from a fitted parabola.
+
+If the particle neither passes nor stays, the run is repeated with twice the final time, at most twice. If this does not
+decide either, the search ends with a message.
 """
 
 import numpy
@@ -62,15 +66,17 @@ def stays_at(parsed, study, value):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("deck", help="the deck of a particle in a channel")
-    parser.add_argument("--key", default="Flow/mean velocity", help="the key (default: %(default)s)")
+    parser.add_argument("deck", help="deck of a particle in a channel")
+    parser.add_argument("--key", default="Flow/mean velocity",
+                        help="key whose critical value is sought (default: %(default)s)")
     parser.add_argument("--between", nargs=2, type=float, required=True, metavar=("LOW", "HIGH"),
-                        help="values of the key, at the first of which it stays")
+                        help="values of the key: the particle stays at LOW and passes at HIGH")
     parser.add_argument("--within", type=float, default=0.02, metavar="PART",
-                        help="of the value, to which it is found (default: %(default)s)")
-    parser.add_argument("--past", type=float, required=True, metavar="X1", help="where it has passed")
+                        help="relative accuracy of the critical value (default: %(default)s)")
+    parser.add_argument("--past", type=float, required=True, metavar="X1",
+                        help="the particle has passed if its centroid is beyond x1 = X1")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
-                        help="another key of all runs; may be there many times")
+                        help="sets another key in all runs (repeatable)")
     common.arguments(parser, "results/critical", limit=None)
     parsed = parser.parse_args()
     low, high = parsed.between

@@ -1,36 +1,43 @@
-"""From an experiment to moduli with error bars: unknown keys of a deck by weighted least squares from outlines,
-lengths, velocities or curves.
+"""Fits unknown keys of a deck, such as the moduli of a membrane, to an experiment by weighted least squares.
 
     tanktread-fit inputs/studies/experiment.yaml      # results/experiment/fit.txt, fit.yaml, fit.png
 
-An experiment is a YAML file: `deck` (one, or several that overlay each other), `set` (keys of all runs), `unknown`,
-`laws` and `experiments`; inputs/studies/experiment.yaml is an example.
+An experiment is described by a YAML file; inputs/studies/experiment.yaml is an example. Its keys are `deck` (one deck,
+or several of which later ones override earlier ones), `set` (settings of all runs), `unknown`, `laws`, `experiments`
+and `next`:
 
     unknown: {Membrane/shear modulus: {start: 1}}
-        from, to: bounds; known, error: a value known beforehand; spacing: linear for what may be negative
+        a key to fit, and its start value. Optional: `from` and `to` (bounds); `known` and `error` (a value known
+        beforehand and its standard error); `spacing: linear` (for a quantity that may be negative)
     laws: {skalak: {Membrane/law: Skalak, unknown: {…}}}
-        each is fitted and compared with the others; its own unknowns are added or start elsewhere
+        the settings of each law. All laws are fitted, and the fits are compared. `unknown` adds unknowns for this law,
+        or changes their start values
     experiments: {slow: {set: {…}, unknown: {…}, data: [datum, …]}}
-        each is a run, with unknowns of its own. Values may have units if the deck has the section Units;
-        start, from, to, known and what is found are numbers in the deck's units
+        each experiment is one run. `unknown` lists unknowns of this experiment only. Values in `set` may have units if
+        the deck has the section Units. start, from, to, known and the results are numbers in the deck's units
     datum: {outline: points.csv, error: 0.5, scale: 0.01}
-        the edge as seen along x2: columns x1, x3 in the picture's unit, its error in that unit (or a third column, as
-        tanktread-outline writes it); the flow goes to the right; plane: [x1, x3]; scale: the deck's length per unit;
-        scale error: its relative error, or free; at: time of the snapshot (default: the last)
+        a file of points on the outline as seen along x2, with the columns x1, x3 in the unit of the picture. The flow
+        goes to the right. error: standard error of a point in this unit (or a third column, as tanktread-outline
+        writes it). scale: length in the deck's unit per unit of the picture. Optional: `plane: [x1, x3]` (coordinates
+        of the two columns); `scale error` (relative error of the scale, or free); `at` (time of the snapshot, default:
+        the last); `open: true` (the outline need not close)
     datum: {series: velocity_x1, value: 1.2, error: 0.01}
-        the last value of a series, or at: time
+        a value at the end of a series. Optional: `at` (another time)
     datum: {series: taylor_inertia, curve: relaxation.csv}
-        columns time, value and, if `error` does not give it, error; over: length_x2 divides by another series;
-        origin: free if the curve's time does not start with the run's
+        a file with the columns time, value and, if `error` is not given, standard error. Optional: `over: length_x2`
+        (the data are the ratio of two series); `origin: free` (the curve's time has an unknown offset from the run's)
     next: {Flow/mean velocity: [1, 2, 4]}
-        settings of a further experiment with data like the first one's: which would determine most
+        settings of possible further experiments with the same kind of data as the first one. The standard errors that
+        each of them would give are printed
 
-The position of an outline in its picture is free. Derivatives are differences of runs, made side by side: one per step
-for each unknown key and experiment, none for positions and scales. Runs are kept and found again if all their keys are
-equal, so it is best to leave a `start` as it was. Standard errors follow from those of the data and, if the deck
-requests an accuracy, from the estimated errors of the series. A quantity known with an error belongs under `unknown`,
-such as Flow/viscosity: {known: 0.97, error: 0.01}. If chi square is too large for the errors of the data, errors that
-the residuals give are printed too; a mesh that is too coarse for the data is the first suspect.
+The position of an outline in its picture is always fitted. Derivatives are finite differences: each step of the
+iteration makes one run for each pair of an unknown and an experiment. Positions and scales need no runs. Runs are kept,
+and they are found again if all their keys are equal. Therefore it is best not to change a `start`.
+
+Standard errors follow from the errors of the data and, if the deck requests an accuracy, from the estimated errors of
+the series. If a key of the deck is a measured value with an error, give it under `unknown`, for example
+Flow/viscosity: {known: 0.97, error: 0.01}. If chi square is too large for the errors of the data, standard errors that
+follow from the residuals are printed too. The most likely cause is a mesh that is too coarse for the data.
 """
 
 import os
@@ -95,9 +102,9 @@ def run(path, directory=None, jobs=None, laws=None):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("experiment", help="the experiment, a YAML file")
-    parser.add_argument("--output", metavar="DIR", help="where results go (default: results/<experiment>)")
-    parser.add_argument("--jobs", type=int, help="runs at a time (default: the number of cores)")
+    parser.add_argument("experiment", help="YAML file of the experiment")
+    parser.add_argument("--output", metavar="DIR", help="directory of the results (default: results/<experiment>)")
+    parser.add_argument("--jobs", type=int, help="number of simultaneous runs (default: the number of cores)")
     parser.add_argument("--law", nargs="+", metavar="NAME", help="fit these laws only")
     arguments = parser.parse_args()
     run(arguments.experiment, arguments.output, arguments.jobs, arguments.law)

@@ -157,7 +157,7 @@ def draw(fits, axes=None):
         data.tick_params(axis="x", rotation=60, labelsize=7)
     ylabel = " or ".join(dict.fromkeys(" / ".join(datum.series) for datum in series))
     data.set(ylabel=ylabel, title=f"data and {best.law}")
-    residual.set(title="residuals over their errors", xlabel="number of the datum")
+    residual.set(title="residuals / standard errors", xlabel="number of the datum")
     residual.axhline(0, color=style.FAINT, linewidth=0.8)
     residual.xaxis.get_major_locator().set_params(integer=True)
     for axis, (i, j) in zip(axes[2:], pairs):

@@ -1,13 +1,20 @@
-"""The edge of a particle in a picture (PNG), to a part of a pixel, and the standard error of a point: points for
-tanktread-fit, in pixels, x1 to the right and x3 up from the upper left corner (so below 0; a fit does not mind).
+"""Finds the outline of a particle in a picture (PNG) with subpixel accuracy, and the standard error of its points.
 
     tanktread-outline picture.png -o profile.csv --overlay check.png
 
-The particle is darker or brighter than its surroundings and lies within the picture; of several the largest is taken.
-On rays from its middle the edge is where a sharp step has the same area below it as the picture has on average over all
-rays, which blur does not move. Each ray's own edge is found by least squares with that average profile. A point is the
-mean of the rays around it, so the errors of points are independent. Blur of variance s moves an edge by s/2 times its
-curvature to the inner side of the bend; points are moved back.
+The result is a table of points for tanktread-fit, in pixels. The origin is the upper left corner of the picture. x1
+points to the right and x3 up, so that x3 is negative; the fit is not affected.
+
+The particle must be darker or brighter than its surroundings, and lie completely within the picture. If there are
+several particles, the largest one is taken. The edge is found on rays from the centre of the particle:
+
+1. The brightness profile is averaged over all rays. The average edge is the position of the sharp step that encloses
+   the same integral of brightness, because blur does not change this integral.
+2. The profile of each ray is fitted by the average profile, shifted along the ray, by least squares.
+3. Each point of the outline is averaged from the neighbouring rays. No ray is used twice, so that the errors of the
+   points are independent.
+4. Blur of variance s moves a curved edge towards its centre of curvature by s/2 times the curvature. This shift is
+   corrected.
 """
 
 import numpy
@@ -118,11 +125,11 @@ def averaged(radius, each):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("picture", help="a PNG")
+    parser.add_argument("picture", help="PNG file")
     parser.add_argument("-o", "--output", default="outline.csv", metavar="FILE",
-                        help="the points (default: %(default)s)")
-    parser.add_argument("--points", type=int, help="how many (default: 60, or in a small picture fewer)")
-    parser.add_argument("--overlay", metavar="FILE", help="a picture with the points on it, to look at")
+                        help="table of the points (default: %(default)s)")
+    parser.add_argument("--points", type=int, help="number of points (default: 60, fewer for a small particle)")
+    parser.add_argument("--overlay", metavar="FILE", help="writes the picture with the points drawn on it, as a check")
     arguments = parser.parse_args()
     picture = grey(arguments.picture)
     expect(numpy.ptp(picture) > 0, f"{arguments.picture}: its brightness is the same everywhere")

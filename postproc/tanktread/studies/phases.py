@@ -1,22 +1,34 @@
-"""A phase diagram of a particle: below which value of a key it moves in one way and above which in another, by
-bisection, over another key.
+"""Computes a phase diagram of a particle: the border between two kinds of motion, as a function of a second key.
 
     tanktread-phases inputs/studies/red_cell_phases.yaml      # results/phases/borders.csv, runs.csv and phases.png
     tanktread-phases inputs/studies/red_cell_capillary.yaml --output results/capillary
 
-A study is a small YAML file: `deck`; `motion`, `shear` or `capillary`; `set`, keys of all runs; `along`, the key that
-is bisected: {key, from, to, within: a factor, to which a border is found}; `across`, {another key: its values};
-`curves`, {name: keys}, where a list as long as that of `across` goes with it, and `across` may have other values;
-`begin`, the share of a run that is left out (0.4); `literature`, {name: rows of a value across, the lowest and the
-highest one along}.
+For each value of the second key, bisection finds the value of the first key at which the motion changes.
 
-In shear the shape is followed by `inclination`, the membrane by `phase`. A run tumbles if its shape turns by a right
-angle or more after `begin`, whether its membrane goes around on it (then it does both in turn) or not. It treads if
-only its membrane goes half around. A run that does neither ends its border with a message. In a capillary a cell is
-askew by sqrt(d^2 + D^2 sin^2 2i), d the distance of its centroid from the axis over R_C, D its Taylor parameter, i its
-inclination, which is 0 for shapes that are symmetric about the axis. After `begin` a run slips if that is beyond 0.1,
-or if its largest value in the last third is beyond 0.005 and half as much again as in the first. Otherwise it is a
-parachute. The particle starts as the deck states; where both motions are stable, a border is that of this start.
+A study is a YAML file with the keys
+
+    deck         the deck
+    motion       the motions that are distinguished, `shear` or `capillary`, see below
+    set          settings of all runs
+    along        the first key, {key, from, to, within}. within: factor to which a border is found, such as 1.05
+    across       the second key, {key: its values}
+    curves       {name: settings}. A setting may be a list with one value per value of `across`. `across` may have other
+                 values in a curve
+    begin        initial fraction of a run that is not analysed (default: 0.4)
+    literature   {name: rows}, published borders. A row has the value across, the lowest and the highest value along
+
+In `shear` the rotation of the shape is the change of `inclination`, and the rotation of the membrane relative to the
+shape follows from `phase`. A run tumbles if its shape rotates by 90 degrees or more after `begin`. If its membrane also
+rotates by 180 degrees or more, the motion is called `both`, and it counts as tumbling. A run treads (tank-treads) if
+only its membrane rotates by 180 degrees or more. If neither happens, the search for this border ends with a message.
+
+In a `capillary` the asymmetry of a cell is sqrt(d^2 + D^2 sin^2 2i). d is the distance of its centroid from the axis
+divided by R_C (radius of the sphere with the particle's volume), D its Taylor parameter and i its inclination. The
+asymmetry is 0 for shapes that are symmetric about the axis. After `begin` a run slips (the cell is a slipper) if the
+asymmetry exceeds 0.1, or if its largest value in the last third of the time exceeds 0.005 and 1.5 times its largest
+value in the first third. Otherwise the cell is a parachute.
+
+The initial state is that of the deck. If both motions are stable, the border depends on the initial state.
 """
 
 import collections
@@ -68,8 +80,10 @@ def in_capillary(series, begin):
     return ("slips" if slips else "parachute"), first, last
 
 
-MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear, ("half turns of the shape", "of the membrane")),
-           "capillary": Kind(("slips",), "parachute", in_capillary, ("askew before", "at the end"))}
+MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear,
+                         ("half turns of the shape", "half turns of the membrane")),
+           "capillary": Kind(("slips",), "parachute", in_capillary,
+                             ("asymmetry in the first third", "asymmetry in the last third"))}
 
 
 class Diagram:
@@ -200,7 +214,7 @@ class Diagram:
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("study", help="the study, a YAML file")
+    parser.add_argument("study", help="YAML file of the study")
     common.arguments(parser, "results/phases", limit=None)
     parsed = parser.parse_args()
     diagram = Diagram(parsed.study, common.study(parsed))

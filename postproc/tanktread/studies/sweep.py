@@ -1,18 +1,26 @@
-"""Many runs of a deck over values of its keys, side by side and resumable, with a table of results and plots of it.
+"""Runs a deck for many values of its keys, several runs at a time, and writes and plots a table of results.
 
     tanktread-sweep inputs/studies/study.yaml                                        # results/study/table.csv, table.h5
     tanktread-sweep inputs/studies/study.yaml --plot D 'Membrane/capillary number'   # and results/study/D.png
-    tanktread-sweep inputs/studies/study.yaml --plot 'D(t)' time                     # whole series, a line per run
+    tanktread-sweep inputs/studies/study.yaml --plot 'D(t)' time                     # whole series, one line per run
 
-A study is a small YAML file: `deck` (one, or several that overlay each other), `set` (keys of all runs), and the keys
-that vary: `grid` (every combination), `together` (lists side by side), `random` (number, seed, keys). If several of
-these are given, their combinations are run. The values of a key are a list, or {from, to, number, spacing: linear |
-logarithmic}; those of a random key {from, to, spacing}, or a list to draw from. `record` names the columns: the name of
-a series for its last value, {series, take: last | smallest | largest | mean | all}, or {series, at: time}; a mean is
-over time. inputs/studies/study.yaml is an example.
+A study is a YAML file; inputs/studies/study.yaml is an example. Its keys are
 
-A run that was made is not made again, even if the study has changed. One that was interrupted is resumed. One that
-fails has a row with its message.
+    deck       the deck, or several decks of which later ones override earlier ones
+    set        settings of all runs
+    grid       {key: values}. All combinations of the values are run
+    together   {key: values}. The lists have the same length: the first run takes the first value of each, and so on
+    random     {number, seed, keys: {key: values}}. The values of `number` runs are drawn at random
+    record     {column: series}. The columns of the table, see below
+
+If more than one of `grid`, `together` and `random` is given, all their combinations are run. Values are a list, or
+{from, to, number, spacing: linear | logarithmic}. Random values are drawn from a list or from a range {from, to,
+spacing}. A column of `record` is the name of a series, which stands for its last value, or {series, take: last |
+smallest | largest | mean | all}, or {series, at: time}. The mean is an average over time. `record` may also be a list
+of series; their last values are the columns.
+
+A run that is complete is not repeated, even if the study has changed. A run that was interrupted is resumed. The row of
+a run that fails contains its error message.
 """
 
 import collections
@@ -236,17 +244,17 @@ def run(path, directory=None, jobs=None, fresh=False):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("study", help="the study, a YAML file")
+    parser.add_argument("study", help="YAML file of the study")
     parser.add_argument("--output", metavar="DIR",
-                        help="of the table and, under runs/, of results (default: results/<study>)")
+                        help="directory of the table, and of the runs in runs/ (default: results/<study>)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
-                        help="runs at a time (default: the number of cores)")
-    parser.add_argument("--fresh", action="store_true", help="make every run anew, also those that are there")
-    parser.add_argument("--list", action="store_true", help="print the settings of the runs, and make none")
+                        help="number of simultaneous runs (default: the number of cores)")
+    parser.add_argument("--fresh", action="store_true", help="repeat runs that exist already")
+    parser.add_argument("--list", action="store_true", help="print the settings of the runs without making them")
     parser.add_argument("--plot", nargs=2, metavar=("COLUMN", "KEY"),
-                        help="draw a column of the table against a key, or one column against another")
+                        help="plot a column of the table against a key or against another column")
     parser.add_argument("-o", "--picture", type=pathlib.Path, metavar="FILE",
-                        help="the picture (default: <COLUMN>.png beside the table)")
+                        help="file of the plot (default: <COLUMN>.png next to the table)")
     arguments = parser.parse_args()
     expect(arguments.jobs > 0, "--jobs must be at least 1")
     if arguments.list:
