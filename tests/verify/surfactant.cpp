@@ -39,7 +39,8 @@ struct Laden {
           settings.insert(settings.end(), {"Membrane/law=surface tension", "Time/scheme=rkc2", "Quadrature/tolerance=1e-7"});
           return settings;
         }()),
-        surfactant(scene.body().space, scene.body().rest, *scene.scene.surfactant, scene.scene.modulus(), diffusivity),
+        surfactant(scene.body().space, scene.body().rest, *scene.scene.particles.front().surfactant, scene.scene.first().modulus(),
+                   diffusivity),
         motion(*scene.capsule, {{0, &surfactant}}) {}
 
   const spline::Space& space() const { return scene.body().space; }

@@ -9,10 +9,10 @@ namespace tanktread {
 namespace {
 
 struct Told {
+  Scene whole;
   ParticleScene scene;
   Warnings warnings{scene};
   explicit Told(const std::vector<std::string>& settings) {
-    Scene whole;
     deck::Document deck = deck::read({}, settings, "Tanktread: {Time: {final time: 1}}\n");
     deck.declare(whole);
     whole.check();
@@ -45,16 +45,16 @@ TEST(Warnings, AreSilentAboutAHealthyRun) {
 
 TEST(Warnings, TellOfSnapshotsThatAreLeftOut) {
   Told often({"Time/fixed step=0.2", "Output/interval=0.1"}), seldom({"Time/fixed step=0.1", "Output/interval=0.1"});
-  EXPECT_TRUE(names(first_warnings(often.scene).at(0).sentence, "Output/interval"));
-  EXPECT_TRUE(first_warnings(seldom.scene).empty());
+  EXPECT_TRUE(names(first_warnings(often.whole).at(0).sentence, "Output/interval"));
+  EXPECT_TRUE(first_warnings(seldom.whole).empty());
 }
 
 TEST(Warnings, TellOfSurfaceFieldsOfAnEarlierRun) {
   const std::vector<std::string> clean{"Membrane/law=surface tension", "Particle/initial shape/run=."};
   std::vector<std::string> covered = clean;
   covered.emplace_back("Interface/surfactant/elasticity number=0.2");
-  EXPECT_TRUE(names(first_warnings(Told(covered).scene).at(0).sentence, "surfactant"));
-  EXPECT_TRUE(first_warnings(Told(clean).scene).empty());
+  EXPECT_TRUE(names(first_warnings(Told(covered).whole).at(0).sentence, "surfactant"));
+  EXPECT_TRUE(first_warnings(Told(clean).whole).empty());
 }
 
 TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
