@@ -87,7 +87,7 @@ class SteadyRun {
   /// Finds the steady shape of the system `of` by approach_steady(), after the search from `start` has failed with the report `failed` and the best
   /// iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a prescribed history, or if approach_steady() does not find it.
   motion::SteadyReport approach(const std::shared_ptr<System>& of, const Net& start, Net& x, const motion::SteadyReport& failed) {
-    if (!(of->scene.alone().front().speed() > 0) || of->scene.flow.history) return failed;
+    if (!(of->scene.particle_scenes().front().speed() > 0) || of->scene.flow.history) return failed;
     output::Checkpoint mesh;
     of->particle->store(mesh);
     Net reached = start;

@@ -108,7 +108,7 @@ std::string surface_line(const Body& body) {
 std::string wall_solver(const Scene& scene) {
   if (!scene.in_system()) return "eliminated from the system of the traction";
   if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
-  const bool system = std::ranges::any_of(scene.alone(), &ParticleScene::has_velocity_system);
+  const bool system = std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system);
   return system ? "eliminated from the system of the velocity" : "solved for directly";
 }
 
@@ -262,7 +262,7 @@ std::string solvers_line(const Scene& scene) {
     return line.empty() ? "no iterative solver" : line;
   }
   const bool blocks = scene.tube.present && solvers.tube != "schur";
-  if (blocks || std::ranges::any_of(scene.alone(), &ParticleScene::has_velocity_system)) add("velocity", solvers.velocity);
+  if (blocks || std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system)) add("velocity", solvers.velocity);
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
   if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);
@@ -338,7 +338,7 @@ std::string far_sum_line(const Scene& scene, bool tree) {
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
   if (!scene.in_system()) return plan_of_rigid(scene, body, ranks);
   const bool tree = stokes::sums_by_tree(body.space, scene.quadrature, scene.domain.present && !scene.tube.present ? 27 : 1);
-  const std::vector<ParticleScene> alone = scene.alone();
+  const std::vector<ParticleScene> alone = scene.particle_scenes();
   const bool several = alone.size() > 1;
   const int n = body.space.n_points;
   Lines lines;

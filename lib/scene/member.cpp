@@ -66,7 +66,7 @@ coupling::Rigid rigid(const ParticleScene& scene, const Body& body) {
 
 std::vector<Member> members(const Scene& scene) {
   std::vector<Member> all;
-  for (ParticleScene& one : scene.alone()) {
+  for (ParticleScene& one : scene.particle_scenes()) {
     const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
     auto its_body = std::make_unique<Body>(body(one, equal == all.end() ? nullptr : &*equal));
     Member& member = all.emplace_back();

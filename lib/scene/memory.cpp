@@ -98,7 +98,7 @@ void check_memory(const ParticleScene& scene) {
 
 void check_first_kind(const Scene& scene) {
   double n_points = 0;
-  for (const ParticleScene& one : scene.alone())
+  for (const ParticleScene& one : scene.particle_scenes())
     if (one.particle.rigid()) n_points += points(one);
   if (n_points == 0) throw UserError("Solvers/rigid bodies `first kind` is for rigid bodies, but every Particle deforms.");
   check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);

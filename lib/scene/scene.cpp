@@ -108,7 +108,7 @@ void check_motion(const ParticleScene& scene) {
 /// Checks each of several particles as a separate scene, and checks that the particles can be combined in one scene. Throws UserError with the name
 /// of the particle in the message.
 void check_several(const Scene& scene) {
-  const std::vector<ParticleScene> alone = scene.alone();
+  const std::vector<ParticleScene> alone = scene.particle_scenes();
   const bool strong = alone.front().load_is_strong();
   for (ParticleScene one : alone) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies only to deformable particles

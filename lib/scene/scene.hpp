@@ -197,7 +197,7 @@ struct Scene : SharedOptions {
   bool named() const { return !particles.front().name.empty(); }  ///< returns true if the deck has the section Particles
 
   /// Returns the scenes of all particles. In them, Solvers/rigid bodies is not `auto`.
-  std::vector<ParticleScene> alone() const;
+  std::vector<ParticleScene> particle_scenes() const;
   ParticleScene first() const { return {*this, particles.front()}; }
   /// Returns the first particle that deforms, or the first particle if all are rigid.
   ParticleScene first_deforming() const;

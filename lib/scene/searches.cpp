@@ -113,7 +113,7 @@ double steady_step(const Scene& scene) {
   constexpr double most_relaxation_times = 10;
   if (scene.steady.step) return *scene.steady.step;
   double step = 0.5 / scene.rate();
-  for (const ParticleScene& one : scene.alone())
+  for (const ParticleScene& one : scene.particle_scenes())
     if (!one.particle.rigid()) step = std::min(step, most_relaxation_times * one.flow.viscosity * one.radius() / one.modulus());
   return step;
 }

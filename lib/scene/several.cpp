@@ -7,7 +7,7 @@
 
 namespace tanktread {
 
-std::vector<ParticleScene> Scene::alone() const {
+std::vector<ParticleScene> Scene::particle_scenes() const {
   std::vector<ParticleScene> scenes;
   for (const ParticleKind& kind : particles) scenes.emplace_back(*this, kind);
   const auto equation = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;

@@ -120,7 +120,7 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
   bodies_.rigid.fit_to(x);
   if (!admits(x)) return not_a_number(x);
   push_bodies(x);
-  const bool deforms = !bodies_.tractions || !bodies_.tractions->alone();
+  const bool deforms = !bodies_.tractions || !bodies_.tractions->all_rigid();
   VolumeConstraint volume;
   Net f = deforms ? membrane_load(e, x, &volume) : Net::Zero(x.rows(), 3);
   if (!bodies_.tractions) bodies_.rigid.add_load(f);

@@ -132,7 +132,7 @@ Net Capsule::traction_product(const Net& x, const VolumeConstraint& volume, cons
   if (caused.size() > 0) u += caused;
   if (duct_.tube) u += duct_.tube->respond(load, v).velocity;
   if (solids()) add_solids(x, load, v, false, u);
-  if (bodies_.tractions->alone()) return u;
+  if (bodies_.tractions->all_rigid()) return u;
   Net all = v - targets_.serial_control_values(u);
   volumes_.constrain(all, volume);
   for (const Particle& one : particles())

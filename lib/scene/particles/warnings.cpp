@@ -71,7 +71,7 @@ std::vector<Warning> first_warnings(const Scene& scene) {
   const auto forgets = [](const ParticleScene& one) {
     return one.particle.shape.initial && one.particle.shape.initial->run && (one.surfactant || one.maxwell_membrane() || !one.fields.empty());
   };
-  if (std::ranges::any_of(scene.alone(), forgets))
+  if (std::ranges::any_of(scene.particle_scenes(), forgets))
     found.push_back({"fields", "surfactant and other surface fields start as in a new run: Particle/initial shape/run gives the shape only"});
   if (scene.tube.images)
     found.push_back({"images", "Tube/images has no effect, because a periodic tube has all its images: remove the key."});

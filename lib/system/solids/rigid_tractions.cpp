@@ -91,7 +91,7 @@ Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& res
 RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles,
                                double viscosity, const quadrature::Options& quadrature, const SolverOptions& solvers,
                                std::shared_ptr<const stokes::Medium> medium, Tube* tube, const std::vector<int>& own, Ranks& ranks)
-    : alone_(std::ranges::all_of(particles, [](const Particle& one) { return one.rigid.has_value(); })),
+    : all_rigid_(std::ranges::all_of(particles, [](const Particle& one) { return one.rigid.has_value(); })),
       particles_(bodies_among(particles)),
       walls_{tube, nullptr, std::move(medium)},
       layer_(particles_, viscosity, quadrature, walls_.medium.get(), own, ranks),
@@ -155,7 +155,7 @@ Net RigidTractions::force_densities(const Net& y) const {
 /// Returns the unknowns y. If responds() is false, rows of deformable particles are completed by the velocity that the force densities cause there.
 Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
   Net y = as_net(unknowns);
-  if (responds() || alone_) return y;
+  if (responds() || all_rigid_) return y;
   Net minus_velocity = product(force_densities(y));
   for (const Particle& body : particles_) body.block.rows(minus_velocity).setZero();
   return y - minus_velocity;
@@ -172,7 +172,7 @@ void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std:
 /// residual velocity, computed from the weighted residual `weighted_residual_`. In a channel the residual on the wall is included (2.42).
 Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z) {
   Eigen::VectorXd work = z.transpose() * weighted_residual_;
-  if (!walls_.tube || !walls_.tube->fixed() || !alone_) return work;
+  if (!walls_.tube || !walls_.tube->fixed() || !all_rigid_) return work;
   const Tube::Leak leak = walls_.tube->leak(load(y));
   for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(leak, walls_.tube->respond(load(as_net(z.col(k)))));
   return work;
@@ -214,7 +214,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   y += z * change;
   unknowns_ = completed(y);
   const Net f = force_densities(unknowns_);
-  if (walls_.tube && flow.duct() && alone_)
+  if (walls_.tube && flow.duct() && all_rigid_)
     pressure_correction_ = walls_.tube->pressure_correction(residual_.points(), between, flow.amplitude(), f, correction[m]);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);

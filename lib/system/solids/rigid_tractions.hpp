@@ -118,7 +118,7 @@ class RigidTractions {
   /// This takes five additional solves, one for each unit strain. Collective.
   Mat3 moment(std::size_t p);
 
-  bool alone() const { return alone_; }              ///< returns whether all particles are rigid bodies
+  bool all_rigid() const { return all_rigid_; }             ///< returns whether all particles are rigid bodies
   const Net& unknowns() const { return unknowns_; }  ///< control values of f on bodies, and of v on deformable particles
   double pressure_correction() const { return pressure_correction_; }   ///< collocation-error correction of the pressure drop (2.7)
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
@@ -140,7 +140,7 @@ class RigidTractions {
   Net load(const Net& y) const { return around_ ? around_->load(y) : Net(-y); }
   Eigen::VectorXd corrections(const Net& y, const Eigen::MatrixXd& z);
 
-  bool alone_;
+  bool all_rigid_;
   std::vector<Particle> particles_;  // the bodies
   FluidWalls walls_;
   BodyLayer layer_;

@@ -18,7 +18,7 @@ std::size_t free_number(const std::string& lists) {
   scene.check();
   std::vector<std::unique_ptr<Body>> bodies;
   std::vector<coupling::Particle> particles;
-  for (const ParticleScene& one : scene.alone()) {
+  for (const ParticleScene& one : scene.particle_scenes()) {
     bodies.push_back(std::make_unique<Body>(body(one)));
     particles.emplace_back().loads = loads(one, *bodies.back(), nullptr);
   }
