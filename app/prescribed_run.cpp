@@ -19,7 +19,7 @@ namespace tanktread {
 
 namespace {
 
-SurfacePicture picture(const ParticleScene& scene, const Body& body, const RigidSolution& s) {
+SurfaceSnapshot snapshot(const ParticleScene& scene, const Body& body, const RigidSolution& s) {
   const auto exact = exact_body(scene);
   return {body.rest, [&body, &s, exact](const auto& nodes) {
             const Net f = nodes.values(s.density), n = nodes.normals(body.rest), x = nodes.values(body.rest);
@@ -73,17 +73,18 @@ int resist(const Scene& whole, const RunRequest& request) {
   account.plan = chosen;
   account.counts = {{"unknowns", 3L * body.space.n_points}, {"solver_iterations", solution.iterations}};
   account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
-  return record_steady(whole, request, body, ranks, phases, row, picture(scene, body, solution), std::move(account), kernel);
+  return record_steady(whole, request, body, ranks, phases, row, snapshot(scene, body, solution), std::move(account), kernel);
 }
 
 int record_steady(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks, Phases& phases, Columns& row,
-                  const SurfacePicture& picture, Account account, const stokes::Evaluations& kernel) {
+                  const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel) {
   std::optional<Phases::Scope> clock(std::in_place, phases, "output");
   Results results(scene, request, body, surface::BezierMap(body.space), ranks);
   results.record(row);
+  if (const std::string coarse = coarse_wall(scene, body, row); !coarse.empty()) results.warn(coarse);
   motion::State state;
   state.x = body.rest;
-  results.save({}, state, {}, results.sample(picture, state.time));
+  results.save({}, state, {}, results.sample(snapshot, state.time));
   clock.reset();
   for (const auto& [name, count] : {std::pair("far", kernel.far), {"near", kernel.near}, {"self", kernel.self}})
     account.counts.emplace_back(std::string("kernel_evaluations_") + name, static_cast<long>(count));

@@ -28,6 +28,6 @@ int flow_past_solids(const Scene& scene, const RunRequest& request);
 /// Records the row of the series and the snapshot of a steady problem whose surface is body.rest. Adds `kernel`, the kernel evaluations of all ranks,
 /// to the counts in `account`, and closes the results. Returns the exit code like `simulate`. Collective.
 int record_steady(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks, Phases& phases, Columns& row,
-                  const SurfacePicture& picture, Account account, const stokes::Evaluations& kernel);
+                  const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel);
 
 }  // namespace tanktread

@@ -122,7 +122,7 @@ class Run {
     state_ = before;
     totals_ = totals;
     interrupted_ = true;
-    pictured_.reset();
+    within_step_.reset();
     const std::string undone = error_of([&] {
       if (!adapting_) return;
       particle_->undo_adapt(state_.x);
@@ -149,14 +149,14 @@ class Run {
     const double snapshot = scene_.next_snapshot(state_.time);
     const bool lands = scene_.lands_on_snapshots();
     motion::State before = state_;
-    pictured_.reset();
+    within_step_.reset();
     integrate(lands ? snapshot : scene_.time.final_time, before);
     judge();
     ++totals_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
-    if (pictured_ && scene_.adapts()) {
-      pictured_->sampled = sample();
+    if (within_step_ && scene_.adapts()) {
+      within_step_->sampled = sample();
       particle_->dynamics().at(state_.time, began_);
     }
     adapting_ = true;
@@ -241,7 +241,7 @@ class Run {
     double time = scene_.next_snapshot(before.time);
     for (double next = scene_.next_snapshot(time); next <= state_.time && next > time; next = scene_.next_snapshot(time)) time = next;
     const motion::DenseOutput dense(before, state_);
-    motion::State& state = pictured_.emplace().state;
+    motion::State& state = within_step_.emplace().state;
     state.time = time, state.x = dense.shape(time), state.history = {dense.slope(time)};
   }
 
@@ -274,20 +274,20 @@ class Run {
     const auto clock = phases_.time("output");
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
-    const Results::Sampled picture = pictured_ && pictured_->sampled ? *pictured_->sampled : sample();
-    if (pictured_) settle();  // sample() has evaluated the velocity at the time of the snapshot. The totals are collected again, so that the
+    const Results::Sampled snapshot = within_step_ && within_step_->sampled ? *within_step_->sampled : sample();
+    if (within_step_) settle();  // sample() has evaluated the velocity at the time of the snapshot. The totals are collected again, so that the
                               // checkpoint includes the operations of this evaluation.
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
-    results_.save(std::move(checkpoint), state_, totals_, picture);
+    results_.save(std::move(checkpoint), state_, totals_, snapshot);
     particle_->forget_recycled();
   }
 
   /// Evaluates and returns the snapshot that is due, at the end of the last step or at a time within the step.
   Results::Sampled sample() {
-    const motion::State& pictured = pictured_ ? pictured_->state : state_;
-    particle_->dynamics().at(pictured.time, began_);
-    return results_.sample(particle_->picture(pictured), pictured.time);
+    const motion::State& shown = within_step_ ? within_step_->state : state_;
+    particle_->dynamics().at(shown.time, began_);
+    return results_.sample(particle_->snapshot(shown), shown.time);
   }
 
   void save_or_fail() {
@@ -314,10 +314,8 @@ class Run {
   /// Returns the reason to end the run after a finished step, or an empty text if it continues. Throws RunFailure if particles touch each other or a
   /// wall.
   std::string reason_to_stop() {
-    if (scene_.tube.present) {
-      end_at_wall(scene_.tube.list(), scene_.tube.contact_gap);
-      if (const std::string coarse = coarse_wall(scene_, particle_->body(), row_); !coarse.empty()) warn({"coarse wall", coarse});
-    }
+    if (scene_.tube.present) end_at_wall(scene_.tube.list(), scene_.tube.contact_gap);
+    if (const std::string coarse = coarse_wall(scene_, particle_->body(), row_); !coarse.empty()) warn({"coarse wall", coarse});
     if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
     if (scene_.has_gaps()) end_at_contact();
     if (coupling::any_told_to_stop(told_to_stop())) return by_signal;
@@ -335,7 +333,7 @@ class Run {
 
   /// Closes the results and returns the exit code. `reason` is the reason for an early end, or empty.
   int end(const std::string& reason) {
-    if (scene_.output.surface_text) results_.write_surface(particle_->picture(state_).surface);
+    if (scene_.output.surface_text) results_.write_surface(particle_->snapshot(state_).surface);
     Account last = account(reason.empty() ? "done" : reason);
     last.whole = reason.empty() || reason == steady || reason == past;
     if (!reason.empty() && !request_.of_ladder) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
@@ -364,11 +362,11 @@ class Run {
   bool interrupted_ = false;  // true if a step was interrupted and discarded
   stokes::Evaluations earlier_kernel_;        // kernel evaluations of the earlier parts of a resumed run
   output::Entries<double> earlier_seconds_;
-  struct Pictured {
+  struct WithinStep {
     motion::State state;
     std::optional<Results::Sampled> sampled;  // snapshot sampled on the previous mesh, if the latest step has adapted the mesh
   };
-  std::optional<Pictured> pictured_;  // state of the snapshot that is due at a time within the last step, if any
+  std::optional<WithinStep> within_step_;  // state of the snapshot that is due at a time within the last step, if any
   surface::Quality quality_;
   ParticleScene first_ = scene_.first_deforming();
   Warnings warnings_{first_};  // warnings of the run; they use the parameters of the first deformable particle

@@ -37,11 +37,11 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   Body body;
   body.space = all.surface().space, body.rest = body.initial = body.unstressed = all.surface().net;
   const Net force = all.on_space(flow.force);
-  const SurfacePicture picture{body.rest, [&](const auto& nodes) { return std::vector<output::Field>{{"traction", -nodes.values(force)}}; }};
+  const SurfaceSnapshot snapshot{body.rest, [&](const auto& nodes) { return std::vector<output::Field>{{"traction", -nodes.values(force)}}; }};
   Account account;
   account.plan = chosen;
   account.counts = {{"unknowns", 3L * all.surface().n_points()}};
-  return record_steady(scene, request, body, ranks, phases, row, picture, std::move(account), ranks.of_all(all.evaluations()));
+  return record_steady(scene, request, body, ranks, phases, row, snapshot, std::move(account), ranks.of_all(all.evaluations()));
 }
 
 }  // namespace tanktread

@@ -26,6 +26,7 @@
 #include "scene/series/series.hpp"
 #include "scene/series/surface_fields.hpp"
 #include "scene/steady_system.hpp"
+#include "scene/tube.hpp"
 #include "system/agreement.hpp"
 
 namespace tanktread {
@@ -303,6 +304,7 @@ class SteadyRun {
     return made;
   }
 
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   void count() {
     totals_.counts = counts_, totals_.kernel = kernel_;
     const auto add = [&](const ParticleSystem& one) {
@@ -317,11 +319,11 @@ class SteadyRun {
   void record() {
     const auto clock = phases_.time("diagnostics");
     count();
-    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    Columns row = system_->particle->row(state_, {.step = report_, .wall_seconds = seconds, .evaluations = totals_.counts.evaluations});
+    Columns row = system_->particle->row(state_, {.step = report_, .wall_seconds = seconds(), .evaluations = totals_.counts.evaluations});
     found_.add_columns(scene_, row);
     row.check();
     results_.record(row);
+    if (const std::string coarse = coarse_wall(scene_, system_->particle->body(), row); !coarse.empty()) results_.warn_once("coarse wall", coarse);
   }
 
   void save() {
@@ -329,9 +331,9 @@ class SteadyRun {
     output::Checkpoint checkpoint;
     system_->particle->store(checkpoint);
     for (int k = 0; const motion::Mode& mode : found_.modes) checkpoint.arrays["mode " + std::to_string(++k)] = mode.real;
-    SurfacePicture picture = system_->particle->picture(state_);
-    if (scene_.output.surface_text) results_.write_surface(picture.surface);
-    picture.fields = [this, of_shape = picture.fields](const output::Nodes& nodes) {
+    SurfaceSnapshot snapshot = system_->particle->snapshot(state_);
+    if (scene_.output.surface_text) results_.write_surface(snapshot.surface);
+    snapshot.fields = [this, of_shape = snapshot.fields](const output::Nodes& nodes) {
       std::vector<output::Field> fields = of_shape(nodes);
       int k = 0;
       for (const motion::Mode& mode : found_.modes) {
@@ -342,7 +344,7 @@ class SteadyRun {
       }
       return fields;
     };
-    results_.save(std::move(checkpoint), state_, totals_, results_.sample(picture, state_.time));
+    results_.save(std::move(checkpoint), state_, totals_, results_.sample(snapshot, state_.time));
   }
 
   int close() {
@@ -366,9 +368,7 @@ class SteadyRun {
   const RunRequest& request_;
   const Clock::time_point start_ = Clock::now();
   // Function that returns whether this rank has received a stop signal or has passed the wall-clock limit.
-  const std::function<bool()> told_ = [this] {
-    return told_to_stop() || scene_.output.too_late(std::chrono::duration<double>(Clock::now() - start_).count());
-  };
+  const std::function<bool()> told_ = [this] { return told_to_stop() || scene_.output.too_late(seconds()); };
   const motion::TimeOptions time_ = scene_.time_options();
   Phases phases_ = started();
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};

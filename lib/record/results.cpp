@@ -238,24 +238,28 @@ void Results::warn(const std::string& sentence) {
   if (writes_) std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str());
 }
 
+void Results::warn_once(const std::string& kind, const std::string& sentence) {
+  if (kinds_of_warnings_.insert(kind).second) warn(sentence);
+}
+
 void Results::write_surface(const Net& surface) {
   write([&] { spline::write_iga(directory_ / "surface.iga", body_->space, surface); });
 }
 
-Results::Sampled Results::sample(const SurfacePicture& picture, double time) {
+Results::Sampled Results::sample(const SurfaceSnapshot& snapshot, double time) {
   Sampled sampled;
   write([&] {
-    sampled = {time, nodes_->mesh(), output::picture(*nodes_, picture.surface)};
-    std::ranges::move(picture.fields(*nodes_), std::back_inserter(sampled.fields));
+    sampled = {time, nodes_->mesh(), output::shape_fields(*nodes_, snapshot.surface)};
+    std::ranges::move(snapshot.fields(*nodes_), std::back_inserter(sampled.fields));
   });
   return sampled;
 }
 
-void Results::save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& picture) {
+void Results::save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& snapshot) {
   write([&] {
-    complete(checkpoint, state, totals, picture.time);
-    waiting_.emplace_back(totals.step, output::snapshot_file(checkpoint, picture.mesh, picture.fields));
-    series_->add(totals.step, picture.time);
+    complete(checkpoint, state, totals, snapshot.time);
+    waiting_.emplace_back(totals.step, output::snapshot_file(checkpoint, snapshot.mesh, snapshot.fields));
+    series_->add(totals.step, snapshot.time);
     if (last_saved_ >= 0 && young() && rows_written_ != record_->rows()) return;
     write_files();
     if (young()) return;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -98,6 +99,7 @@ class Results {
 
   /// Prints a warning on standard error and adds it to the summary.
   void warn(const std::string& sentence);
+  void warn_once(const std::string& kind, const std::string& sentence);  ///< does nothing after the first warning of this kind
 
   /// Fields of a snapshot, sampled at the nodes of the current mesh, on the first rank. They can be written to a file even after the mesh has
   /// changed.
@@ -106,11 +108,11 @@ class Results {
     output::LagrangeMesh mesh;
     std::vector<output::Field> fields;
   };
-  Sampled sample(const SurfacePicture& picture, double time);
+  Sampled sample(const SurfaceSnapshot& snapshot, double time);
 
-  /// Saves a checkpoint of the current step, and the snapshot `picture`, which belongs to the end of the step or to a time within it. `checkpoint`:
+  /// Saves a checkpoint of the current step, and the snapshot `snapshot`, which belongs to the end of the step or to a time within it. `checkpoint`:
   /// data for a resumed run. `state` and `totals` are added to these data.
-  void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& picture);
+  void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& snapshot);
 
   /// Writes the surface as Bezier-extraction text, `surface.iga`.
   void write_surface(const Net& surface);
@@ -155,6 +157,7 @@ class Results {
   std::optional<output::Nodes> nodes_;  // nodes of the snapshots
   std::vector<std::pair<int, std::string>> waiting_;  // steps and bytes of snapshots that are to be written
   std::vector<std::string> warnings_;
+  std::set<std::string> kinds_of_warnings_;  // kinds passed to warn_once()
   output::Entries<long> memory_;  // peak memory, for the summary
   int last_saved_ = -1;
   Clock::time_point start_ = Clock::now(), due_ = start_;  // start_: beginning of this process; due_: time at which `run.h5` is to be written next

@@ -250,12 +250,13 @@ double least_way(const Scene& scene, const Body& body, const Columns& row) {
 }
 
 std::string coarse_wall(const SharedOptions& scene, const Body& body, const Columns& row) {
-  const double gap = row.value("gap"), widest = body.wall->widest;
+  if (!body.wall) return {};
+  const double gap = row.value("gap"), widest = body.wall->widest, time = row.value("time");
   if (gap > 0.6 * widest) return {};
-  const std::string list = scene.tube.list();
-  return formatted("at time %.4g the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more %s/azimuthal elements and "
-                   "%s/axial elements",
-                   row.value("time"), gap, widest, list.c_str(), list.c_str());
+  const std::string list = scene.tube.list(), when = time > 0 && scene.runs_in_time() ? formatted("at time %.4g ", time) : "";
+  return when + formatted("the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more %s/azimuthal elements and "
+                          "%s/axial elements",
+                          gap, widest, list.c_str(), list.c_str());
 }
 
 }  // namespace tanktread

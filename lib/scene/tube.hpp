@@ -47,7 +47,7 @@ TubeRow tube_row(coupling::Tube& tube, const stokes::AmbientFlow& flow, const Ne
 double least_way(const Scene& scene, const Body& body, const Columns& row);
 
 /// Returns a warning if the gap to the wall in a row of the results is smaller than 0.6 of the size of the widest wall element, because the error of
-/// the wall traction then exceeds 1e-4. Otherwise returns an empty text.
+/// the wall traction then exceeds 1e-4. Otherwise, and without a tube, returns an empty text.
 std::string coarse_wall(const SharedOptions& scene, const Body& body, const Columns& row);
 
 /// Throws RunFailure if the modelled part of the tube is too short for the shape x, because particles have moved apart or become long. Does nothing

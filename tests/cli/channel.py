@@ -80,6 +80,21 @@ def a_run_ends_when_it_is_past():
     check(len(rates) == 10 and numpy.abs(rates / numpy.pi - 1).max() < 3e-3, f"flow rates through sections: {rates}")
 
 
+def gaps_that_the_wall_does_not_resolve_are_told():
+    """Prescribed bodies and searches for steady shapes warn as runs in time do."""
+    body = """Tanktread:
+  Flow: {type: duct}
+  Tube: {azimuthal elements: 8, axial elements: 8}
+  Particle: {radius: %g, %s}
+  Surface: {elements per side: 3}
+%s"""
+    capsule = "  Membrane: {law: Skalak, capillary number: 0.01, bending number: 0.01}\n  Steady: {tolerance: 1.0e-4}\n"
+    for radius, more, lists, told in (0.8, "motion: prescribed", "", True), (0.3, "motion: prescribed", "", False), (0.8, "center: [0, 0, 0]", capsule, True):
+        run(deck(body % (radius, more, lists)), "--output", "told", "--overwrite", "--quiet")
+        warned = [line for line in summary("told")["warnings"] if "narrower than 0.6 of the wall's elements" in line]
+        check(len(warned) == told, f"radius {radius}, {more}: {summary('told')['warnings']}")
+
+
 def mirror_planes_and_ranks_change_nothing():
     fixed = ["Time/fixed step=0.02", "Time/final time=0.06", "Quadrature/tolerance=1e-7"]
     run(deck(DECK), *_words(fixed), "--output", "mirrored", "--quiet")

@@ -90,11 +90,12 @@ std::vector<Snapshot> snapshots(const fs::path& directory) {
   return found;
 }
 
-std::optional<Picture> pictured(const fs::path& path) try {
+std::optional<SnapshotLabel> snapshot_label(const fs::path& path) try {
   const hdf::Id file = hdf::open(path);
   const auto all = numbers(file);
   const bool named = std::ranges::count(hdf::datasets(file, "checkpoint/texts"), "run") > 0;
-  return Picture{all.contains("picture time") ? all.at("picture time") : all.at("time"), named ? hdf::read_text(file, "checkpoint/texts/run") : ""};
+  const double time = all.contains("picture time") ? all.at("picture time") : all.at("time");
+  return SnapshotLabel{time, named ? hdf::read_text(file, "checkpoint/texts/run") : ""};
 } catch (const std::exception&) {
   return std::nullopt;
 }

@@ -42,13 +42,13 @@ struct Snapshot {
 std::vector<Snapshot> snapshots(const std::filesystem::path& directory);
 
 /// Data of a snapshot that are needed for the list of all snapshots.
-struct Picture {
+struct SnapshotLabel {
   double time = 0;  ///< time of the snapshot: the number "picture time" of the checkpoint, or "time" if there is none
   std::string run;  ///< text "run" of the checkpoint, the identifier of the run
 };
 
 /// Returns the time and the run identifier of a snapshot file; nothing if the file cannot be read.
-std::optional<Picture> pictured(const std::filesystem::path& path);
+std::optional<SnapshotLabel> snapshot_label(const std::filesystem::path& path);
 
 struct Damaged {
   std::filesystem::path path;

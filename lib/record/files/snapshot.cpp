@@ -49,7 +49,7 @@ void write(hid_t file, const LagrangeMesh& mesh) {
 
 }  // namespace
 
-std::vector<Field> picture(const Nodes& nodes, const Net& net) { return {{points, nodes.values(net)}, {"Normals", nodes.normals(net)}}; }
+std::vector<Field> shape_fields(const Nodes& nodes, const Net& net) { return {{points, nodes.values(net)}, {"Normals", nodes.normals(net)}}; }
 
 std::string snapshot_file(const Checkpoint& checkpoint, const LagrangeMesh& mesh, std::span<const Field> fields) {
   const hdf::Id file = hdf::new_file();
@@ -65,8 +65,8 @@ SnapshotSeries::SnapshotSeries(fs::path directory) : directory_(std::move(direct
 SnapshotSeries SnapshotSeries::resumed(fs::path directory, int step, const std::string& run) {
   SnapshotSeries series(std::move(directory));
   for (const Snapshot& snapshot : snapshots(series.directory_))
-    if (const auto picture = snapshot.step <= step ? pictured(snapshot.path) : std::nullopt; picture && picture->run == run)
-      series.entries_.push_back({snapshot.step, picture->time});
+    if (const auto label = snapshot.step <= step ? snapshot_label(snapshot.path) : std::nullopt; label && label->run == run)
+      series.entries_.push_back({snapshot.step, label->time});
   return series;
 }
 

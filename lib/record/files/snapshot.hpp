@@ -24,7 +24,7 @@ struct Field {
 
 /// Returns the fields that every snapshot has: positions `Points` and normals `Normals` of the surface with control net `net`. Normals give smooth
 /// shading. The caller adds further fields.
-std::vector<Field> picture(const Nodes& nodes, const Net& net);
+std::vector<Field> shape_fields(const Nodes& nodes, const Net& net);
 
 /// Returns the bytes of a snapshot's file: `/checkpoint` and `/VTKHDF` (version 1.0, UnstructuredGrid) with `fields` at all nodes.
 std::string snapshot_file(const Checkpoint& checkpoint, const LagrangeMesh& mesh, std::span<const Field> fields);
@@ -35,7 +35,7 @@ class SnapshotSeries {
  public:
   explicit SnapshotSeries(std::filesystem::path directory);
 
-  /// Returns the list for a resumed run: the readable snapshots in `directory` up to `step` whose run identifier (Picture::run) is `run`.
+  /// Returns the list for a resumed run: the readable snapshots in `directory` up to `step` whose run identifier (SnapshotLabel::run) is `run`.
   static SnapshotSeries resumed(std::filesystem::path directory, int step, const std::string& run);
 
   void add(int step, double time);  ///< adds the snapshot of a step, whose file exists already

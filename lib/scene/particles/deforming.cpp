@@ -187,8 +187,8 @@ class Deforming : public ParticleSystem {
     return row;
   }
 
-  SurfacePicture picture(const motion::State& whole_state) override {
-    const motion::State& state = pictured_ = fields_->of_shape(whole_state);
+  SurfaceSnapshot snapshot(const motion::State& whole_state) override {
+    const motion::State& state = shown_ = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x);
     const auto here = capsule_->evaluation(state.x, state.history.empty() ? Net() : state.history.front(), 0);
     const Net load = here->load(), velocity = capsule_->slides() || !state.history.empty() ? here->fluid_velocity() : Net();
@@ -314,7 +314,7 @@ class Deforming : public ParticleSystem {
   std::unique_ptr<Body> all_;  // body with the stacked nets of all particles; null if there is only one particle
   std::unique_ptr<coupling::Capsule> capsule_;
   std::unique_ptr<SurfaceFields> fields_;
-  motion::State pictured_;  // state of the latest snapshot; the function that computes the snapshot's fields refers to it
+  motion::State shown_;  // state of the latest snapshot; the function that computes the snapshot's fields refers to it
   std::optional<coupling::PowerBalance> power_;  // constructed at the first use
   coupling::OperationCounts counts_;  // work (solves, iterations) of the systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // number of kernel evaluations on earlier meshes

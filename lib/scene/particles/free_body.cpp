@@ -74,7 +74,7 @@ class Free : public ParticleSystem {
     return row;
   }
 
-  SurfacePicture picture(const motion::State& state) override {
+  SurfaceSnapshot snapshot(const motion::State& state) override {
     const Net x = free_->surface(state.x), f = free_->force_density(state.x),
               v = coupling::rigid_velocity(x, free_->motion(state.x), coupling::centre_of(state.x));
     return {x, [f, v](const output::Nodes& nodes) {

@@ -28,12 +28,12 @@ struct Resumed {
 };
 
 /// Shape of the particles at one time, and a function that samples their fields at the nodes of a snapshot on the calling rank.
-struct SurfacePicture {
+struct SurfaceSnapshot {
   Net surface;  ///< control net of the surfaces
   std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;
 };
 
-/// Interface of the particles to the time loop. Every call is collective, except SurfacePicture::fields.
+/// Interface of the particles to the time loop. Every call is collective, except SurfaceSnapshot::fields.
 class ParticleSystem {
  public:
   virtual ~ParticleSystem() = default;
@@ -65,7 +65,7 @@ class ParticleSystem {
   virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results: the data of the particles and of
                                                                               ///< `progress`, with the time and the work of the run
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
-  virtual SurfacePicture picture(const motion::State& state) = 0;
+  virtual SurfaceSnapshot snapshot(const motion::State& state) = 0;
 };
 
 /// Builds the system for the particles of the scene: a coupled system, or a free rigid body.

@@ -31,7 +31,7 @@ struct Scene {
     nodes.emplace(surface::BezierMap(space), lagrange_mesh(space, net));
   }
   std::vector<Field> fields() const {
-    std::vector<Field> result = picture(*nodes, net);
+    std::vector<Field> result = shape_fields(*nodes, net);
     result.push_back({"velocity", nodes->values(net)});
     result.push_back({"height", nodes->values(net).col(2)});
     return result;
@@ -233,7 +233,7 @@ TEST(Snapshot, KilledWhileWritingLeavesOnlyWholeFiles) {
     close(ends[0]);
     waitpid(child, nullptr, 0);
 
-    for (const Snapshot& snapshot : snapshots(scratch.path())) EXPECT_EQ(pictured(snapshot.path)->time, snapshot.step);
+    for (const Snapshot& snapshot : snapshots(scratch.path())) EXPECT_EQ(snapshot_label(snapshot.path)->time, snapshot.step);
     EXPECT_GE(newest_checkpoint(scratch.path())->file.step, announced);
   }
 }
