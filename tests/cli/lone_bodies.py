@@ -33,11 +33,38 @@ def a_spheroid_aligns_with_an_extension():
     close(series("found", "leading_rate")[-1], 0, 2e-3, "of a rotation about the axis")
 
 
+def pressure_drops_in_ducts_superpose():
+    """Stokes flow is linear: a body that moves in fluid at rest, and the body at rest in the flow, together are the body
+    that moves in the flow. A free body under a force is the body that is told to move as it does."""
+    moves = "velocity: [1, 0.2, 0.1], angular velocity: [0.1, 0.3, 0.2]"
+    text = """Tanktread:
+  Flow: {type: %s}
+  %s
+  Particle: {radius: 0.5, center: [0.1, 0.15, -0.1], %s}
+  Surface: {elements per side: 3}
+  Time: {final time: 0.01, fixed step: 0.01}
+"""
+
+    def drop(flow, motion):
+        run(deck(text % (flow, duct, motion)), "--output", "found", "--quiet", "--overwrite")
+        return series("found", "disturbed_pressure_drop")[0]
+
+    for duct in "Tube: {azimuthal elements: 8, axial elements: 8}", \
+                "Channel: {depth: 0.2, half length: 2, azimuthal elements: 8, axial elements: 12}":
+        alone, both, still = drop("quiescent", f"motion: prescribed, {moves}"), drop("duct", f"motion: prescribed, {moves}"), drop("duct", "motion: prescribed")
+        check(abs(alone + still - both) < 1e-8 * abs(still), f"{duct}: {alone} and {still} are not {both}")
+        for flow in "quiescent", "duct":
+            free = drop(flow, "motion: free, force: [3, 1, 0.5], torque: [0.2, 0.1, 0.5]")
+            now = {name: [series("found", f"{name}_x{i}")[0].item() for i in (1, 2, 3)] for name in ("velocity", "angular_velocity")}
+            told = drop(flow, f"motion: prescribed, velocity: {now['velocity']}, angular velocity: {now['angular_velocity']}")
+            check(abs(free - told) < 1e-8 * abs(told), f"{duct}, {flow}: {free} if free, {told} if prescribed")
+
+
 def a_channel_at_rest_has_no_pressure_drop_of_its_own():
     """Measures of error refer to a speed of the scene: they do not depend on the unit of time."""
     text = """Tanktread:
   Flow: {type: quiescent, viscosity: %g}
-  Channel: {profile: constriction, radius: 1, depth: 0.2, half length: 1, start: -3, end: 3, azimuthal elements: 8, axial elements: 12}
+  Channel: {profile: constriction, radius: 1, depth: 0.2, half length: 1, start: -4, end: 4, azimuthal elements: 8, axial elements: 16}
   Membrane: {shear modulus: %g}
   Particle: {shape: ellipsoid, semi-axes: [0.5, 0.4, 0.4], center: [-1, 0.1, 0]}
   Surface: {elements per side: 3}

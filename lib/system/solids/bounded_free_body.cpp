@@ -27,17 +27,33 @@ const BoundedFreeBody::Solution& BoundedFreeBody::solution(const Net& place) con
   return solution_;
 }
 
-/// Returns the pressure drop due to the body, corrected for the collocation error (2.41) by the integral of the residual velocity times f. No further
-/// solve is needed.
+/// Returns the pressure drop due to the body, corrected for the collocation error (2.41) by the integral of the residual velocity times the density z
+/// due to the flow of the empty duct. For a body without forces in this flow, -f takes the place of z, and no further solve is needed.
 double BoundedFreeBody::pressure_drop(const Net& place) const {
   Tube* const tube = body_.tube();
   if (!tube) return 0;
   const auto& [motion, f, stresslet] = solution(place);
-  const double pressure = -tube->pressure_of(f);
-  if (!flow_.duct()) return pressure;
   const Net x = surface(place);
-  const bool free = driven_.force.isZero(0) && driven_.torque.isZero(0);
-  return pressure + body_.pressure_correction(x, f, rigid_velocity(x, motion, centre_of(place)), flow_, free);
+  const bool carried = flow_.duct() && flow_.amplitude() != 0 && driven_.force.isZero(0) && driven_.torque.isZero(0);
+  const Net z = carried ? Net(-f / flow_.amplitude()) : density_at_rest(place, tube->flow().velocities(moved(body_.sites(), place)));
+  return body_.pressure_correction(x, f, rigid_velocity(x, motion, centre_of(place)), flow_, z) - tube->pressure_of(f);
+}
+
+/// Returns the force density on the body at rest at `place` in the tube, which causes the given velocities at its sites.
+Net BoundedFreeBody::density_at_rest(const Net& place, const Net& velocities) const {
+  const Mat3 turn = rotation_of(place);
+  const Eigen::Index n = 3 * surface_.rows();
+  const auto apply = [&](const double* in, double* out) {
+    const Eigen::Map<const Net> f(in, n / 3, 3);
+    Eigen::Map<Net>(out, n / 3, 3) = body_.layer().velocity(f) + body_.tube()->respond(-f * turn.transpose()).velocity * turn;
+  };
+  const auto precondition = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = body_.layer().solved(Eigen::Map<const Eigen::VectorXd>(in, n));
+  };
+  Eigen::VectorXd right(n), z = Eigen::VectorXd::Zero(n);
+  Eigen::Map<Net>(right.data(), n / 3, 3) = velocities * turn;
+  iterations_ += body_.solve({{{"traction", n}}, apply, precondition}, right, z);
+  return Eigen::Map<const Net>(z.data(), n / 3, 3) * turn.transpose();
 }
 
 /// Solves for the force density f and the motion U, Omega. The unknowns are scaled to velocities: f R_C/mu, U and Omega R_C. The force balance is

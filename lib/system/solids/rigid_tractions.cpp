@@ -183,7 +183,9 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   ++n_solves_;
   set_shape(x, centres, std::move(around));
-  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
+  const bool has_pressure = walls_.tube && all_rigid_, driven_by_pressure = flow.duct() && flow.amplitude() != 0;
+  const bool apart = has_pressure && !driven_by_pressure;  // true if the density due to the flow of the duct, for (2.41), needs a solve of its own
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1 + apart), fields = Eigen::MatrixXd::Zero(n, m);
   const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);
   Net empty = around_ ? Net(-around_->flow) : at_sites;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
@@ -194,6 +196,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
     block.rows(empty) = block.rows(at_sites);
   }
   velocities.col(m) = flat(empty);
+  if (apart) velocities.col(m + 1) = flat(walls_.tube->flow().velocities(sites_));
   const Eigen::MatrixXd of_all = densities(velocities), z = of_all.leftCols(m);
 
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
@@ -214,8 +217,11 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   y += z * change;
   unknowns_ = completed(y);
   const Net f = force_densities(unknowns_);
-  if (walls_.tube && flow.duct() && all_rigid_)
-    pressure_correction_ = walls_.tube->pressure_correction(residual_.points(), between, flow.amplitude(), f, correction[m]);
+  if (has_pressure) {
+    const double unit = apart ? 1 : flow.amplitude();
+    const Net of_duct = apart ? walls_.tube->flow().velocities(residual_.points().values * x) : Net(between / unit);
+    pressure_correction_ = walls_.tube->pressure_correction(residual_.points(), of_duct, f, correction[m + apart] / unit);
+  }
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);
     bodies_[p] = integrals(p, f);
@@ -224,14 +230,10 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   }
 }
 
-double RigidTractions::pressure_correction(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, bool by_work) {
-  const Net between = flow.velocities(residual_.points().values * x);
-  double work = 0;
-  if (by_work) {
-    weighted_residual_ = flat(residual_.integrated(x, load(f), v, between, walls_));
-    work = corrections(f, -flat(f))[0];  // `corrections` with -f in place of the force density due to the ambient flow v_inf, as on free bodies
-  }
-  return walls_.tube->pressure_correction(residual_.points(), between, flow.amplitude(), f, work);
+double RigidTractions::pressure_correction(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, const Net& z) {
+  const Net places = residual_.points().values * x;
+  weighted_residual_ = flat(residual_.integrated(x, load(f), v, flow.velocities(places), walls_));
+  return walls_.tube->pressure_correction(residual_.points(), walls_.tube->flow().velocities(places), f, corrections(f, flat(z))[0]);
 }
 
 Net RigidTractions::density(const Net& velocities) { return as_net(densities(flat(velocities))); }

@@ -92,10 +92,10 @@ class RigidTractions {
   /// motions of the bodies nor corrections of the collocation error are included. All particles must be bodies. Collective.
   Net density(const Net& velocities);
 
-  /// Returns the correction of the pressure drop (2.7) for the collocation error. `f`: force density on freely moving bodies at the net x. `v`:
-  /// control values of the bodies' velocity. `flow`: a duct flow. `by_work`: false if forces or torques act on the bodies; then only the
-  /// interpolation error of v_inf is corrected. All particles must be bodies. Collective.
-  double pressure_correction(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, bool by_work);
+  /// Returns the correction (2.41) of the pressure drop for the collocation error. `f`: force density on freely moving bodies at the net x. `v`:
+  /// control values of the bodies' velocity. `z`: force density due to the flow of the empty duct, of amplitude 1, on bodies at rest; for bodies
+  /// without forces and torques in this flow, -f has the same effect. All particles must be bodies. Collective.
+  double pressure_correction(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, const Net& z);
 
   /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
   SolvedBody integrals(std::size_t p, const Net& f);

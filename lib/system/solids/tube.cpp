@@ -67,9 +67,9 @@ double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
   return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->sources.strength(v))) / flow_of_pressure_;
 }
 
-double Tube::pressure_correction(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work) {
-  if (fixed()) work += dot(between.weights * (at_places - amplitude * (between.values * particle_->interpolated_ambient)), f);
-  return amplitude == 0 ? 0 : -work / (amplitude * flow_->flow_rate());
+double Tube::pressure_correction(const BetweenSites& between, const Net& at_places, const Net& f, double work) {
+  if (fixed()) work += dot(between.weights * (at_places - between.values * particle_->interpolated_ambient), f);
+  return -work / flow_->flow_rate();
 }
 
 Net Tube::particle_on_wall(const Net& f, const Net& v) { return wall_->points().collocated(particle_->cause(f, v).at_wall); }

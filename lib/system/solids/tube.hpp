@@ -113,10 +113,10 @@ class Tube {
   Net inlet_on_wall() const;                            ///< c on the wall
   double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
 
-  /// Returns the correction (2.41) of pressure_of(f) for collocation errors. The ambient flow must be a duct flow, with the amplitude `amplitude`.
-  /// `work`: integral (2.11) over the particle of f times the residual of v_inf. In a channel, also corrects for the interpolation error of v_inf.
-  /// `between`: Gauss points for this error. `at_places`: exact values of v_inf at these Gauss points.
-  double pressure_correction(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
+  /// Returns the correction (2.41) of pressure_of(f) for collocation errors. v_inf is the flow of the empty duct, of amplitude 1. `work`: integral
+  /// over the particle of the density z due to v_inf times the residual velocity of f. In a channel, also corrects for the interpolation error of
+  /// v_inf. `between`: Gauss points for this error. `at_places`: exact values of v_inf at these Gauss points.
+  double pressure_correction(const BetweenSites& between, const Net& at_places, const Net& f, double work);
   Net solve_wall(const Net& rhs);  ///< returns the wall traction f^D that solves (1/mu) G_W f^D = rhs
 
   /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
