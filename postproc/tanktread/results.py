@@ -155,7 +155,10 @@ class Run:
             return float(self.value("Flow/maximum velocity", 1)) / width, "maximum velocity / half width"
         return (float(self.value("Flow/shear rate", 1)), RATES[kind]) if kind in RATES else (1.0, None)
 
-    time = property(lambda self: self.series["time"] * (1 if "Continuation" in self.deck else self.rate[0]),
+    time_scale = property(lambda self: 1 if "Continuation" in self.deck else self.rate[0],
+                          doc="The factor by which times of the deck and of the series are multiplied in figures.")
+
+    time = property(lambda self: self.series["time"] * self.time_scale,
                     doc="Times of the series (rows,), multiplied by `rate`, or numbers of points on a branch: see "
                     "`time_label`.")
 

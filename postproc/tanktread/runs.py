@@ -264,6 +264,8 @@ class Study:
     def dimension(self, key):
         """Returns the dimension of a key, such as force/length; "" if the key is dimensionless or unknown."""
         section, _, name = key.rpartition("/")
+        if section.startswith("Particles/"):  # the reference has the keys of all particles in the sections of one
+            section = "/".join(section.split("/")[2:]) or "Particle"
         body = self._manual.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
         row = next((row for row in body.splitlines() if row.startswith(f"| `{name}`")), "|||| |")
         unit = row.split("|")[4].strip()

@@ -83,7 +83,7 @@ def draw_run(panels, run, color):
     for name, axis in panels.items():
         draw_series(axis, run, name, color=color, label=label)
         if expected := run.value(f"Expect/{name}"):
-            at = expected["at"] * run.rate[0] if "at" in expected else run.time[-1]
+            at = expected["at"] * run.time_scale if "at" in expected else run.time[-1]
             axis.plot(at, expected["value"], "x", color=style.INK, ms=7, mew=1.4, zorder=6,
                       label=None if EXPECTED in {line.get_label() for line in axis.lines} else EXPECTED)
 
