@@ -224,6 +224,13 @@ class Run:
         own = [f"Particles/{name}/{path.removeprefix('Particle/')}" for name in self.deck["Particles"]]
         return [value for value in map(self.value, own) if value is not None]
 
+    def value_of(self, key):
+        """Returns the value that a key of a deck or of `--set` has in the effective deck, which has no section
+        Particles/defaults; None if the particles have different values."""
+        own = key.removeprefix("Particles/defaults/")
+        values = self.values_of(own) if own != key else [self.value(key)]
+        return values[0] if all(value == values[0] for value in values) and values else None
+
     def cell(self, time):
         """Returns the vectors of the periodic cell at a time, divided by R_C, as rows (3, 3); None if there is none."""
         if "cell_1_x1" not in self.series:

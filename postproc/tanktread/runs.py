@@ -8,6 +8,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -263,6 +264,8 @@ class Study:
 
     def dimension(self, key):
         """Returns the dimension of a key, such as force/length; "" if the key is dimensionless or unknown."""
+        key = re.sub(r"^Particles/[^/]*/(?=.*/)", "", key)  # Particles/cell/Membrane/law is described as Membrane/law,
+        key = re.sub(r"^Particles/[^/]*/", "Particle/", key)  # and Particles/cell/radius as Particle/radius
         section, _, name = key.rpartition("/")
         if section.startswith("Particles/"):  # the reference has the keys of all particles in the sections of one
             section = "/".join(section.split("/")[2:]) or "Particle"

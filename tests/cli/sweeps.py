@@ -266,6 +266,25 @@ def a_sweep_has_a_row_for_every_combination_and_draws_a_column():
     check(pathlib.Path("results/study/D.png").read_bytes()[:4] == b"\x89PNG", "no picture")
 
 
+def values_with_units_are_numbers_in_the_unit_of_the_deck():
+    deck(DECK.replace("Flow:", "Units: { time: 1 ms }\n  Flow:").replace("capillary number: 0.3", "shear modulus: 5 uN/m").replace("0.5 }", "2 ms }"))
+    deck("deck: deck.yaml\ngrid: {Flow/shear rate: [10 1/s, 5 1/s, 100 1/s, 40 1/s, 9 kg], Membrane/law: [neo-Hookean, Skalak]}\nrecord: {D: taylor_inertia}\n",
+         "study.yaml")
+    _sweep("study.yaml", "--jobs", "1", "--plot", "D", "Flow/shear rate")
+    rates = [row["Flow/shear rate"] for row in _rows()]
+    check(rates[::2] == rates[1::2] == ["0.01", "0.005", "0.1", "0.04", "9 kg"], rates)
+    with h5py.File("results/study/table.h5") as file:
+        close(abs(file["keys/Flow/shear rate"][:8:2] - [0.01, 0.005, 0.1, 0.04]).max(), 0, 1e-15, "rates in 1/ms")
+        check(numpy.isnan(file["keys/Flow/shear rate"][8:]).all() and file["keys/Flow/shear rate"].attrs["unit"] == ", 1/ms", "of a refused run; unit")
+    from tanktread.studies import sweep
+    axes = sweep.plot(pathlib.Path("results/study"), "D", "Flow/shear rate").axes[0]
+    check(axes.lines[0].get_xdata()[:4].tolist() == [0.005, 0.01, 0.04, 0.1] and axes.lines[0].get_linestyle() == "-", axes.lines[0].get_xdata())
+    axes = sweep.plot(pathlib.Path("results/study"), "D", "Membrane/law").axes[0]
+    check(axes.lines[0].get_xdata().tolist() == ["neo-Hookean", "Skalak"] and axes.lines[0].get_linestyle() == "None", "laws are joined by a line")
+    check(axes.lines[0].get_label() == "shear rate 0.01 1/ms", axes.lines[0].get_label())
+    check(tanktread.runs.Study(PROGRAM).dimension("Particles/cell/radius") == "length", "a key of one of several particles")
+
+
 def random_values_come_again_and_lists_go_together():
     deck(DECK)
     deck("deck: deck.yaml\nrecord: [taylor_inertia]\ntogether: {A/x: [1, 2], A/y: [3, 4]}\n"

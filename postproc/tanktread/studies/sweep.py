@@ -19,11 +19,15 @@ spacing}. A column of `record` is the name of a series, which stands for its las
 smallest | largest | mean | all}, or {series, at: time}. The mean is an average over time. `record` may also be a list
 of series; their last values are the columns.
 
+Values may have units, such as 40 1/s, if the deck has the section Units. The tables contain them as numbers in the
+units of the deck.
+
 A run that is complete is not repeated, even if the study has changed. A run that was interrupted is resumed. The row of
 a run that fails contains its error message.
 """
 
 import collections
+import contextlib
 import csv
 import itertools
 import os
@@ -37,7 +41,7 @@ import numpy
 
 from ..files import Named, opened
 from ..interpolation import interpolated, mean
-from ..mistakes import command_line, expect, log, progress
+from ..mistakes import Mistake, command_line, expect, log, progress
 from ..runs import Study, text_of
 from .common import keys_of, number, optional, spaced, study_of, values_of, whole
 
@@ -118,6 +122,29 @@ def recorded(outcome, columns):
     return row
 
 
+def numbers_of(key, given, outcomes):
+    """Returns the values of a key in all runs as numbers in the unit of the deck; None if not all of them are numbers.
+    A text such as `40 1/s` is looked up in the effective deck of its run. If its run has no results, the value of
+    another run with the same text is used, and NaN if there is none."""
+    if not all(isinstance(value, (int, float)) or re.match(r"[-+]?\.?\d", str(value)) for value in given):
+        return None
+    known = {}
+    for value, outcome in zip(given, outcomes):
+        plain = value
+        if isinstance(value, str):  # PyYAML also reads 1e-2 as a string
+            try:
+                plain = float(value)
+            except ValueError:
+                plain = None
+        known.setdefault(value, numpy.nan if plain is None else plain)
+        with contextlib.suppress(Mistake):  # the run has no results
+            found = outcome.run.value_of(key) if isinstance(value, str) else None
+            known[value] = plain if found is None else found
+    numbers = [known[value] for value in given]
+    numeric = all(isinstance(one, (int, float)) for one in numbers) and not numpy.isnan(numbers).all()
+    return numbers if numeric else None
+
+
 class Sweep:
     """A study file and its runs. `keys`: keys that vary. `rows`: settings of each run. `outcomes`: their Outcomes,
     available after make()."""
@@ -150,7 +177,13 @@ class Sweep:
 
     def write(self, directory):
         """Writes table.csv and table.h5. Whole series are only in table.h5 (/columns/<name>, rows padded with NaN).
-        Keys and columns in table.h5 have the attribute `unit`, such as ", µm", taken from the first completed run."""
+        Keys and columns in table.h5 have the attribute `unit`, such as ", µm", taken from the first completed run.
+        Values of keys are numbers in the unit of the deck, or text."""
+        given = {key: [row.get(key, numpy.nan) for row in self.rows] for key in self.keys}
+        keys = {key: numbers_of(key, values, self.outcomes) for key, values in given.items()}
+        shown = {key: given[key] if values is None else
+                 [text if numpy.isnan(value) else value for text, value in zip(given[key], values)]
+                 for key, values in keys.items()}
         found = [recorded(outcome, self.columns) for outcome in self.outcomes]
         whole = [name for name, (_, take, _) in self.columns.items() if take == "all"]
         single = [word for name in self.columns if name not in whole for word in (name, f"{name} error")
@@ -159,9 +192,8 @@ class Sweep:
         with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
             out.writerow([*self.keys, *single, "status", "processor_seconds", "directory", "message"])
-            for row, one, own, *values in zip(self.rows, self.outcomes, found, *columns.values()):
-                out.writerow([*(row.get(key, "") for key in self.keys), *values, one.status,
-                              f"{one.processor_seconds:.3g}", one.directory.name,
+            for one, own, *values in zip(self.outcomes, found, *shown.values(), *columns.values()):
+                out.writerow([*values, one.status, f"{one.processor_seconds:.3g}", one.directory.name,
                               own.get("message", "") if one.done else one.message])
         for name in [*whole, "time"] if whole else []:
             padded = itertools.zip_longest(*(values.get(name, []) for values in found), fillvalue=numpy.nan)
@@ -170,10 +202,8 @@ class Sweep:
             file["status"] = [outcome.status for outcome in self.outcomes]
             file["directory"] = [str(outcome.directory) for outcome in self.outcomes]
             file.attrs["keys"] = self.keys
-            for key in self.keys:
-                values = [row.get(key, numpy.nan) for row in self.rows]
-                numbers = all(isinstance(value, (int, float)) for value in values)
-                file[f"keys/{key}"] = values if numbers else [str(value) for value in values]
+            for key, values in keys.items():
+                file[f"keys/{key}"] = list(map(str, given[key])) if values is None else values
             file.attrs["columns"] = list(columns)
             for name, values in columns.items():
                 file[f"columns/{name}"] = values
@@ -201,7 +231,7 @@ def table(directory):
 
 def plot(directory, column, key, axes=None):
     """Returns a figure of a column against a key, or of whole series against time. There is one line per combination of
-    the other keys."""
+    the other keys. Values that are text are drawn in the order of the study, without a line."""
     from ..figures import style
 
     columns, keys, labels = table(directory)
@@ -209,20 +239,22 @@ def plot(directory, column, key, axes=None):
            f"{column} and {key} cannot be drawn against each other: one of them is a whole series")
     figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
     others = [name for name in keys if name != key]
-    lines = numpy.array([", ".join(f"{name.split('/')[-1]} {columns[name][k]}" for name in others)
+    units = {name: labels[name].removeprefix(name).replace(",", "", 1) for name in others}
+    lines = numpy.array([", ".join(f"{name.split('/')[-1]} {columns[name][k]}{units[name]}" for name in others)
                          for k in range(len(columns[column]))])
-    few = len(set(lines)) <= 12
+    few, text = len(set(lines)) <= 12, columns[key].dtype.kind == "O"
     for k, label in enumerate(dict.fromkeys(lines)):
         x, y, color = columns[key][lines == label], columns[column][lines == label], style.RUNS[k % len(style.RUNS)]
         if y.ndim > 1:
             axis.plot(x.T, y.T, color=color)[0].set_label(label)
             continue
-        order = numpy.argsort(x)
-        dash = ("-", "--", ":")[k // len(style.RUNS)] if few else ""  # another dash when the colours repeat
+        order = numpy.arange(len(x)) if text else numpy.argsort(x)
+        # another dash when the colours repeat
+        dash = ("-", "--", ":")[k // len(style.RUNS)] if few and not text else ""
         axis.plot(x[order], y[order], "o", linestyle=dash, ms=3.5, color=color if few else style.RUNS[0],
                   label=label if few else None)
-    along = columns[key]
-    if along.dtype.kind in "fi" and along.ndim == 1 and along.min() > 0 and along.max() > 30 * along.min():
+    along = columns[key] if columns[key].dtype.kind in "fi" and columns[key].ndim == 1 else numpy.zeros(1)
+    if numpy.nanmin(along) > 0 and numpy.nanmax(along) > 30 * numpy.nanmin(along):
         axis.set_xscale("log")
     axis.set(xlabel=labels[key], ylabel=labels[column])
     if axis.get_legend_handles_labels()[1] and others:
