@@ -131,12 +131,15 @@ class Outcome:
     """Outcome of one run of a Study. One of these is true: `done` (the run was completed), `failed`, `refused` (the
     deck has a mistake), or `slow` (stopped at the time limit or by a signal). `stopped`: true if stopped by a signal.
     `message`: last line on standard error. `seconds`: wall time. `processor_seconds`: processor time of all ranks.
+    `limit`: the limit at which the run was stopped; infinite if there was none.
     `series`: series of the run. `final`, `counts`, `phases`: sections of its summary."""
 
     def __init__(self, directory, note):
         self.directory, self.message, self.seconds = pathlib.Path(directory), note["message"], note["seconds"]
         self.processor_seconds = note.get("processor_seconds", math.nan)
         self.code, self.command = note["code"], note["command"]
+        # earlier versions noted no limit: a run that such a version stopped at its limit is resumed
+        self.limit = note.get("limit", 0) if self.code is None else math.inf
 
     done = property(lambda self: self.code in (0, 1) and (self.directory / "summary.yaml").exists())
     failed = property(lambda self: self.status == "failed")
@@ -178,8 +181,8 @@ class Study:
 
     def run(self, decks, settings, ranks=1):
         """Returns the Outcome of `tanktread decks… --set …`. `decks`: a path (see deck_at), or several paths; later
-        decks override earlier ones. `settings`: {"Section/key": value}. A run that was stopped by a signal, or killed
-        together with its study, is resumed from its checkpoint."""
+        decks override earlier ones. `settings`: {"Section/key": value}. A run that was stopped by a signal or at a
+        smaller limit, or killed together with its study, is resumed from its checkpoint, or repeated if it has none."""
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
         note, before = where / "outcome.json", None
@@ -187,14 +190,15 @@ class Study:
             before = Outcome(where, parsed(note, json.loads))
         # A run that was refused or has no results is repeated: another version of the program may accept its keys.
         began = before and not before.refused and (where / "run.h5").exists()
-        if before and (where in self._made or (began and not before.stopped and not self.fresh)):
+        unfinished = not before or before.stopped or before.limit < (self.limit or math.inf)
+        if before and (where in self._made or (began and not unfinished and not self.fresh)):
             return before
         self._made.add(where)
         # without --bind-to none, runs side by side would all be bound to the first cores
         launcher = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks)] if ranks > 1 else []
         program, made = launcher + [str(self.program), "--quiet"], None
         # If results exist without outcome.json, the study was killed during the run.
-        if (where / "run.h5").exists() and (before.stopped if before else True) and not self.fresh:
+        if (where / "run.h5").exists() and unfinished and not self.fresh:
             made = self._make(program + ["--resume", str(where)])
         if made is None or made["code"] == 2:  # not resumed, or there is no checkpoint
             shutil.rmtree(where, ignore_errors=True)
@@ -223,7 +227,8 @@ class Study:
             code, said = None, [f"stopped after {self.limit:g} s of processor time"]
         elif killed:
             said.append(f"killed by signal {killed}")
-        return {"code": code, "message": said[-1] if said else "", "seconds": time.monotonic() - start,
+        return {"code": code, "message": said[-1] if said else "", "limit": self.limit,
+                "seconds": time.monotonic() - start,
                 "processor_seconds": usage.ru_utime + usage.ru_stime, "command": " ".join(map(quoted, words))}
 
     @staticmethod

@@ -304,6 +304,17 @@ def one_that_fails_does_not_stop_the_others_and_none_at_all_is_said():
     check("none of the runs" in _sweep("study.yaml", code=1), "a sweep of failures")
 
 
+def a_run_that_reached_its_limit_is_made_again_with_a_larger_one():
+    deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "scheme: bs3, final time: 40.0"))  # two processor seconds
+    ends, times = [], []
+    for limit in "limit: 1", "limit: 1", "":
+        deck(f"deck: deck.yaml\nrecord: [taylor_inertia]\n{limit}\n", "study.yaml")
+        _sweep("study.yaml", "--jobs", "1", code=1 if limit else 0)
+        ends.append(_rows()[0]["status"])
+        times += [path.stat().st_mtime_ns for path in pathlib.Path("results/study/runs").glob("*/outcome.json")]
+    check(ends == ["stopped", "stopped", "done"] and times[0] == times[1], ends, times)
+
+
 def a_sweep_that_is_killed_goes_on():
     deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "final time: 8.0"))
     deck(STUDY, "study.yaml")

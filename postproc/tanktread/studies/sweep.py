@@ -12,6 +12,7 @@ A study is a YAML file; inputs/studies/study.yaml is an example. Its keys are
     together   {key: values}. The lists have the same length: the first run takes the first value of each, and so on
     random     {number, seed, keys: {key: values}}. The values of `number` runs are drawn at random
     record     {column: series}. The columns of the table, see below
+    limit      largest processor time of a run in seconds (default: no limit)
 
 If more than one of `grid`, `together` and `random` is given, all their combinations are run. Values are a list, or
 {from, to, number, spacing: linear | logarithmic}. Random values are drawn from a list or from a range {from, to,
@@ -22,8 +23,9 @@ of series; their last values are the columns.
 Values may have units, such as 40 1/s, if the deck has the section Units. The tables contain them as numbers in the
 units of the deck.
 
-A run that is complete is not repeated, even if the study has changed. A run that was interrupted is resumed. The row of
-a run that fails contains its error message.
+A run that is complete is not repeated, even if the study has changed. A run that was interrupted is resumed. A run that
+was stopped at its `limit` is resumed, or repeated if it has no checkpoint, when the limit is larger or removed. The row
+of a run that fails contains its error message.
 """
 
 import collections
