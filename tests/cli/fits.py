@@ -185,7 +185,7 @@ def mistakes_are_one_sentence():
     deck(SHEAR)
     numpy.savetxt("arc.csv", _ellipse(1, 1)[:40], delimiter=",")
     numpy.savetxt("circle.csv", _ellipse(1, 1), delimiter=",")
-    datum = {"series": "taylor_inertia", "value": 0.3, "error": 0.01}
+    datum, bare = {"series": "taylor_inertia", "value": 0.3, "error": 0.01}, {"series": "taylor_inertia", "value": 0.3}
     for change, words in (({"unknown": {}}, "nothing is unknown"), ({"deck": "other.yaml"}, "no deck other.yaml"), ({"models": 1}, "models is not known"),
                           ({"unknown": {"Membrane/capillary number": 0.3, "Particle/viscosity ratio": 1.0}}, "2 numbers are unknown"),
                           ({"experiments": {"a": {"data": [{"outline": "arc.csv", "scale": 1, "error": 0.1}]}}}, "does not close"),
@@ -194,6 +194,7 @@ def mistakes_are_one_sentence():
                           ({"experiments": {"a": {"data": [datum | {"series": "tailor"}]}}}, "no series tailor"),
                           ({"experiments": {"a": {"data": [datum | {"at": 9.0}]}}}, "before its data"),
                           ({"experiments": {"a": {"data": [datum | {"origin": "free"}]}}}, "is of a curve"),
+                          ({"experiments": {"a": {"data": [datum]}, "b": {"data": [bare]}}}, "missing for b: data, but other"),
                           ({"set": 3}, "set must be a list of keys"), ({"laws": {"one": 3}}, "the law one must be"), ({"next": {"A/b": 3}}, "a list of values"),
                           ({"experiments": {"a": {"data": [datum | {"value": "much"}]}}}, "much is not a number"),
                           ({"unknown": {"Membrane/capillary numbr": 0.3}}, "capillary number meant"),

@@ -34,7 +34,8 @@ The position of an outline in its picture is always fitted. Derivatives are fini
 iteration makes one run for each pair of an unknown and an experiment. Positions and scales need no runs. Runs are kept,
 and they are found again if all their keys are equal. Therefore it is best not to change a `start`.
 
-Standard errors follow from the errors of the data and, if the deck requests an accuracy, from the estimated errors of
+Either all data have errors or none. If none has, they all have the same weight, and standard errors follow from the
+residuals. Otherwise standard errors follow from the errors of the data and, if the deck requests an accuracy, from the estimated errors of
 the series. If a key of the deck is a measured value with an error, give it under `unknown`, for example
 Flow/viscosity: {known: 0.97, error: 0.01}. If chi square is too large for the errors of the data, standard errors that
 follow from the residuals are printed too. The most likely cause is a mesh that is too coarse for the data.
@@ -60,6 +61,7 @@ def load(path, study):
     expect(text["experiments"], f"{path} has no experiments")
     laws = {law: keys_of(settings, f"{path}: the law {law}") for law, settings in text["laws"].items()}
     experiments = [Experiment(name, given, pathlib.Path(path).parent) for name, given in text["experiments"].items()]
+    check_errors(experiments)
     for key, values in text["next"].items():
         expect(isinstance(values, list) and values, f"{path}: next, {key} must be a list of values, but is {values}")
     fits = []
@@ -70,6 +72,14 @@ def load(path, study):
         fits.append(Fit(law, settings, unknowns, experiments, Runs(study, text["deck"], law)))
         expect(fits[-1].unknowns, f"{path}: nothing is unknown")
     return fits, text
+
+
+def check_errors(experiments):
+    """Raises Mistake if some data have errors and others have none: their residuals could not be weighted."""
+    data = [datum for experiment in experiments for datum in experiment.data]
+    bare = [datum.name for datum in data if datum.error is None]
+    expect(len(bare) in (0, len(data)),
+           f"`error` is missing for {', '.join(bare)}, but other data have one: give it for all data or for none")
 
 
 def run(path, directory=None, jobs=None, laws=None):
