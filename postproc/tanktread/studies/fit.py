@@ -34,11 +34,12 @@ The position of an outline in its picture is always fitted. Derivatives are fini
 iteration makes one run for each pair of an unknown and an experiment. Positions and scales need no runs. Runs are kept,
 and they are found again if all their keys are equal. Therefore it is best not to change a `start`.
 
-Either all data have errors or none. If none has, they all have the same weight, and standard errors follow from the
-residuals. Otherwise standard errors follow from the errors of the data and, if the deck requests an accuracy, from the estimated errors of
-the series. If a key of the deck is a measured value with an error, give it under `unknown`, for example
-Flow/viscosity: {known: 0.97, error: 0.01}. If chi square is too large for the errors of the data, standard errors that
-follow from the residuals are printed too. The most likely cause is a mesh that is too coarse for the data.
+Either all data have errors or none. If none has, all data have the same weight, and standard errors follow from the
+residuals; `known` values and scales with an error are then refused. Otherwise standard errors follow from the errors of
+the data and, if the deck requests an accuracy, from the estimated errors of the series. If a key of the deck is a
+measured value with an error, give it under `unknown`, for example Flow/viscosity: {known: 0.97, error: 0.01}. If chi
+square is too large for the errors of the data, standard errors that follow from the residuals are printed too. The most
+likely cause is a mesh that is too coarse for the data.
 """
 
 import os
@@ -61,7 +62,6 @@ def load(path, study):
     expect(text["experiments"], f"{path} has no experiments")
     laws = {law: keys_of(settings, f"{path}: the law {law}") for law, settings in text["laws"].items()}
     experiments = [Experiment(name, given, pathlib.Path(path).parent) for name, given in text["experiments"].items()]
-    check_errors(experiments)
     for key, values in text["next"].items():
         expect(isinstance(values, list) and values, f"{path}: next, {key} must be a list of values, but is {values}")
     fits = []
@@ -71,15 +71,21 @@ def load(path, study):
         unknowns = [Unknown(key, given) for key, given in unknowns.items()]
         fits.append(Fit(law, settings, unknowns, experiments, Runs(study, text["deck"], law)))
         expect(fits[-1].unknowns, f"{path}: nothing is unknown")
+        check_errors(fits[-1])
     return fits, text
 
 
-def check_errors(experiments):
-    """Raises Mistake if some data have errors and others have none: their residuals could not be weighted."""
-    data = [datum for experiment in experiments for datum in experiment.data]
-    bare = [datum.name for datum in data if datum.error is None]
-    expect(len(bare) in (0, len(data)),
+def check_errors(fit):
+    """Raises Mistake if only some of the data, known values and scales of a fit have errors: their residuals could not
+    be weighted."""
+    bare = [datum.name for datum in fit.data if datum.error is None]
+    expect(len(bare) in (0, len(fit.data)),
            f"`error` is missing for {', '.join(bare)}, but other data have one: give it for all data or for none")
+    given = [one.name for one in fit.unknowns if one.known is not None]
+    given += [f"the scale of {datum.name}" for datum in fit.data if datum.length > datum.count]
+    expect(fit.stated or not given,
+           f"{', '.join(given)} has an error, but the data have none, so that they cannot be weighted: give `error` "
+           "for all data")
 
 
 def run(path, directory=None, jobs=None, laws=None):
