@@ -132,13 +132,14 @@ def of_sweep(directory):
 
 def of_fit(directory):
     fits = parsed(directory / "fit.yaml")
-    rows = [["law", "unknown", "value", "standard error", "chi square", "degrees of freedom", "AIC", "runs"]]
-    expect(isinstance(fits, dict) and fits and all(isinstance(fit, dict) and {"unknown", *rows[0][4:]} <= set(fit)
+    of_law = ["chi square", "degrees of freedom", "AIC", "runs"]
+    rows = [["law", "unknown", "value", "standard error", "at bound", *of_law]]
+    expect(isinstance(fits, dict) and fits and all(isinstance(fit, dict) and {"unknown", *of_law} <= set(fit)
                                                    for fit in fits.values()), f"{directory}/fit.yaml is damaged")
     for law, fit in fits.items():
         for name, one in fit["unknown"].items():
             found = [one["value"], one["error"]] if numpy.isfinite(one["error"]) else ["not determined", ""]
-            rows.append([law, name, *found, *(fit[key] for key in rows[0][4:])])
+            rows.append([law, name, *found, one.get("at bound", ""), *(fit[key] for key in of_law)])
     picture = base64.b64encode((directory / "fit.png").read_bytes()).decode()
     return {"title": f"fit {directory.resolve().name}", "facts": {"best law": next(iter(fits))}, "picture": picture,
             "sections": [("What the data say", "text", parsed(directory / "fit.txt", str)),

@@ -137,6 +137,17 @@ def a_value_known_beforehand_counts():
     close(_found()["Particle/radius"][0], 1.2, 1e-3, said)
 
 
+def a_value_at_a_bound_is_named():
+    deck(STILL.replace("per side: 8", "per side: 3"))
+    data = [{"series": "length_x1", "value": 2.4, "error": 0.03}, {"series": "length_x3", "value": 1.8, "error": 0.03}]  # radius 1, error 0.01
+    for given, bound in (({"start": 1.1, "from": 1.05}, "from"), ({"start": 0.9, "to": 0.97}, "to"), ({"start": 1.1, "from": 0.98, "to": 1.2}, None)):
+        said = _fit({"deck": "deck.yaml", "unknown": {"Particle/radius": given}, "experiments": {"still": {"data": data}}})
+        one = yaml.safe_load(open("results/experiment/fit.yaml"))["the deck's law"]["unknown"]["Particle/radius"]
+        close(one["value"], given[bound] if bound else 1.0, 1e-3, "radius")
+        check(one.get("at bound") == bound and ("lies at its bound" in said) == bool(bound), said)
+        check(bound is None or f"Particle/radius lies at its bound `{bound}`: a {'smaller' if bound == 'from' else 'larger'} value" in said, said)
+
+
 def an_outline_is_that_of_the_shape():
     deck(STILL.replace("initial shape:", "orientation: [0.0, 30.0, 0.0], initial shape:"))
     shot = tanktread.run("deck.yaml").snapshots()[0]

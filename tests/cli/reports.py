@@ -146,11 +146,12 @@ def a_sweep_is_a_table_and_a_plot():
 def a_fit_is_a_picture_and_a_table():
     deck(DECK)
     pathlib.Path("curve.csv").write_text("0.5,0.2\n0.75,0.25\n1,0.3\n")
-    deck("deck: deck.yaml\nunknown: {Membrane/capillary number: {start: 0.3}}\n"
+    deck("deck: deck.yaml\nunknown: {Membrane/capillary number: {start: 0.2, to: 0.25}}\n"
          "experiments: {one: {data: [{series: taylor_inertia, curve: curve.csv, error: 0.01}]}}\n", "experiment.yaml")
     _script("fit", "experiment.yaml", "--jobs", "1")
     _script("report", "results/experiment", "-o", "page.html")
-    check(_content("page.html")["sections"][1][2][1][1] == "Membrane/capillary number", "the unknown")
+    row = dict(zip(*_content("page.html")["sections"][1][2][:2]))
+    check(row["unknown"] == "Membrane/capillary number" and row.get("at bound") == "to", row)
     told = _used("page.html")
     check(told is None or (told["pictures"][0] > 300 and "Membrane/capillary number" in told["cells"]), told)
 

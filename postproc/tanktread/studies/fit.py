@@ -7,8 +7,9 @@ or several of which later ones override earlier ones), `set` (settings of all ru
 and `next`:
 
     unknown: {Membrane/shear modulus: {start: 1}}
-        a key to fit, and its start value. Optional: `from` and `to` (bounds); `known` and `error` (a value known
-        beforehand and its standard error); `spacing: linear` (for a quantity that may be negative)
+        a key to fit, and its start value. Optional: `from` and `to` (bounds; by default a thousandth of the start and
+        1000 times the start); `known` and `error` (a value known beforehand and its standard error); `spacing: linear`
+        (for a quantity that may be negative; the default bounds are then 6.9 times the start below and above it)
     laws: {skalak: {Membrane/law: Skalak, unknown: {…}}}
         the settings of each law. All laws are fitted, and the fits are compared. `unknown` adds unknowns for this law,
         or changes their start values
@@ -109,7 +110,8 @@ def run(path, directory=None, jobs=None, laws=None):
     (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
     record = {fit.law: {
         "chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic), "runs": fit.runs.count,
-        "unknown": {name: dict(zip(("value", "error"), map(float, found))) for name, found in fit.values.items()}}
+        "unknown": {name: dict(zip(("value", "error"), map(float, found))) | ({"at bound": bound} if bound else {})
+                    for (name, found), bound in zip(fit.values.items(), fit.at_bound)}}
         for fit in fits}
     (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False), encoding="utf-8")
     style.save(style.draw(draw, fits), directory / "fit.png")

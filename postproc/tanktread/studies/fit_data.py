@@ -43,6 +43,11 @@ class Unknown:
     def value(self, number):
         return float(numpy.exp(number) if self.logarithmic else number * self.unit)
 
+    def bound_of(self, number, step):
+        """Returns the bound, `from` or `to`, that lies between a number and number + step; None if there is none."""
+        low, high = self.bounds
+        return "from" if number + step < low else "to" if number + step > high else None
+
     def error_of(self, value, error):
         """Returns the standard error of the value. `error`: standard error of number(value)."""
         return error * (value if self.logarithmic else self.unit)

@@ -160,6 +160,11 @@ class Fit:
         self.residual = function(self.x)
         self.square = float(self.residual @ self.residual)
         self.errors()
+        # the step that would minimise chi square if only this unknown varied and had no bounds
+        with numpy.errstate(invalid="ignore", divide="ignore"):
+            steps = -(self.derivative.T @ self.residual) / numpy.square(self.derivative).sum(0)
+        self.at_bound = [one.bound_of(number, step) if known else None
+                         for one, number, step, known in zip(self.unknowns, self.x, steps, self.told)]
         return self
 
     def errors(self):

@@ -89,7 +89,7 @@ def told(fits, rows):
         if fit.missed:
             lines.append(f"  the residuals are {fit.scatter:.3g} times what the errors of the data say: a finer "
                          "mesh, a free scale or another law first")
-        for unknown, (name, (value, error)) in zip(fit.unknowns, fit.values.items()):
+        for unknown, bound, (name, (value, error)) in zip(fit.unknowns, fit.at_bound, fit.values.items()):
             unit = fit.runs.unit(unknown.key).replace(",", "", 1)
             if numpy.isfinite(error):
                 also = f"; by the residuals ± {fit.scatter * error:.2g}" if fit.missed else ""
@@ -98,6 +98,10 @@ def told(fits, rows):
             else:
                 lines.append(f"  {name}: not determined by these data (they are as well met by values far from "
                              f"{value:.3g}{unit})")
+            if bound:
+                better = "smaller" if bound == "from" else "larger"
+                lines.append(f"  {name} lies at its bound `{bound}`: a {better} value would fit the data better, and "
+                             "the standard errors ignore the bound")
         size = numpy.sqrt(numpy.diag(fit.covariance))
         correlation = fit.covariance / numpy.outer(size, size)
         shown = enumerate(itertools.compress(fit.unknowns, fit.told))
