@@ -272,8 +272,6 @@ class Study:
         key = re.sub(r"^Particles/[^/]*/(?=.*/)", "", key)  # Particles/cell/Membrane/law is described as Membrane/law,
         key = re.sub(r"^Particles/[^/]*/", "Particle/", key)  # and Particles/cell/radius as Particle/radius
         section, _, name = key.rpartition("/")
-        if section.startswith("Particles/"):  # the reference has the keys of all particles in the sections of one
-            section = "/".join(section.split("/")[2:]) or "Particle"
         body = self._manual.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
         row = next((row for row in body.splitlines() if row.startswith(f"| `{name}`")), "|||| |")
         unit = row.split("|")[4].strip()
