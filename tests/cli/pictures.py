@@ -6,6 +6,7 @@ import subprocess
 import sys
 from unittest import mock
 
+import matplotlib.image
 import numpy
 
 from harness import PROGRAM, SOURCE, check, close, deck, main, package, run
@@ -52,6 +53,15 @@ def a_run_is_drawn():
     check("taylor_inertia" in _command("read", "results"), "tanktread-read does not list the series")
     said = _command("shape", "results", "--field", "colour", code=2)
     check("colour" in said and "load" in said, said)
+
+
+def nothing_is_cut_off_at_the_edges_of_a_picture():
+    tall = DECK.replace("shape: sphere }", "shape: ellipsoid, semi-axes: [0.4, 0.4, 2.0], motion: free }").replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n", "")
+    run(deck(tall.replace("final time: 0.2", "final time: 0.001")), "--output", "tall", "--quiet")
+    _command("shape", "tall", "-o", "tall.png")
+    picture = matplotlib.image.imread("tall.png")[..., :3]
+    for edge, pixels in {"left": picture[:, :8], "right": picture[:, -8:], "upper": picture[:8], "lower": picture[-8:]}.items():
+        check((pixels == 1).all(), f"something touches the {edge} edge of the picture")
 
 
 def options_are_read_as_what_they_choose_from():

@@ -40,8 +40,10 @@ def shape(runs, *axes, time: float | None = None, field: str = "traction", view:
         draw_surface(axis, shot, field, norm, colours, *view)
         axis.set_title(f"{run.name}, t = {shot.time:g}")
     label = field_label(runs, field, pattern if pattern == "{}" else "magnitude of the {}")
+    left, right, low, high = axes[0].axis()
+    width = 0.5 * max(1, 0.5 * (high - low) / (right - left))  # of the colour bar, divided by that of the picture
     axes[0].figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), orientation="horizontal", label=label,
-                            cax=axes[0].inset_axes([0.3, -0.08, 0.5, 0.03]))
+                            cax=axes[0].inset_axes([0.55 - width / 2, -0.08, width, 0.03]))
     draw_sections(axes[-1], runs, shots)
 
 
