@@ -14,7 +14,7 @@ from harness import PROGRAM, SOURCE, check, close, deck, main, package, run
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
 from tanktread import figures
-from tanktread.figures import draw, register, render
+from tanktread.figures import draw, register, render, style, surfaces
 from tanktread.figures.series import unbroken
 from tanktread.interpolation import difference
 
@@ -62,6 +62,35 @@ def nothing_is_cut_off_at_the_edges_of_a_picture():
     picture = matplotlib.image.imread("tall.png")[..., :3]
     for edge, pixels in {"left": picture[:, :8], "right": picture[:, -8:], "upper": picture[:8], "lower": picture[-8:]}.items():
         check((pixels == 1).all(), f"something touches the {edge} edge of the picture")
+
+
+def a_field_that_is_uniform_up_to_rounding_has_one_colour():
+    deck("""
+Tanktread:
+  Flow: { type: quiescent }
+  Particles:
+    defaults: { motion: free, force: [0.0, 0.0, -1.0], Surface: { elements per side: 4 } }
+    left: { center: [-1.5, 0.0, 0.0] }
+    right: { center: [1.5, 0.0, 0.0] }
+  Time: { final time: 0.01 }
+""")
+    run("deck.yaml", "--output", "pair", "--quiet")
+    shot = tanktread.run("pair").snapshots()[-1]
+    traction = numpy.linalg.norm(shot.fields["traction"], axis=1)
+    check(0 < numpy.ptp(traction) < 1e-9 * traction.max(), "the traction does not differ by rounding errors only", numpy.ptp(traction))
+    norm = surfaces.field_of([shot], "traction")[0]
+    close(abs(norm(traction) - 0.5).max(), 0, 1e-6, "difference from the middle of the colour bar")
+    for axis in figures.meshes("pair").axes:
+        if axis.name == "polar":
+            close(max(axis.lines[0].get_ydata()) / axis.get_ylim()[1], 0, 1e-6, "height of the curve of a uniform field")
+    for low, high in (1.5, 1.500001), (1.49, 1.51), (0, 2e-7), (-3e7, 3e7):
+        with style.plt.rc_context(style.STYLE):
+            bar, axis = style.plt.subplots(figsize=(2.4, 1.2))
+            surfaces.colour_bar(bar, style.plt.Normalize(low, high), style.FIELD, cax=axis, label="label")
+            bar.canvas.draw()
+        check(axis.xaxis.get_offset_text().get_text() == "", low, high, axis.xaxis.get_offset_text().get_text())
+        ends = [box.get_window_extent() for box in axis.get_xticklabels() if low <= box.get_position()[0] <= high]
+        check(all(one.x1 < other.x0 for one, other in zip(ends, ends[1:])), f"ticks between {low} and {high} overlap")
 
 
 def options_are_read_as_what_they_choose_from():

@@ -2,6 +2,7 @@
 
 import numpy
 from matplotlib.animation import FuncAnimation
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from ..mistakes import expect, log
 from ..results import field_label
@@ -11,17 +12,30 @@ from .draw import (VIEW, draw_sections, draw_surface, draw_triad, magnitude, mid
 from .register import figure
 from .series import unbroken
 
+ROUNDING = 1e-9  # a field is uniform if its range, divided by its largest absolute value, is smaller
+TICKS = FuncFormatter(lambda value, _: f"{value:.10g}".replace("-", "−"))  # without a common offset or factor
+
 
 def field_of(shots, field):
-    """Returns the colour normalisation, the colour map and the label pattern for a field of several snapshots. Raises
-    Mistake if a snapshot does not contain the field."""
+    """Returns the colour normalisation, the colour map and the label pattern for a field of several snapshots. If the
+    field is uniform, the colour bar extends from 0.99 to 1.01 times its value. Raises Mistake if a snapshot does not
+    contain the field."""
     for shot in shots:
         expect(field in shot.fields, f"{shot.path} holds no field {field}; there are: {', '.join(sorted(shot.fields))}")
     values = numpy.concatenate([magnitude(shot.fields[field]) for shot in shots])
     low, high, pattern = values.min(), values.max(), "|{}|" if numpy.ndim(shots[0].fields[field]) > 1 else "{}"
     bound = max(-low, high)
+    if 0 <= low and high - low < ROUNDING * bound:
+        low, high = 0.99 * low, 1.01 * high
     limits, colours = ((-bound, bound), style.SIGNED) if low < 0 else ((low, high), style.FIELD)
     return style.plt.Normalize(*limits), colours, pattern
+
+
+def colour_bar(figure, norm, colours, **properties):
+    """Draws a horizontal colour bar. The text of a common offset or factor of its ticks would overlap the label."""
+    longest = max(len(TICKS(place)) for place in MaxNLocator(4).tick_values(norm.vmin, norm.vmax))
+    figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), orientation="horizontal", format=TICKS,
+                    ticks=MaxNLocator(2) if longest > 4 else None, **properties)
 
 
 @figure(lambda runs: (1, len(runs) + 1, 4.4 * len(runs) + 4.6, 4.4))
@@ -42,8 +56,8 @@ def shape(runs, *axes, time: float | None = None, field: str = "traction", view:
     label = field_label(runs, field, pattern if pattern == "{}" else "magnitude of the {}")
     left, right, low, high = axes[0].axis()
     width = 0.5 * max(1, 0.5 * (high - low) / (right - left))  # of the colour bar, divided by that of the picture
-    axes[0].figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), orientation="horizontal", label=label,
-                            cax=axes[0].inset_axes([0.55 - width / 2, -0.08, width, 0.03]))
+    colour_bar(axes[0].figure, norm, colours, label=label,
+               cax=axes[0].inset_axes([0.55 - width / 2, -0.08, width, 0.03]))
     draw_sections(axes[-1], runs, shots)
 
 
@@ -71,7 +85,7 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     grid = figure.add_gridspec(3, len(shots), height_ratios=[4 * tall + 0.4, 0.12, 3.9])
     surfaces, polars = zip(*[(figure.add_subplot(grid[0, k]), figure.add_subplot(grid[2, k], projection="polar"))
                              for k in range(len(shots))])
-    reach = 1e-12
+    reach = max(1e-12, 0.1 * (norm.vmax - norm.vmin))  # rounding errors of a uniform field stay invisible
     for (run, _), shot, surface, polar in zip(pairs, shots, surfaces, polars):
         draw_surface(surface, shot, field, norm, colours, *view)
         row = numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1
@@ -83,12 +97,13 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
         polar.plot([*angle, angle[0] + 2 * numpy.pi], [*variation, variation[0]], color=style.RUNS[0], linewidth=1)
         polar.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
         polar.set_rlabel_position(55)
+        polar.yaxis.set_major_formatter(TICKS)
         polar.tick_params(labelsize=7.5)
         polar.set_title(f"|d {field}/dl| on the section x₂ = 0, l in R$_C$", fontsize=8.5, loc="center")
     share_window(surfaces)
     style.plt.setp(polars, ylim=(0, 1.05 * reach))
-    figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),
-                    orientation="horizontal", label=field_label(runs, field, pattern))
+    colour_bar(figure, norm, colours, cax=figure.add_subplot(grid[1, len(shots) // 2]),
+               label=field_label(runs, field, pattern))
     return figure
 
 
