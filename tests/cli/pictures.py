@@ -93,6 +93,15 @@ Tanktread:
         check(all(one.x1 < other.x0 for one, other in zip(ends, ends[1:])), f"ticks between {low} and {high} overlap")
 
 
+def meshes_of_a_snapshot_are_drawn_once():
+    deck(DECK.replace("final time: 0.2", "final time: 0.001"))
+    run("deck.yaml", "--output", "short", "--quiet", "--set", "Output/interval=1")
+    count = len(tanktread.run("short").snapshots())
+    for name, times, expected in ("short", None, count), ("short", [0, 0, 0], 1):
+        drawn = sum(axis.name == "polar" for axis in figures.meshes(name, times=times).axes)
+        check(drawn == expected, f"{drawn} meshes instead of {expected}")
+
+
 def options_are_read_as_what_they_choose_from():
     """An option with a few allowed numbers is read as a number. An option that is on by default can be switched off."""
     of = lambda name, *words: register.parser_of(name).parse_args(["results", *words])

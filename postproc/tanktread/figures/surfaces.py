@@ -76,8 +76,9 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     view: azimuth and elevation of the observer, in degrees"""
     end = runs[0].series["time"][-1]
     moments = times or [0, end / 2, end]
-    pairs = [(run, moment) for run in runs for moment in (moments if len(runs) == 1 else moments[-1:])]
-    shots = [run.snapshot_at(moment).scaled(run) for run, moment in pairs]
+    found = [(run, run.snapshot_at(moment)) for run in runs for moment in (moments if len(runs) == 1 else moments[-1:])]
+    pairs = list({shot.path: (run, shot.scaled(run)) for run, shot in found}.values())  # each snapshot once
+    shots = [shot for _, shot in pairs]
     norm, colours, pattern = field_of(shots, field)
     seen = numpy.concatenate([(shot.points - middle(shot.points)) @ view_axes(*view)[:2].T for shot in shots])
     tall = 1.15 * numpy.ptp(seen[:, 1]) / numpy.ptp(seen[:, 0])
@@ -86,7 +87,7 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     surfaces, polars = zip(*[(figure.add_subplot(grid[0, k]), figure.add_subplot(grid[2, k], projection="polar"))
                              for k in range(len(shots))])
     reach = max(1e-12, 0.1 * (norm.vmax - norm.vmin))  # rounding errors of a uniform field stay invisible
-    for (run, _), shot, surface, polar in zip(pairs, shots, surfaces, polars):
+    for (run, shot), surface, polar in zip(pairs, surfaces, polars):
         draw_surface(surface, shot, field, norm, colours, *view)
         row = numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1
         points = run.series["n_control_points"][row]
