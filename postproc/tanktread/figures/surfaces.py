@@ -69,7 +69,8 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
 
     The variation is the magnitude of the derivative of the field with respect to arc length. It is drawn in polar
     coordinates. Before the polar angle is computed, the section is scaled to equal length and height, because otherwise
-    the tips of slender shapes would take up a small range of angles.
+    the tips of slender shapes would take up a small range of angles. If there are several particles, each has its own
+    curve, of the section normal to x2 through its own middle.
 
     times: simulated times (default: the start, the middle and the end); if there are several runs, only the last one
     field: field whose variation is drawn
@@ -88,19 +89,26 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
                              for k in range(len(shots))])
     reach = max(1e-12, 0.1 * (norm.vmax - norm.vmin))  # rounding errors of a uniform field stay invisible
     for (run, shot), surface, polar in zip(pairs, surfaces, polars):
+        several = len(run.particles) > 1
         draw_surface(surface, shot, field, norm, colours, *view)
         row = numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1
         points = run.series["n_control_points"][row]
         surface.set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
-        angle, variation = section_variation(shot, field)
-        log.info(f"{shot.path}: largest variation {variation.max():.3g}")
-        reach = max(reach, variation.max())
-        polar.plot([*angle, angle[0] + 2 * numpy.pi], [*variation, variation[0]], color=style.RUNS[0], linewidth=1)
+        curves = {particle: section_variation(shot, field, particle) for particle in run.particles}
+        largest, whose = max((variation.max(), particle) for particle, (_, variation) in curves.items())
+        reach = max(reach, largest)
+        log.info(f"{shot.path}: largest variation {largest:.3g}" + several * f", of {whose}")
+        for (particle, (angle, variation)), color in style.coloured(curves.items()):
+            polar.plot([*angle, angle[0] + 2 * numpy.pi], [*variation, variation[0]], color=color, linewidth=1,
+                       label=particle)
+        if several and len(curves) <= len(style.RUNS):
+            polar.legend(loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=3)
         polar.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
         polar.set_rlabel_position(55)
         polar.yaxis.set_major_formatter(TICKS)
         polar.tick_params(labelsize=7.5)
-        polar.set_title(f"|d {field}/dl| on the section x₂ = 0, l in R$_C$", fontsize=8.5, loc="center")
+        plane = "the sections normal to x₂" if several else "the section x₂ = 0"
+        polar.set_title(f"|d {field}/dl| on {plane}, l in R$_C$", fontsize=8.5, loc="center")
     share_window(surfaces)
     style.plt.setp(polars, ylim=(0, 1.05 * reach))
     colour_bar(figure, norm, colours, cax=figure.add_subplot(grid[1, len(shots) // 2]),
