@@ -167,6 +167,10 @@ class Run:
         name = self.rate[1]
         return f"time · {name}" if name else f"time{self.in_units('time') or ', in the unit of the deck'}"
 
+    def moment(self, time, form="g"):
+        """Returns "t = 0.5", or "point 5" on a branch, for titles of figures. `form`: format of the time."""
+        return f"point {time:.0f}" if "Continuation" in self.deck else f"t = {time:{form}}"
+
     @property
     def radius(self):
         """R_C: radius of the sphere with the volume of the first particle."""

@@ -102,6 +102,20 @@ def meshes_of_a_snapshot_are_drawn_once():
         check(drawn == expected, f"{drawn} meshes instead of {expected}")
 
 
+def points_of_a_branch_are_named_by_their_numbers():
+    deck(DECK.replace("simple shear", "uniaxial extension").replace("0.3 }", "0.05 }").replace("Time: { final time: 0.2 }\n  Output: { interval: 0.1 }",
+                                                                    "Steady: { tolerance: 1.0e-3 }\n  Continuation: { parameter: Membrane/capillary number, to: 0.06, step: 0.01, points: 2 }"))
+    run("deck.yaml", "--output", "branch", "--quiet")
+    last = len(tanktread.run("branch").time) - 1
+    titled = {figures.shape: f"branch, point {last}", figures.meshes: "branch\npoint 0", figures.animation: f"branch, point {last}"}
+    for function, title in titled.items():
+        axes = function("branch", **({"frame": last} if function is figures.animation else {})).axes
+        found = [axis.get_title(loc="left") for axis in axes]
+        check(any(one.startswith(title) for one in found), f"no title {title}: {found}")
+        labels = [text.get_text() for axis in axes if axis.get_legend() for text in axis.get_legend().get_texts()]
+        check(function is not figures.shape or "point 0" in labels, labels)
+
+
 def options_are_read_as_what_they_choose_from():
     """An option with a few allowed numbers is read as a number. An option that is on by default can be switched off."""
     of = lambda name, *words: register.parser_of(name).parse_args(["results", *words])

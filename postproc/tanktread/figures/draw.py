@@ -98,7 +98,7 @@ def draw_sections(axis, runs, shots):
     for run, shot, color in zip(runs, shots, style.RUNS * len(runs)):
         pieces = section(shot, middle(shot.frame)[1])
         draw_pieces(axis, pieces, color, 1.8)
-        name, time, angle = f"{run.name}: " if len(runs) > 1 else "", f"t = {shot.time:g}", numpy.nan
+        name, time, angle = f"{run.name}: " if len(runs) > 1 else "", run.moment(shot.time), numpy.nan
         if "taylor_inertia" in run.series:  # not a rigid particle
             angle, deformation = (numpy.interp(shot.time, run.series["time"], run.series[key])
                                   for key in ("inclination", "taylor_inertia"))
@@ -112,7 +112,8 @@ def draw_sections(axis, runs, shots):
         axis.plot(*(centre + numpy.outer([-reach, reach], along)).T, color=color, linestyle=(0, (5, 3)), linewidth=1,
                   label=f"{name}inclination {round(angle, 2) + 0.0:.2f}°, D = {deformation:.4f}")
     if moved:
-        axis.plot([], [], color=style.FAINT, linewidth=1, label="at the start")
+        axis.plot([], [], color=style.FAINT, linewidth=1,
+                  label="at the start" if "Continuation" not in runs[0].deck else runs[0].moment(start.time))
     axis.autoscale_view()
     axis.set(aspect="equal", anchor="N", xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$", title="section in the x₁x₃ plane")
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4)

@@ -52,7 +52,7 @@ def shape(runs, *axes, time: float | None = None, field: str = "traction", view:
     norm, colours, pattern = field_of(shots, field)
     for axis, run, shot in zip(axes, runs, shots):
         draw_surface(axis, shot, field, norm, colours, *view)
-        axis.set_title(f"{run.name}, t = {shot.time:g}")
+        axis.set_title(f"{run.name}, {run.moment(shot.time)}")
     label = field_label(runs, field, pattern if pattern == "{}" else "magnitude of the {}")
     left, right, low, high = axes[0].axis()
     width = 0.5 * max(1, 0.5 * (high - low) / (right - left))  # of the colour bar, divided by that of the picture
@@ -93,7 +93,7 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
         draw_surface(surface, shot, field, norm, colours, *view)
         row = numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1
         points = run.series["n_control_points"][row]
-        surface.set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
+        surface.set_title(f"{run.name}\n{run.moment(shot.time, '.3g')}: {points:.0f} control points")
         curves = {particle: section_variation(shot, field, particle) for particle in run.particles}
         largest, whose = max((variation.max(), particle) for particle, (_, variation) in curves.items())
         reach = max(reach, largest)
@@ -150,7 +150,8 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
         xlim, ylim = numpy.transpose([low, high]) + 0.11 * (high[0] - low[0]) * numpy.array([-1, 1])
         # row of the series at the time of the snapshot, or the last row if the series end earlier
         row = min(numpy.searchsorted(run.series["time"], shot.time * (1 - 1e-12)), len(run.time) - 1)
-        title = f"{run.name}, t = {shot.time:.4g}: {run.series['n_control_points'][row]:.0f} control points"
+        points = run.series["n_control_points"][row]
+        title = f"{run.name}, {run.moment(shot.time, '.4g')}: {points:.0f} control points"
         surface.set(xlim=xlim, ylim=ylim, title=title)
         for name, mark in marks.items():
             mark.set_data([run.time[row]], [run.series[name][row]])
