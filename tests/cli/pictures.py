@@ -116,6 +116,21 @@ def points_of_a_branch_are_named_by_their_numbers():
         check(function is not figures.shape or "point 0" in labels, labels)
 
 
+def a_suspension_that_ends_before_the_averages_begin_says_so():
+    deck("""
+Tanktread:
+  Flow: { type: simple shear }
+  Domain: { side lengths: [4.0, 4.0, 4.0] }
+  Particles: { capsule: { Membrane: { capillary number: 0.3 }, Surface: { elements per side: 3 } } }
+  Time: { final time: 0.1 }
+""")
+    run("deck.yaml", "--output", "lattice", "--quiet")
+    said = _command("suspension", "lattice", "--from", "0.1")
+    check("lattice ends at strain 0.1, not after --from 0.1: it has no averages" in said and "nan" not in said, said)
+    check([len(axis.lines) for axis in figures.suspension("lattice", from_=0.1).axes] == [1, 3], "a line of an average")
+    check("μ_eff/μ = 1." in _command("suspension", "lattice", "--from", "0.05"), "averages")
+
+
 def options_are_read_as_what_they_choose_from():
     """An option with a few allowed numbers is read as a number. An option that is on by default can be switched off."""
     of = lambda name, *words: register.parser_of(name).parse_args(["results", *words])
