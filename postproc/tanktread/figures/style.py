@@ -83,9 +83,11 @@ def finish(axes, **properties):
 
 
 def tight_box(figure):
-    """Returns the box, in inches, that contains everything in a figure. The tight box of matplotlib ignores the part of
-    an axis label that is longer than its axes."""
-    figure.canvas.draw()
+    """Lays out a figure for the last time. Returns the box, in inches, that contains everything in it. The tight box of
+    matplotlib ignores the part of an axis label that is longer than its axes."""
+    for _ in range(2):  # the constrained layout needs two passes: the first one can leave overlaps
+        figure.draw_without_rendering()
+    figure.set_layout_engine("none")
     labels = [axis.label for axis in figure.findobj(Axis) if axis.get_visible() and axis.label.get_visible()]
     boxes = [label.get_window_extent() for label in labels if label.get_text()]
     in_inches = figure.dpi_scale_trans.inverted()
