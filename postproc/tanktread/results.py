@@ -77,6 +77,10 @@ class Run:
         """Returns the series `name` (rows,) of one particle. `particle`: its name in `particles`."""
         return self.series[f"{particle}/{name}" if self.several else name]
 
+    def control_points(self):
+        """Returns the number of control points of all particles (rows,)."""
+        return sum(self.of(particle, "n_control_points") for particle in self.particles)
+
     def _split(self):
         """Returns ({series: {particle: values (rows,)}}, {series of the scene: values})."""
         own, scene = {}, {}

@@ -58,10 +58,11 @@ def a_run_is_drawn():
 def nothing_is_cut_off_at_the_edges_of_a_picture():
     tall = DECK.replace("shape: sphere }", "shape: ellipsoid, semi-axes: [0.4, 0.4, 2.0], motion: free }").replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n", "")
     run(deck(tall.replace("final time: 0.2", "final time: 0.001")), "--output", "tall", "--quiet")
-    _command("shape", "tall", "-o", "tall.png")
-    picture = matplotlib.image.imread("tall.png")[..., :3]
-    for edge, pixels in {"left": picture[:, :8], "right": picture[:, -8:], "upper": picture[:8], "lower": picture[-8:]}.items():
-        check((pixels == 1).all(), f"something touches the {edge} edge of the picture")
+    for name in "shape", "meshes":
+        _command(name, "tall", "-o", f"{name}.png")
+        picture = matplotlib.image.imread(f"{name}.png")[..., :3]
+        for edge, pixels in {"left": picture[:, :8], "right": picture[:, -8:], "upper": picture[:8], "lower": picture[-8:]}.items():
+            check((pixels == 1).all(), f"something touches the {edge} edge of the picture {name}")
 
 
 def a_field_that_is_uniform_up_to_rounding_has_one_colour():
@@ -271,6 +272,18 @@ Tanktread:
     turned = numpy.interp(angle, other_angle + numpy.pi, other, period=2 * numpy.pi)
     close(abs(variation - turned).max() / variation.max(), 0, 0.02, "difference of two equal particles")
     check("two particles" in _command("encounter", _alone(), code=2), "an encounter of one")
+
+
+def one_particle_of_a_list_is_drawn():
+    deck("""
+Tanktread:
+  Flow: { type: simple shear }
+  Particles: { only: { Membrane: { capillary number: 0.3 }, Surface: { elements per side: 3 } } }
+  Time: { final time: 0.01 }
+""")
+    run("deck.yaml", "--output", "one", "--quiet")
+    check(any("56 control points" in axis.get_title(loc="left") for axis in figures.meshes("one", times=[0]).axes), "the title of a mesh")
+    check([axis.get_ylabel() for axis in figures.animation("one", frame=0).axes[2:]] == ["D", "control points"], "panels of an animation")
 
 
 def _alone():

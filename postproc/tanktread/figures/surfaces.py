@@ -81,7 +81,7 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     pairs = list({shot.path: (run, shot.scaled(run)) for run, shot in found}.values())  # each snapshot once
     shots = [shot for _, shot in pairs]
     norm, colours, pattern = field_of(shots, field)
-    seen = numpy.concatenate([(shot.points - middle(shot.points)) @ view_axes(*view)[:2].T for shot in shots])
+    seen = numpy.concatenate([(shot.frame - middle(shot.frame)) @ view_axes(*view)[:2].T for shot in shots])
     tall = 1.15 * numpy.ptp(seen[:, 1]) / numpy.ptp(seen[:, 0])
     figure = style.canvas(axes, 4 * len(shots), 4 * tall + 5.2)
     grid = figure.add_gridspec(3, len(shots), height_ratios=[4 * tall + 0.4, 0.12, 3.9])
@@ -92,7 +92,7 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
         several = len(run.particles) > 1
         draw_surface(surface, shot, field, norm, colours, *view)
         row = numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1
-        points = run.series["n_control_points"][row]
+        points = run.control_points()[row]
         surface.set_title(f"{run.name}\n{run.moment(shot.time, '.3g')}: {points:.0f} control points")
         curves = {particle: section_variation(shot, field, particle) for particle in run.particles}
         largest, whose = max((variation.max(), particle) for particle, (_, variation) in curves.items())
@@ -150,7 +150,7 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
         xlim, ylim = numpy.transpose([low, high]) + 0.11 * (high[0] - low[0]) * numpy.array([-1, 1])
         # row of the series at the time of the snapshot, or the last row if the series end earlier
         row = min(numpy.searchsorted(run.series["time"], shot.time * (1 - 1e-12)), len(run.time) - 1)
-        points = run.series["n_control_points"][row]
+        points = run.control_points()[row]
         title = f"{run.name}, {run.moment(shot.time, '.4g')}: {points:.0f} control points"
         surface.set(xlim=xlim, ylim=ylim, title=title)
         for name, mark in marks.items():
@@ -180,7 +180,9 @@ def draw_series(panels, run):
     """Draws the series below the surface. Returns {name: marker of the value at the time of the frame}."""
     deforming = [f"{name}/taylor_inertia" for name in run.particles if f"{name}/taylor_inertia" in run.series]
     if run.several:
-        shown = ({"D": deforming} if deforming else {}) | {"smallest gap" + run.in_units("length"): ["smallest_gap"]}
+        last = {"smallest gap" + run.in_units("length"): ["smallest_gap"]} if "smallest_gap" in run.series else {
+            "control points": [f"{name}/n_control_points" for name in run.particles]}
+        shown = ({"D": deforming} if deforming else {}) | last
     elif "taylor_inertia" in run.series:
         shown = {"D": ["taylor_inertia"], "control points": ["n_control_points"]}
     else:
@@ -191,7 +193,7 @@ def draw_series(panels, run):
         for name in names:
             drawn = run.time, run.series[name]
             axis.plot(*unbroken(*drawn) if name == "inclination" else drawn, color=color, linewidth=width,
-                      drawstyle="steps-post" if name == "n_control_points" else "default")
+                      drawstyle="steps-post" if name.endswith("n_control_points") else "default")
             marks[name], = axis.plot([], [], "o", color=style.INK, markersize=size, clip_on=False)
         axis.set_ylabel(label)
         values = numpy.concatenate([run.defined(name)[1] for name in names])
