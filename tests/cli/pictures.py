@@ -92,6 +92,7 @@ Tanktread:
         check(axis.xaxis.get_offset_text().get_text() == "", low, high, axis.xaxis.get_offset_text().get_text())
         ends = [box.get_window_extent() for box in axis.get_xticklabels() if low <= box.get_position()[0] <= high]
         check(all(one.x1 < other.x0 for one, other in zip(ends, ends[1:])), f"ticks between {low} and {high} overlap")
+    style.plt.close("all")
 
 
 def meshes_of_a_snapshot_are_drawn_once():
@@ -115,6 +116,7 @@ def points_of_a_branch_are_named_by_their_numbers():
         check(any(one.startswith(title) for one in found), f"no title {title}: {found}")
         labels = [text.get_text() for axis in axes if axis.get_legend() for text in axis.get_legend().get_texts()]
         check(function is not figures.shape or "point 0" in labels, labels)
+    style.plt.close("all")
 
 
 def a_suspension_that_ends_before_the_averages_begin_says_so():
