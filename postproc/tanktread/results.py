@@ -77,6 +77,10 @@ class Run:
         """Returns the series `name` (rows,) of one particle. `particle`: its name in `particles`."""
         return self.series[f"{particle}/{name}" if self.several else name]
 
+    def control_points(self):
+        """Returns the number of control points of all particles (rows,)."""
+        return sum(self.of(particle, "n_control_points") for particle in self.particles)
+
     def _split(self):
         """Returns ({series: {particle: values (rows,)}}, {series of the scene: values})."""
         own, scene = {}, {}
@@ -169,6 +173,10 @@ class Run:
             return "number of the point"
         name = self.rate[1]
         return f"time · {name}" if name else f"time{self.in_units('time') or ', in the unit of the deck'}"
+
+    def moment(self, time, form="g"):
+        """Returns "t = 0.5", or "point 5" on a branch, for titles of figures. `form`: format of the time."""
+        return f"point {time:.0f}" if "Continuation" in self.deck else f"t = {time:{form}}"
 
     @property
     def radius(self):

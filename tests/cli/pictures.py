@@ -6,6 +6,7 @@ import subprocess
 import sys
 from unittest import mock
 
+import matplotlib.image
 import numpy
 
 from harness import PROGRAM, SOURCE, check, close, deck, main, package, run
@@ -13,7 +14,7 @@ from harness import PROGRAM, SOURCE, check, close, deck, main, package, run
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
 from tanktread import figures
-from tanktread.figures import draw, register, render
+from tanktread.figures import draw, register, render, style, surfaces
 from tanktread.figures.series import unbroken
 from tanktread.interpolation import difference
 
@@ -52,6 +53,85 @@ def a_run_is_drawn():
     check("taylor_inertia" in _command("read", "results"), "tanktread-read does not list the series")
     said = _command("shape", "results", "--field", "colour", code=2)
     check("colour" in said and "load" in said, said)
+
+
+def nothing_is_cut_off_at_the_edges_of_a_picture():
+    tall = DECK.replace("shape: sphere }", "shape: ellipsoid, semi-axes: [0.4, 0.4, 2.0], motion: free }").replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n", "")
+    run(deck(tall.replace("final time: 0.2", "final time: 0.001")), "--output", "tall", "--quiet")
+    for name in "shape", "meshes":
+        _command(name, "tall", "-o", f"{name}.png")
+        picture = matplotlib.image.imread(f"{name}.png")[..., :3]
+        for edge, pixels in {"left": picture[:, :8], "right": picture[:, -8:], "upper": picture[:8], "lower": picture[-8:]}.items():
+            check((pixels == 1).all(), f"something touches the {edge} edge of the picture {name}")
+
+
+def a_field_that_is_uniform_up_to_rounding_has_one_colour():
+    deck("""
+Tanktread:
+  Flow: { type: quiescent }
+  Particles:
+    defaults: { motion: free, force: [0.0, 0.0, -1.0], Surface: { elements per side: 4 } }
+    left: { center: [-1.5, 0.0, 0.0] }
+    right: { center: [1.5, 0.0, 0.0] }
+  Time: { final time: 0.01 }
+""")
+    run("deck.yaml", "--output", "pair", "--quiet")
+    shot = tanktread.run("pair").snapshots()[-1]
+    traction = numpy.linalg.norm(shot.fields["traction"], axis=1)
+    check(0 < numpy.ptp(traction) < 1e-9 * traction.max(), "the traction does not differ by rounding errors only", numpy.ptp(traction))
+    norm = surfaces.field_of([shot], "traction")[0]
+    close(abs(norm(traction) - 0.5).max(), 0, 1e-6, "difference from the middle of the colour bar")
+    for axis in figures.meshes("pair").axes:
+        if axis.name == "polar":
+            close(max(axis.lines[0].get_ydata()) / axis.get_ylim()[1], 0, 1e-6, "height of the curve of a uniform field")
+    for low, high in (1.5, 1.500001), (1.49, 1.51), (0, 2e-7), (-3e7, 3e7):
+        with style.plt.rc_context(style.STYLE):
+            bar, axis = style.plt.subplots(figsize=(2.4, 1.2))
+            surfaces.colour_bar(bar, style.plt.Normalize(low, high), style.FIELD, cax=axis, label="label")
+            bar.canvas.draw()
+        check(axis.xaxis.get_offset_text().get_text() == "", low, high, axis.xaxis.get_offset_text().get_text())
+        ends = [box.get_window_extent() for box in axis.get_xticklabels() if low <= box.get_position()[0] <= high]
+        check(all(one.x1 < other.x0 for one, other in zip(ends, ends[1:])), f"ticks between {low} and {high} overlap")
+    style.plt.close("all")
+
+
+def meshes_of_a_snapshot_are_drawn_once():
+    deck(DECK.replace("final time: 0.2", "final time: 0.001"))
+    run("deck.yaml", "--output", "short", "--quiet", "--set", "Output/interval=1")
+    count = len(tanktread.run("short").snapshots())
+    for name, times, expected in ("short", None, count), ("short", [0, 0, 0], 1):
+        drawn = sum(axis.name == "polar" for axis in figures.meshes(name, times=times).axes)
+        check(drawn == expected, f"{drawn} meshes instead of {expected}")
+
+
+def points_of_a_branch_are_named_by_their_numbers():
+    deck(DECK.replace("simple shear", "uniaxial extension").replace("0.3 }", "0.05 }").replace("Time: { final time: 0.2 }\n  Output: { interval: 0.1 }",
+                                                                    "Steady: { tolerance: 1.0e-3 }\n  Continuation: { parameter: Membrane/capillary number, to: 0.06, step: 0.01, points: 2 }"))
+    run("deck.yaml", "--output", "branch", "--quiet")
+    last = len(tanktread.run("branch").time) - 1
+    titled = {figures.shape: f"branch, point {last}", figures.meshes: "branch\npoint 0", figures.animation: f"branch, point {last}"}
+    for function, title in titled.items():
+        axes = function("branch", **({"frame": last} if function is figures.animation else {})).axes
+        found = [axis.get_title(loc="left") for axis in axes]
+        check(any(one.startswith(title) for one in found), f"no title {title}: {found}")
+        labels = [text.get_text() for axis in axes if axis.get_legend() for text in axis.get_legend().get_texts()]
+        check(function is not figures.shape or "point 0" in labels, labels)
+    style.plt.close("all")
+
+
+def a_suspension_that_ends_before_the_averages_begin_says_so():
+    deck("""
+Tanktread:
+  Flow: { type: simple shear }
+  Domain: { side lengths: [4.0, 4.0, 4.0] }
+  Particles: { capsule: { Membrane: { capillary number: 0.3 }, Surface: { elements per side: 3 } } }
+  Time: { final time: 0.1 }
+""")
+    run("deck.yaml", "--output", "lattice", "--quiet")
+    said = _command("suspension", "lattice", "--from", "0.1")
+    check("lattice ends at strain 0.1, not after --from 0.1: it has no averages" in said and "nan" not in said, said)
+    check([len(axis.lines) for axis in figures.suspension("lattice", from_=0.1).axes] == [1, 3], "a line of an average")
+    check("μ_eff/μ = 1." in _command("suspension", "lattice", "--from", "0.05"), "averages")
 
 
 def options_are_read_as_what_they_choose_from():
@@ -188,7 +268,24 @@ Tanktread:
     check("smallest gap 1." in _command("encounter", "pair"), "the gap of the pair")
     check("upper/taylor_inertia" in _command("read", "pair"), "the series of a particle")
     _command("shape", "pair")
+    upper, lower = next(axis for axis in figures.meshes("pair", times=[0.2]).axes if axis.name == "polar").lines
+    check([upper.get_label(), lower.get_label()] == ["upper", "lower"], "a curve for each particle")
+    (angle, variation), (other_angle, other) = upper.get_data(), lower.get_data()  # equal to each other, turned by 180 degrees
+    turned = numpy.interp(angle, other_angle + numpy.pi, other, period=2 * numpy.pi)
+    close(abs(variation - turned).max() / variation.max(), 0, 0.02, "difference of two equal particles")
     check("two particles" in _command("encounter", _alone(), code=2), "an encounter of one")
+
+
+def one_particle_of_a_list_is_drawn():
+    deck("""
+Tanktread:
+  Flow: { type: simple shear }
+  Particles: { only: { Membrane: { capillary number: 0.3 }, Surface: { elements per side: 3 } } }
+  Time: { final time: 0.01 }
+""")
+    run("deck.yaml", "--output", "one", "--quiet")
+    check(any("56 control points" in axis.get_title(loc="left") for axis in figures.meshes("one", times=[0]).axes), "the title of a mesh")
+    check([axis.get_ylabel() for axis in figures.animation("one", frame=0).axes[2:]] == ["D", "control points"], "panels of an animation")
 
 
 def _alone():

@@ -98,7 +98,7 @@ def draw_sections(axis, runs, shots):
     for run, shot, color in zip(runs, shots, style.RUNS * len(runs)):
         pieces = section(shot, middle(shot.frame)[1])
         draw_pieces(axis, pieces, color, 1.8)
-        name, time, angle = f"{run.name}: " if len(runs) > 1 else "", f"t = {shot.time:g}", numpy.nan
+        name, time, angle = f"{run.name}: " if len(runs) > 1 else "", run.moment(shot.time), numpy.nan
         if "taylor_inertia" in run.series:  # not a rigid particle
             angle, deformation = (numpy.interp(shot.time, run.series["time"], run.series[key])
                                   for key in ("inclination", "taylor_inertia"))
@@ -112,7 +112,8 @@ def draw_sections(axis, runs, shots):
         axis.plot(*(centre + numpy.outer([-reach, reach], along)).T, color=color, linestyle=(0, (5, 3)), linewidth=1,
                   label=f"{name}inclination {round(angle, 2) + 0.0:.2f}°, D = {deformation:.4f}")
     if moved:
-        axis.plot([], [], color=style.FAINT, linewidth=1, label="at the start")
+        axis.plot([], [], color=style.FAINT, linewidth=1,
+                  label="at the start" if "Continuation" not in runs[0].deck else runs[0].moment(start.time))
     axis.autoscale_view()
     axis.set(aspect="equal", anchor="N", xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$", title="section in the x₁x₃ plane")
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4)
@@ -126,11 +127,12 @@ def share_window(axes):
         axis.set(xlim=(x - width, x + width), ylim=(y - height, y + height), anchor="C")
 
 
-def field_cut(shot, field):
-    """Returns the section through the middle of the surface, normal to x2, as line segments (segments, 2, 3 + k):
-    position relative to the middle (3), and the values of a field (k)."""
-    grid = shot.sampled(numpy.column_stack([shot.points, shot.fields[field]]), GRID)
-    grid[..., :3] -= middle(shot.points)
+def field_cut(shot, field, particle=None):
+    """Returns the section through the middle of a particle (default: of all surfaces), normal to x2, as line segments
+    (segments, 2, 3 + k): position relative to the middle (3), and the values of a field (k)."""
+    cells = shot.cells_of(particle) if particle else range(len(shot.cells))
+    grid = shot.sampled(numpy.column_stack([shot.points, shot.fields[field]]), GRID, cells)
+    grid[..., :3] -= middle(shot.points[numpy.concatenate([shot.cells[cell] for cell in cells])])
     return cut(grid, 1, 0)
 
 
@@ -143,10 +145,10 @@ def near_tip(shot, field):
     return x, z, numpy.linalg.norm(values, axis=0)
 
 
-def section_variation(shot, field):
-    """Returns an angle (n,) and |d field / dl| (n,) along the section (see field_cut), with the arc length l. The angle
-    is the polar angle after the section has been scaled along x1 and x3 to equal extents."""
-    ends = field_cut(shot, field)
+def section_variation(shot, field, particle):
+    """Returns an angle (n,) and |d field / dl| (n,) along the section of a particle (see field_cut), with the arc
+    length l. The angle is the polar angle after the section has been scaled along x1 and x3 to equal extents."""
+    ends = field_cut(shot, field, particle)
     length, change = (numpy.linalg.norm(ends[:, 1, columns] - ends[:, 0, columns], axis=1)
                       for columns in (slice(3), slice(3, None)))
     kept = length > 0.2 * numpy.median(length)  # differences over very short segments are dominated by rounding

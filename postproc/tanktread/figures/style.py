@@ -5,7 +5,9 @@ import pathlib
 
 import matplotlib.pyplot as plt
 import numpy
+from matplotlib.axis import Axis
 from matplotlib.figure import FigureBase
+from matplotlib.transforms import Bbox
 
 from ..mistakes import Mistake, expect
 
@@ -80,6 +82,18 @@ def finish(axes, **properties):
     axes.legend()
 
 
+def tight_box(figure):
+    """Lays out a figure for the last time. Returns the box, in inches, that contains everything in it. The tight box of
+    matplotlib ignores the part of an axis label that is longer than its axes."""
+    for _ in range(2):  # the constrained layout needs two passes: the first one can leave overlaps
+        figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    labels = [axis.label for axis in figure.findobj(Axis) if axis.get_visible() and axis.label.get_visible()]
+    boxes = [label.get_window_extent() for label in labels if label.get_text()]
+    in_inches = figure.dpi_scale_trans.inverted()
+    return Bbox.union([figure.get_tightbbox(), *(box.transformed(in_inches) for box in boxes)])
+
+
 def save(figure, path):
     """Writes a figure as PNG, PDF, SVG and so on by its name, or its animation as GIF. Makes the folder."""
     path = pathlib.Path(path)
@@ -93,7 +107,7 @@ def save(figure, path):
             film.save(path, writer="pillow", dpi=figure.dpi)
         else:
             with plt.rc_context(STYLE):
-                figure.savefig(path, bbox_inches="tight", pad_inches=0.08)
+                figure.savefig(path, bbox_inches=tight_box(figure).padded(0.08))
     except OSError as error:
         raise Mistake(f"{path} cannot be written: {error.strerror}") from None
     except ValueError as error:

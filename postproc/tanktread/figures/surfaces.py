@@ -2,6 +2,7 @@
 
 import numpy
 from matplotlib.animation import FuncAnimation
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from ..mistakes import expect, log
 from ..results import field_label
@@ -11,17 +12,30 @@ from .draw import (VIEW, draw_sections, draw_surface, draw_triad, magnitude, mid
 from .register import figure
 from .series import unbroken
 
+ROUNDING = 1e-9  # a field is uniform if its range, divided by its largest absolute value, is smaller
+TICKS = FuncFormatter(lambda value, _: f"{value:.10g}".replace("-", "−"))  # without a common offset or factor
+
 
 def field_of(shots, field):
-    """Returns the colour normalisation, the colour map and the label pattern for a field of several snapshots. Raises
-    Mistake if a snapshot does not contain the field."""
+    """Returns the colour normalisation, the colour map and the label pattern for a field of several snapshots. If the
+    field is uniform, the colour bar extends from 0.99 to 1.01 times its value. Raises Mistake if a snapshot does not
+    contain the field."""
     for shot in shots:
         expect(field in shot.fields, f"{shot.path} holds no field {field}; there are: {', '.join(sorted(shot.fields))}")
     values = numpy.concatenate([magnitude(shot.fields[field]) for shot in shots])
     low, high, pattern = values.min(), values.max(), "|{}|" if numpy.ndim(shots[0].fields[field]) > 1 else "{}"
     bound = max(-low, high)
+    if 0 <= low and high - low < ROUNDING * bound:
+        low, high = 0.99 * low, 1.01 * high
     limits, colours = ((-bound, bound), style.SIGNED) if low < 0 else ((low, high), style.FIELD)
     return style.plt.Normalize(*limits), colours, pattern
+
+
+def colour_bar(figure, norm, colours, **properties):
+    """Draws a horizontal colour bar. The text of a common offset or factor of its ticks would overlap the label."""
+    longest = max(len(TICKS(place)) for place in MaxNLocator(4).tick_values(norm.vmin, norm.vmax))
+    figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), orientation="horizontal", format=TICKS,
+                    ticks=MaxNLocator(2) if longest > 4 else None, **properties)
 
 
 @figure(lambda runs: (1, len(runs) + 1, 4.4 * len(runs) + 4.6, 4.4))
@@ -38,10 +52,12 @@ def shape(runs, *axes, time: float | None = None, field: str = "traction", view:
     norm, colours, pattern = field_of(shots, field)
     for axis, run, shot in zip(axes, runs, shots):
         draw_surface(axis, shot, field, norm, colours, *view)
-        axis.set_title(f"{run.name}, t = {shot.time:g}")
+        axis.set_title(f"{run.name}, {run.moment(shot.time)}")
     label = field_label(runs, field, pattern if pattern == "{}" else "magnitude of the {}")
-    axes[0].figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), orientation="horizontal", label=label,
-                            cax=axes[0].inset_axes([0.3, -0.08, 0.5, 0.03]))
+    left, right, low, high = axes[0].axis()
+    width = 0.5 * max(1, 0.5 * (high - low) / (right - left))  # of the colour bar, divided by that of the picture
+    colour_bar(axes[0].figure, norm, colours, label=label,
+               cax=axes[0].inset_axes([0.55 - width / 2, -0.08, width, 0.03]))
     draw_sections(axes[-1], runs, shots)
 
 
@@ -53,40 +69,50 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
 
     The variation is the magnitude of the derivative of the field with respect to arc length. It is drawn in polar
     coordinates. Before the polar angle is computed, the section is scaled to equal length and height, because otherwise
-    the tips of slender shapes would take up a small range of angles.
+    the tips of slender shapes would take up a small range of angles. If there are several particles, each has its own
+    curve, of the section normal to x2 through its own middle.
 
     times: simulated times (default: the start, the middle and the end); if there are several runs, only the last one
     field: field whose variation is drawn
     view: azimuth and elevation of the observer, in degrees"""
     end = runs[0].series["time"][-1]
     moments = times or [0, end / 2, end]
-    pairs = [(run, moment) for run in runs for moment in (moments if len(runs) == 1 else moments[-1:])]
-    shots = [run.snapshot_at(moment).scaled(run) for run, moment in pairs]
+    found = [(run, run.snapshot_at(moment)) for run in runs for moment in (moments if len(runs) == 1 else moments[-1:])]
+    pairs = list({shot.path: (run, shot.scaled(run)) for run, shot in found}.values())  # each snapshot once
+    shots = [shot for _, shot in pairs]
     norm, colours, pattern = field_of(shots, field)
-    seen = numpy.concatenate([(shot.points - middle(shot.points)) @ view_axes(*view)[:2].T for shot in shots])
+    seen = numpy.concatenate([(shot.frame - middle(shot.frame)) @ view_axes(*view)[:2].T for shot in shots])
     tall = 1.15 * numpy.ptp(seen[:, 1]) / numpy.ptp(seen[:, 0])
     figure = style.canvas(axes, 4 * len(shots), 4 * tall + 5.2)
     grid = figure.add_gridspec(3, len(shots), height_ratios=[4 * tall + 0.4, 0.12, 3.9])
     surfaces, polars = zip(*[(figure.add_subplot(grid[0, k]), figure.add_subplot(grid[2, k], projection="polar"))
                              for k in range(len(shots))])
-    reach = 1e-12
-    for (run, _), shot, surface, polar in zip(pairs, shots, surfaces, polars):
+    reach = max(1e-12, 0.1 * (norm.vmax - norm.vmin))  # rounding errors of a uniform field stay invisible
+    for (run, shot), surface, polar in zip(pairs, surfaces, polars):
+        several = len(run.particles) > 1
         draw_surface(surface, shot, field, norm, colours, *view)
         row = numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1
-        points = run.series["n_control_points"][row]
-        surface.set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
-        angle, variation = section_variation(shot, field)
-        log.info(f"{shot.path}: largest variation {variation.max():.3g}")
-        reach = max(reach, variation.max())
-        polar.plot([*angle, angle[0] + 2 * numpy.pi], [*variation, variation[0]], color=style.RUNS[0], linewidth=1)
+        points = run.control_points()[row]
+        surface.set_title(f"{run.name}\n{run.moment(shot.time, '.3g')}: {points:.0f} control points")
+        curves = {particle: section_variation(shot, field, particle) for particle in run.particles}
+        largest, whose = max((variation.max(), particle) for particle, (_, variation) in curves.items())
+        reach = max(reach, largest)
+        log.info(f"{shot.path}: largest variation {largest:.3g}" + several * f", of {whose}")
+        for (particle, (angle, variation)), color in style.coloured(curves.items()):
+            polar.plot([*angle, angle[0] + 2 * numpy.pi], [*variation, variation[0]], color=color, linewidth=1,
+                       label=particle)
+        if several and len(curves) <= len(style.RUNS):
+            polar.legend(loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=3)
         polar.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
         polar.set_rlabel_position(55)
+        polar.yaxis.set_major_formatter(TICKS)
         polar.tick_params(labelsize=7.5)
-        polar.set_title(f"|d {field}/dl| on the section x₂ = 0, l in R$_C$", fontsize=8.5, loc="center")
+        plane = "the sections normal to x₂" if several else "the section x₂ = 0"
+        polar.set_title(f"|d {field}/dl| on {plane}, l in R$_C$", fontsize=8.5, loc="center")
     share_window(surfaces)
     style.plt.setp(polars, ylim=(0, 1.05 * reach))
-    figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),
-                    orientation="horizontal", label=field_label(runs, field, pattern))
+    colour_bar(figure, norm, colours, cax=figure.add_subplot(grid[1, len(shots) // 2]),
+               label=field_label(runs, field, pattern))
     return figure
 
 
@@ -124,7 +150,8 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
         xlim, ylim = numpy.transpose([low, high]) + 0.11 * (high[0] - low[0]) * numpy.array([-1, 1])
         # row of the series at the time of the snapshot, or the last row if the series end earlier
         row = min(numpy.searchsorted(run.series["time"], shot.time * (1 - 1e-12)), len(run.time) - 1)
-        title = f"{run.name}, t = {shot.time:.4g}: {run.series['n_control_points'][row]:.0f} control points"
+        points = run.control_points()[row]
+        title = f"{run.name}, {run.moment(shot.time, '.4g')}: {points:.0f} control points"
         surface.set(xlim=xlim, ylim=ylim, title=title)
         for name, mark in marks.items():
             mark.set_data([run.time[row]], [run.series[name][row]])
@@ -153,7 +180,9 @@ def draw_series(panels, run):
     """Draws the series below the surface. Returns {name: marker of the value at the time of the frame}."""
     deforming = [f"{name}/taylor_inertia" for name in run.particles if f"{name}/taylor_inertia" in run.series]
     if run.several:
-        shown = ({"D": deforming} if deforming else {}) | {"smallest gap" + run.in_units("length"): ["smallest_gap"]}
+        last = {"smallest gap" + run.in_units("length"): ["smallest_gap"]} if "smallest_gap" in run.series else {
+            "control points": [f"{name}/n_control_points" for name in run.particles]}
+        shown = ({"D": deforming} if deforming else {}) | last
     elif "taylor_inertia" in run.series:
         shown = {"D": ["taylor_inertia"], "control points": ["n_control_points"]}
     else:
@@ -164,7 +193,7 @@ def draw_series(panels, run):
         for name in names:
             drawn = run.time, run.series[name]
             axis.plot(*unbroken(*drawn) if name == "inclination" else drawn, color=color, linewidth=width,
-                      drawstyle="steps-post" if name == "n_control_points" else "default")
+                      drawstyle="steps-post" if name.endswith("n_control_points") else "default")
             marks[name], = axis.plot([], [], "o", color=style.INK, markersize=size, clip_on=False)
         axis.set_ylabel(label)
         values = numpy.concatenate([run.defined(name)[1] for name in names])

@@ -165,10 +165,12 @@ def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
         for (name, symbol), axis, line in zip(SYMBOLS.items(), (upper, lower, lower), ("-", "-", "--")):
             axis.plot(strain, run.series[name], color=color, linestyle=line,
                       label=label if axis is upper else symbol if run is runs[0] else None)
-            mean, error = average(strain, run.series[name], from_, blocks)
-            axis.plot([from_, strain[-1]], [mean, mean], color=color, linewidth=0.8, linestyle=":")
-            words.append(f"{symbol} = {mean:.5f} ± {error:.5f}")
-        log.info(f"{run.name}, strain {from_:g} to {strain[-1]:g}: {', '.join(words)}")
+            if strain[-1] > from_:
+                mean, error = average(strain, run.series[name], from_, blocks)
+                axis.plot([from_, strain[-1]], [mean, mean], color=color, linewidth=0.8, linestyle=":")
+                words.append(f"{symbol} = {mean:.5f} ± {error:.5f}")
+        log.info(f"{run.name}, strain {from_:g} to {strain[-1]:g}: {', '.join(words)}" if words else
+                 f"{run.name} ends at strain {strain[-1]:g}, not after --from {from_:g}: it has no averages")
     style.finish(upper, ylabel="effective viscosity μ_eff/μ")
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
     stress = runs[0].unit(runs[0].units["normal_stress_difference_1"])
@@ -177,10 +179,8 @@ def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
 
 def average(strain, values, first, blocks):
     """Returns the mean of values(strain) from the strain `first` on, by the trapezoidal rule, and its standard error,
-    from the means over `blocks` equal parts."""
+    from the means over `blocks` equal parts. The last strain must exceed `first`."""
     expect(blocks > 1, f"--blocks must be at least 2, but is {blocks}")
-    if strain[-1] <= first:
-        return numpy.nan, numpy.nan
     means = averages_between(strain, values, numpy.linspace(first, strain[-1], blocks + 1))
     return means.mean(), means.std(ddof=1) / numpy.sqrt(blocks)
 
@@ -242,7 +242,7 @@ def averages(outcome, first, blocks):
         return None
     name, series, strain = outcome.directory.name, outcome.series, outcome.run.time
     if strain[-1] <= first:
-        log.info(f"left out: {name} ends at strain {strain[-1]:g}, before --from {first:g}")
+        log.info(f"left out: {name} ends at strain {strain[-1]:g}, not after --from {first:g}")
         return None
     fraction, impulse = series["volume_fraction"][0], series["contact_impulse"][-1]
     if impulse > 0:

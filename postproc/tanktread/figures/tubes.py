@@ -97,7 +97,7 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
         row = numpy.atleast_1d(upper.subplots(1, len(shots)))
         for axis, (shot, colour) in zip(row, shaded):
             draw_surface(axis, shot, "traction", norm, style.FIELD, *VIEW, pixels=360, triad=shot is shots[0])
-            axis.set_title(f"t = {shot.time:.3g}", color=colour, loc="center")
+            axis.set_title(run.moment(shot.time, ".3g"), color=colour, loc="center")
         share_window(row)
         part.suptitle(run.name, x=0.01, ha="left", fontsize=11, fontweight="bold")
         draw_tube_sections(run, d, shaded, *lower.subplots(1, 2, width_ratios=[2.1, 1]))
