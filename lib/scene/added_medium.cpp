@@ -5,10 +5,8 @@
 
 #include "base/errors.hpp"
 #include "deck/section.hpp"
-#include "scene/body.hpp"
 #include "scene/scene.hpp"
 #include "stokes/flow/ambient_flow.hpp"
-#include "system/collocation.hpp"
 
 namespace tanktread {
 
@@ -40,17 +38,6 @@ void check_flow(const stokes::FlowOptions& flow, const stokes::Medium& medium, c
   for (const stokes::AmbientFlow& ambient : stokes::AmbientFlow(flow).rotated_copies())
     if (const std::string reason = medium.refusal(ambient); !reason.empty())
       throw UserError(name + " and Flow/type `" + flow.type + "` contradict each other: " + reason);
-}
-
-std::shared_ptr<const stokes::Medium> SharedOptions::medium() const {
-  const auto plane = wall.plane();
-  return plane ? std::make_shared<stokes::PlaneWall>(*plane) : domain.medium;
-}
-
-void check_in_medium(const ParticleScene& scene, const Body& body) {
-  if (stokes::contains(scene.domain.medium.get(), coupling::collocation_matrix(body.space) * body.initial)) return;
-  throw UserError((scene.name.empty() ? "The particle" : "Particles/" + scene.name) + " is not inside the fluid of Domain/kind `" +
-                  scene.domain.kind + "` at the start.");
 }
 
 }  // namespace tanktread

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
+#include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "membrane/patch_forces.hpp"
 #include "membrane/wall_repulsion.hpp"
@@ -20,6 +21,7 @@
 #include "spline/extraction.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
+#include "system/collocation.hpp"
 
 namespace tanktread {
 
@@ -167,6 +169,12 @@ Body body(const ParticleScene& scene, const Member* alike) {
   const bool own = scene.particle.shape.initial && scene.particle.shape.initial->volume == "own";
   b.volume = surface::measures(b.space, own ? b.initial : b.rest).volume;
   return b;
+}
+
+void check_in_medium(const ParticleScene& scene, const Body& body) {
+  if (stokes::contains(scene.domain.medium.get(), coupling::collocation_matrix(body.space) * body.initial)) return;
+  throw UserError((scene.name.empty() ? "The particle" : "Particles/" + scene.name) + " is not inside the fluid of Domain/kind `" +
+                  scene.domain.kind + "` at the start.");
 }
 
 surface::Symmetry symmetry(const ParticleScene& scene, const Body& body, const Net& x) {

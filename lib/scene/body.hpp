@@ -68,8 +68,8 @@ struct Body {
   /// Reference volume V0: volume of the resting shape, or of the initial shape if the deck requests that the particle keeps that volume. V0 is
   /// computed on the first mesh and does not change if the mesh changes.
   double volume = 0;
-  double initial_area = 0;  ///< initial mass of the surfactant (integral of the concentration over the surface), computed on the first mesh at the
-                            ///< start of the run; 0 before
+  double surfactant_mass = 0;  ///< initial mass of the surfactant (integral of the concentration over the surface), computed on the first mesh at
+                               ///< the start of the run; 0 before
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by the radius R_C
   double modulus = 1;  ///< shear modulus G_s, or the surface tension sigma of an interface
   surface::Symmetry symmetry;                       ///< symmetry common to the scene and the particle at all times

@@ -192,7 +192,7 @@ void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
     checkpoint.arrays[member.label("initial")] = body.rest;
     checkpoint.numbers[member.label("initial volume")] = body.volume;
     checkpoint.numbers[member.label("refit error")] = body.refit_error;
-    if (member.scene.surfactant) checkpoint.numbers[member.label("initial area")] = body.initial_area;
+    if (member.scene.surfactant) checkpoint.numbers[member.label("initial area")] = body.surfactant_mass;
     if (!member.scene.adaptation.enabled) continue;
     checkpoint.arrays[member.label("mesh edges")] = numbers_of(body.mesh.edges);
     checkpoint.arrays[member.label("mesh spacing")] = numbers_of(body.mesh.spacing);
@@ -212,7 +212,7 @@ bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members)
   bool another = false;
   for (Member& member : members) {
     member.body->volume = checkpoint.numbers.at(member.label("initial volume"));
-    if (member.scene.surfactant) member.body->initial_area = checkpoint.numbers.at(member.label("initial area"));
+    if (member.scene.surfactant) member.body->surfactant_mass = checkpoint.numbers.at(member.label("initial area"));
     if (!checkpoint.arrays.contains(member.label("mesh edges"))) continue;
     another = true;
     lay_out(member.scene, stored_mesh(member.body->mesh, checkpoint, member.label("")), *member.body);

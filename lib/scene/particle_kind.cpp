@@ -172,20 +172,4 @@ void ParticleKind::reject(const ParticleScene& scene, Rejections& to) const {
     to.pair(with && strong, what, "Membrane/load `strong`", "its forces are included by virtual work, in the form `weak` only");
 }
 
-void ContactOptions::reject(const SharedOptions& scene, Rejections& to) const {
-  to.pair(limiter && !scene.runs_in_time(), "Contact/limiter", scene.sought(), "it acts on steps of a run in time");
-}
-
-void ContactOptions::declare(deck::Section& section) {
-  section.key("limit", limit, deck::between(1e-6, 1), "R_C",
-              "smallest allowed gap between two particles, divided by R_C, the radius of the sphere with the volume of the smallest "
-              "particle. If a gap becomes smaller, the run ends with a checkpoint, unless Contact/limiter is true");
-  section.key("limiter", limiter,
-              "if true, contact forces keep the gaps between particles at Contact/limit or above, to 1 % of it, and the run continues. They act "
-              "along the normals at the nearest points of two particles, only push (4.23), and vanish while the fluid keeps the gaps "
-              "open; the series `contact_force` and `contact_impulse` record them. Gaps to a wall are not limited");
-  if (limiter && !section.given("limit"))
-    throw UserError(section.path("limiter") + " needs " + section.path("limit") + ": the gap, divided by R_C, that it maintains.");
-}
-
 }  // namespace tanktread

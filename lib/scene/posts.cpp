@@ -77,12 +77,6 @@ Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell) {
 }
 
 void take_posts(Scene& scene) {
-  scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
-  scene.flow.plates = scene.wall.plates();
-  const bool films = scene.wall.present || scene.tube.present || scene.domain.present;
-  for (ParticleKind& kind : scene.particles)
-    if (films && kind.name.empty() && !kind.adaptation.film_resolution)
-      kind.adaptation.film_resolution = motion::AdaptationOptions::default_film_resolution;
   for (const ParticleKind& kind : scene.particles)
     if (is_post(kind)) scene.posts.push_back(post_of(kind));
   std::erase_if(scene.particles, is_post);

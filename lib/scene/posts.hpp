@@ -28,8 +28,7 @@ struct Post {
 /// Returns the lattice vector along the axis of a post, in units of length; zero if no lattice vector is along the axis.
 Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell);
 
-/// Moves the cylinders from the particles of a scene to its posts. Sets in the options of wall and flow whether the walls are plates. Sets the
-/// default of Adaptation/film resolution if the scene has a wall, tube or lattice. Throws UserError if a cylinder has keys that only particles have.
+/// Moves the cylinders from the particles of a scene to its posts. Throws UserError if a cylinder has keys that only particles have.
 void take_posts(Scene& scene);
 
 /// Throws UserError if posts do not fit into the scene.

@@ -10,8 +10,8 @@
 
 namespace tanktread {
 
-/// Returns the flow of the empty tube or channel. If Flow/type is not `duct`, the returned flow has the mean velocity 1 and only serves to compute
-/// the pressure drop (2.7). Returns null if there is no tube.
+/// Returns the flow of the empty tube or channel. If Flow/type is not `duct`, the returned flow has the mean velocity R_C times
+/// ParticleScene::rate() and only serves to compute the pressure drop (2.7). Returns null if there is no tube.
 std::shared_ptr<const stokes::DuctFlow> duct(const ParticleScene& scene);
 
 /// Adds to `to` the combinations of keys that are not allowed with a tube or channel.

@@ -108,7 +108,7 @@ std::shared_ptr<Evaluation> Capsule::evaluate(const Net& x, const Net& guess, do
   return e;
 }
 
-std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocity, double distance) {
+std::shared_ptr<Evaluation> Capsule::evaluate_on_demand(const Net& x, const Net& velocity, double distance) {
   if (!latest_ || !same(x, latest_->x())) return std::make_shared<Evaluation>(*this, x, velocity, evaluated_about(x, distance) ? latest_ : nullptr);
   return latest_;
 }

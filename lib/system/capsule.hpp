@@ -27,7 +27,7 @@ class RigidTractions;
 
 /// Computes dx/dt = v(x) for the stacked control nets x of all particles.
 ///
-/// Order of calls: at() sets the time. evaluate() solves for the loads and velocities of a shape and returns them as an Evaluation. evaluation()
+/// Order of calls: at() sets the time. evaluate() solves for the loads and velocities of a shape and returns them as an Evaluation. evaluate_on_demand()
 /// returns an Evaluation that solves only when a quantity is read that needs it. Implicit schemes call freeze() every few steps, linearise() in each
 /// step, and then solve() or correction(). Schemes call restore_volume() after a step. The functions are in capsule.cpp (evaluation; solve_in_cell()
 /// lists its stages), capsule_unknowns.cpp (linear systems), capsule_cell.cpp (lattices, tubes, plates and posts) and capsule_setup.cpp
@@ -82,7 +82,7 @@ class Capsule : public Dynamics {
   /// Returns an evaluation of the shape x that computes each quantity at its first use. `velocity`: velocity of the control points; no rows if
   /// unknown. If the shape evaluated last is within `distance` of x (in `norm`), the rigid motions and fluid velocities of that shape are used.
   /// Otherwise a linear system is solved when a quantity is needed that cannot be computed from `velocity`.
-  std::shared_ptr<Evaluation> evaluation(const Net& x, const Net& velocity, double distance);
+  std::shared_ptr<Evaluation> evaluate_on_demand(const Net& x, const Net& velocity, double distance);
 
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
   void at(double time, double start) override;

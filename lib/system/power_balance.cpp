@@ -50,7 +50,7 @@ PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const N
       values_(value_matrix(space, gauss_points_)), mass_(space), layers_(space, gauss_points_, unstressed, capsule.particles(), quadrature, medium) {}
 
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
-  const std::shared_ptr<Evaluation> e = capsule_.evaluation(x, slope, 0);
+  const std::shared_ptr<Evaluation> e = capsule_.evaluate_on_demand(x, slope, 0);
   if (capsule_.slides() || capsule_.viscous()) e->solve();
   const Net load = e->load(), v = e->fluid_velocity();
   const RigidParticles rigid = capsule_.rigid_at(x);

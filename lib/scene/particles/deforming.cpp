@@ -123,7 +123,7 @@ class Deforming : public ParticleSystem {
     motion::State own = fields_->of_shape(state);
     placed_ = capsule_->rigid_at(own.x);
     const auto needs_load = [&](const Member& member) { return due(member) && member.scene.adaptation.limits_load(); };
-    const Net load = std::ranges::any_of(members_, needs_load) ? capsule_->evaluation(own.x, {}, 0)->load() : Net(Net::Zero(own.x.rows(), 3));
+    const Net load = std::ranges::any_of(members_, needs_load) ? capsule_->evaluate_on_demand(own.x, {}, 0)->load() : Net(Net::Zero(own.x.rows(), 3));
     std::vector<Net> loads;
     for (const Member& member : members_) loads.push_back(member.own(load));
     for (std::size_t p = 0; p < members_.size(); ++p)
@@ -162,7 +162,7 @@ class Deforming : public ParticleSystem {
   Columns row(const motion::State& whole_state, ProgressRow progress) override {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
-    const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
+    const auto here = capsule_->evaluate_on_demand(state.x, state.history.front(), scene_.time.tolerance);
     // Solves the linear system for the velocity again in two cases: if the series of tractions on walls need a more accurate velocity than the step,
     // and if deformable particles and rigid bodies occur together, because the loads of the deformable particles then follow from this solution.
     const auto rigid = [](const Member& member) { return member.scene.particle.rigid(); };
@@ -190,7 +190,7 @@ class Deforming : public ParticleSystem {
   SurfaceSnapshot snapshot(const motion::State& whole_state) override {
     const motion::State& state = shown_ = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x);
-    const auto here = capsule_->evaluation(state.x, state.history.empty() ? Net() : state.history.front(), 0);
+    const auto here = capsule_->evaluate_on_demand(state.x, state.history.empty() ? Net() : state.history.front(), 0);
     const Net load = here->load(), velocity = capsule_->slides() || !state.history.empty() ? here->fluid_velocity() : Net();
     return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) {
               std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, state.x, load, velocity);
@@ -213,7 +213,7 @@ class Deforming : public ParticleSystem {
     if (!power_)
       power_.emplace(*capsule_, body().space, body().unstressed, scene_.flow.viscosity, scene_.quadrature, scene_.medium().get(), ranks_);
     coupling::Powers powers = (*power_)(state.x, state.history.front());
-    if (!fields_->empty()) powers.forces += fields_->power(capsule_->evaluation(state.x, state.history.front(), 0)->fluid_velocity());
+    if (!fields_->empty()) powers.forces += fields_->power(capsule_->evaluate_on_demand(state.x, state.history.front(), 0)->fluid_velocity());
     return powers;
   }
 

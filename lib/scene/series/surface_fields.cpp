@@ -24,7 +24,7 @@ SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsu
       auto surfactant = std::make_unique<membrane::Surfactant>(body.space, body.rest, *scene.surfactant, body.modulus,
                                                                scene.surfactant->diffusivity_of(scene.flow.rate(), body.radius));
       membrane::Surfactant* const known = surfactant.get();
-      if (body.initial_area == 0) body.initial_area = known->mass(known->start(body.initial));
+      if (body.surfactant_mass == 0) body.surfactant_mass = known->mass(known->start(body.initial));
       all_.push_back({p, std::move(surfactant), known});
     }
     if (scene.maxwell_membrane())
@@ -139,7 +139,7 @@ void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Colum
     if (!one.surfactant) continue;
     const auto [smallest, largest] = one.surfactant->extremes();
     now.tension.smallest = members_[p].scene.surfactant->tension(largest);
-    const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->initial_area;
+    const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->surfactant_mass;
     SurfactantRow{mass, smallest, largest}.add_columns(to);
   }
 }

@@ -54,7 +54,7 @@ class SolidResponse {
   /// Returns the part of the solution of (2.46) due to the load f and the velocity v of the particles. An empty net counts as zero.
   Solids::Flow respond(const Net& f, const Net& v);
 
-  /// Computes the rows `own` of the velocity u at the points `at`; both were passed to `place`. Not collective.
+  /// Computes the rows `own` of the velocity u at the points `at`; both were passed to `set_shape`. Not collective.
   void velocities(const Solids::Flow& flow, Net& u);
 
   /// Computes rows of the velocity u at any points in the fluid. Not collective.

@@ -118,7 +118,7 @@ TEST(Capsule, AnEvaluationIsSolvedAgainToASmallerError) {
   f.parameters.solvers.tolerance = 1e-12;
   Capsule capsule = f.capsule();
   const Net v = f.capsule().velocity(f.deformed());
-  const std::shared_ptr<Evaluation> e = capsule.evaluation(f.deformed(), {}, 0);
+  const std::shared_ptr<Evaluation> e = capsule.evaluate_on_demand(f.deformed(), {}, 0);
   e->solve(1e-2);
   EXPECT_GT((e->velocity() - v).norm(), 1e-6 * v.norm());
   e->solve();
