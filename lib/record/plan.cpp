@@ -337,7 +337,7 @@ std::string far_sum_line(const Scene& scene, bool tree) {
 
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
   if (!scene.in_system()) return plan_of_rigid(scene, body, ranks);
-  const bool tree = stokes::sums_by_tree(body.space, scene.quadrature, scene.domain.present && !scene.tube.present ? 27 : 1);
+  const bool tree = stokes::sums_by_tree(body.space, scene.quadrature, scene.domain.present && !scene.tube.present ? stokes::lattice_images : 1);
   const std::vector<ParticleScene> alone = scene.particle_scenes();
   const bool several = alone.size() > 1;
   const int n = body.space.n_points;

@@ -125,7 +125,7 @@ bool alike(const ParticleScene& one, const ParticleScene& other) {
          levels(one) == levels(other);
 }
 
-Body body(const ParticleScene& scene, const Member* alike) {
+Body body(const ParticleScene& scene, const Member* alike, std::shared_ptr<const stokes::DuctFlow> empty_duct) {
   Body b;
   const int levels = scene.adaptation.enabled ? scene.adaptation.levels : 0;
   if (alike) {
@@ -155,7 +155,7 @@ Body body(const ParticleScene& scene, const Member* alike) {
   b.unstressed = b.rest;
   if (!scene.particle.rigid())
     b.unstressed = membrane::unstressed(stress_free_shape(scene, b, first ? *first : b), center, scene.membrane.pre_inflation);
-  b.duct = duct(scene);
+  b.duct = empty_duct ? std::move(empty_duct) : duct(scene);
   b.flow = stokes::AmbientFlow(scene.flow, scene.flow.type == "duct" ? b.duct : nullptr);
   b.plane = flow_plane(scene.flow);
   b.radius = scene.radius();

@@ -82,7 +82,7 @@ struct Body {
 
 /// Builds the body of a scene with one particle. If the member `alike` is given, its mesh and resting shape are used, and the shape is moved to the
 /// position of this scene's particle.
-Body body(const ParticleScene& scene, const Member* alike = nullptr);
+Body body(const ParticleScene& scene, const Member* alike = nullptr, std::shared_ptr<const stokes::DuctFlow> empty_duct = nullptr);
 
 /// Returns true if body() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
 bool alike(const ParticleScene& one, const ParticleScene& other);

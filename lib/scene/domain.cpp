@@ -111,7 +111,7 @@ void DomainOptions::reject(const ParticleScene& scene, Rejections& to) const {
           {"Domain/periodic `" + periodic + "`", "Domain/periodic"}, scene.flow_choice(),
           "the flow must be the same in every cell, except for a uniform gradient");
   if (scene.tube.present) return;
-  const bool told = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
+  const bool prescribed = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
   const bool pushed = !scene.particle.rigid() && !scene.membrane.forces.total().isZero(0);
   to.pair(!to.every() && !scene.runs_in_time() && deforms(scene.flow), scene.sought(), scene.flow_choice(),
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
@@ -119,9 +119,9 @@ void DomainOptions::reject(const ParticleScene& scene, Rejections& to) const {
           "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
   to.pair(scene.flow.history && scene.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
           "nothing moves, so that one steady problem is solved");
-  to.pair(directions() < 3 && !scene.wall.solid && (told || weight || pushed || scene.particle.force),
+  to.pair(directions() < 3 && !scene.wall.solid && (prescribed || weight || pushed || scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
-          {told     ? scene.particle.choice()
+          {prescribed     ? scene.particle.choice()
            : weight ? "Particle/density difference"
            : pushed ? "Membrane/forces"
                     : "Particle/force",

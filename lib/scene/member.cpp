@@ -57,7 +57,7 @@ void share_or_make(std::vector<Member>& members, std::size_t p) {
 
 }  // namespace
 
-coupling::Rigid rigid(const ParticleScene& scene, const Body& body) {
+coupling::RigidDrive drive_of(const ParticleScene& scene, const Body& body) {
   const ParticleOptions& particle = scene.particle;
   const auto given = [](const std::optional<Vec3>& vector) { return vector.value_or(Vec3::Zero()); };
   return {particle.motion == Motion::prescribed, prescribed_motion(scene),
@@ -68,7 +68,7 @@ std::vector<Member> members(const Scene& scene) {
   std::vector<Member> all;
   for (ParticleScene& one : scene.particle_scenes()) {
     const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
-    auto its_body = std::make_unique<Body>(body(one, equal == all.end() ? nullptr : &*equal));
+    auto its_body = std::make_unique<Body>(body(one, equal == all.end() ? nullptr : &*equal, all.empty() ? nullptr : all.front().body->duct));
     Member& member = all.emplace_back();
     member.name = one.name;
     member.scene = std::move(one);
@@ -153,7 +153,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.loads = loads(own, body, all.wall.get());
     check_periods(own, particle.loads);
     particle.radius = body.radius;
-    if (own.particle.rigid()) particle.rigid = rigid(own, body);
+    if (own.particle.rigid()) particle.rigid = drive_of(own, body);
     particle.by_traction = own.particle.rigid() && own.solvers.rigid_bodies == coupling::BodyEquation::first_kind;
     particle.interface_motion = own.interface_motion();
     const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);

@@ -16,18 +16,18 @@ std::string text(Motion motion) { return "`" + motion_words[static_cast<std::siz
 std::string ParticleOptions::choice() const { return "Particle/motion " + text(motion); }
 
 void ParticleOptions::reject(const ParticleScene& scene, Rejections& to) const {
-  const bool told = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
+  const bool prescribed = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
   const std::string forced = "the force on a body with prescribed motion follows from its motion", gradient = "whose gradient is uniform";
   const Chosen moved = "Particle/motion `prescribed`", stiff(choice(), "Particle/motion `prescribed` or `free`");
   const Chosen duct = scene.duct_choice();
-  to.pair(!scene.runs_in_time() && told, scene.sought(), moved, "a body with prescribed motion has no unknown position or orientation");
-  to.pair(scene.tube.repulsion && told, {scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
-  to.pair(density_difference && told, "Particle/density difference", moved, forced);
-  to.pair(told && scene.name.empty() && scene.time.steady_tolerance, "Time/steady tolerance", moved,
+  to.pair(!scene.runs_in_time() && prescribed, scene.sought(), moved, "a body with prescribed motion has no unknown position or orientation");
+  to.pair(scene.tube.repulsion && prescribed, {scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
+  to.pair(density_difference && prescribed, "Particle/density difference", moved, forced);
+  to.pair(prescribed && scene.name.empty() && scene.time.steady_tolerance, "Time/steady tolerance", moved,
           "a single body with prescribed motion has no shape or rotation that could become steady");
-  to.pair(forces && !told, "Particle/forces", {choice(), "Particle/motion `deforming` or `free`"},
+  to.pair(forces && !prescribed, "Particle/forces", {choice(), "Particle/motion `deforming` or `free`"},
           "it is the method for the force on a body with prescribed motion");
-  to.pair(forces && told && scene.in_system() && scene.runs_in_time() && !scene.tube.repulsion, "Particle/forces",
+  to.pair(forces && prescribed && scene.in_system() && scene.runs_in_time() && !scene.tube.repulsion, "Particle/forces",
           {std::string(scene.why_in_system()),
            "Particles, Domain, Output/power balance, Output/series, Flow/history or Flow/type of an added flow"},
           "the force on a body in the coupled system follows from the solution of this system");

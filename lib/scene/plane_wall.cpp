@@ -29,7 +29,7 @@ WallRow row_of(std::span<const stokes::PlaneWall> walls, const spline::Space& sp
 void check_in_front(const ParticleScene& scene, const Body& body) {
   const WallRow row = row_of(scene.wall.planes(), body.space, body.initial, 1);
   const Vec3& place = row.place;
-  const double gap = row.gap, least = scene.wall.contact_gap * scene.radius();
+  const double gap = row.gap, least = scene.wall.contact_gap * scene.least_radius.value_or(scene.radius());
   if (gap >= least) return;
   const std::string name = scene.name.empty() ? "The particle" : "Particles/" + scene.name;
   const std::string where = formatted(" at [%.4g, %.4g, %.4g] ", place[0], place[1], place[2]);

@@ -311,7 +311,7 @@ std::vector<ParticleScene> Scene::particle_scenes() const {
   std::vector<ParticleScene> scenes;
   for (const ParticleKind& kind : particles) scenes.emplace_back(*this, kind);
   const auto equation = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
-  for (ParticleScene& one : scenes) one.solvers.rigid_bodies = equation;
+  for (ParticleScene& one : scenes) one.solvers.rigid_bodies = equation, one.least_radius = least_radius();
   return scenes;
 }
 

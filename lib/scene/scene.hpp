@@ -145,6 +145,8 @@ struct ParticleScene : SharedOptions, ParticleKind {
   ParticleScene() = default;
   ParticleScene(const SharedOptions& shared, const ParticleKind& kind) : SharedOptions(shared), ParticleKind(kind) {}
 
+  std::optional<double> least_radius;  ///< smallest radius R_C of all particles, by which gaps are divided; not set if this is the only particle
+
   /// Throws UserError if options of this particle, or shared options, contradict each other or if the problem is too large. `found`: rejected
   /// combinations of the whole scene.
   void check(Rejections found = Rejections()) const;

@@ -38,7 +38,7 @@ void check_fits_channel(const ParticleScene& scene, const Body& body, const surf
                               first, last, margin, channel.start(), channel.end()));
   const surface::ElementBoxes its(particle), walls(around);
   const double gap = surface::closest_points(its, walls, 1e-5 * wall.radius(), wall.radius()).gap;
-  if (const double least = scene.tube.contact_gap * body.radius; gap < least)
+  if (const double least = scene.tube.contact_gap * scene.least_radius.value_or(body.radius); gap < least)
     throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
                               gap, scene.tube.contact_gap, least));
 }
@@ -57,7 +57,7 @@ void check_fits(const ParticleScene& scene, const Body& body) {
   if (nearest.gap <= 0)
     throw UserError(formatted("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.",
                               where.c_str(), -nearest.gap, body.radius, outline.radius()));
-  const double least = scene.tube.contact_gap * body.radius;
+  const double least = scene.tube.contact_gap * scene.least_radius.value_or(body.radius);
   if (nearest.gap < least)
     throw UserError(
         formatted("The particle starts too close to the tube's wall: %s the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g.",

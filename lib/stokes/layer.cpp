@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <stdexcept>
 #include <typeinfo>
 #include <utility>
 
@@ -31,11 +32,10 @@ void Layer::use(std::unique_ptr<LayerMedium> medium) {
 }
 
 void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
-  constexpr int least_images = 27;
   const auto* lattice = dynamic_cast<const Lattice*>(medium_.get());
   if (lattice && lattice->is(cell, how)) return;
-  assert((lattice || typeid(*medium_) == typeid(LayerMedium)) && "a layer has one medium, or is on a lattice");
-  if (!tree_ && sums_by_tree(least_images * n_nodes(), sources_.surface.options)) tree_.emplace(tree_tolerance(), sources_.precision());
+  if (!lattice && typeid(*medium_) != typeid(LayerMedium)) throw std::logic_error("a layer has one medium, or is on a lattice");
+  if (!tree_ && sums_by_tree(lattice_images * n_nodes(), sources_.surface.options)) tree_.emplace(tree_tolerance(), sources_.precision());
   use(std::make_unique<Lattice>(cell, how));
 }
 

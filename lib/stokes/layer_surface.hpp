@@ -14,6 +14,9 @@
 
 namespace tanktread::stokes {
 
+/// Number of lattice images of a node, including the node itself, that a layer on a lattice sums directly or by clusters.
+constexpr int lattice_images = 27;
+
 /// Returns whether option `far sum` selects clusters (TreeSum) for this space rather than direct summation. `images`: number of lattice images of
 /// each node, including the node itself.
 bool sums_by_tree(const spline::Space& space, const quadrature::Options& options, int images = 1);

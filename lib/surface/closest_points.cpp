@@ -276,10 +276,10 @@ double distance(const Vec3& x, const Sampled& element) {
   for (std::size_t k = 0; k < element.place.size(); ++k)
     if (const double squared = (element.place[k] - x).squaredNorm(); squared < least) least = squared, nearest = k;
   // `across`: distance of x from the tangent plane at the nearest sample point. `along`: distance of the foot of the perpendicular on this plane from
-  // the sample point. If `along` is large, the foot may be beyond the element's edges, and another element is nearer than this plane. In this case,
-  // returns the distance from the sample point.
+  // the sample point. If `along` is large, the foot may be beyond the element's edges, and another element is nearer than this plane. If x is far
+  // behind the plane, it is in front of the other side of a thin body. In both cases, returns the distance from the sample point.
   const double across = (x - element.place[nearest]).dot(element.normal[nearest]), along = std::sqrt(std::max(0., least - across * across));
-  return along > element.box.diagonal().norm() / 4 ? std::sqrt(least) : std::max(across, 0.);
+  return along > element.box.diagonal().norm() / 4 || across < -along ? std::sqrt(least) : std::max(across, 0.);
 }
 
 }  // namespace

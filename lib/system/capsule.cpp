@@ -239,7 +239,7 @@ void Capsule::freeze(const Net& at) {
 void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++counts_.tangents;
-  jacobian_.linearise(x, evaluation(x, {}, 0)->load_sums());
+  jacobian_.linearise(x, evaluate_on_demand(x, {}, 0)->load_sums());
 }
 
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {

@@ -150,7 +150,7 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint
     return Net(known + traction_load(x, y, deformable_velocity(volume, y)));
   };
   std::vector<Vec3> centres;
-  std::vector<Rigid> driven;
+  std::vector<RigidDrive> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.holds(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
   const bool responds = layers_.repeats() || duct_.tube || solids() || layers_.has_double() || viscous();

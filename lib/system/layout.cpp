@@ -15,7 +15,7 @@ Layout::Layout(const spline::Space& space, const surface::Symmetry& symmetry, Ph
   folded_ = found.whole();
   elements_ = folded_ ? std::move(found.element) : share_.elements;
   ranks_.measure(phases);
-  ranks_.own(share_.points, symmetry);
+  ranks_.set_owned_rows(share_.points, symmetry);
 }
 
 void Layout::replicate_sums(Net& net) const {

@@ -18,7 +18,7 @@
 namespace tanktread::coupling {
 
 /// Drive of a rigid body: the force and the torque on it about its centre of volume, or its prescribed motion.
-struct Rigid {
+struct RigidDrive {
   bool prescribed = false;
   RigidMotion motion;                                  ///< prescribed motion
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< given force and torque if the motion is not prescribed
@@ -42,7 +42,7 @@ struct Particle {
 
   /// Loads in addition to elasticity and bending, on `space`. For a rigid body the work of the loads gives the force and torque on it.
   std::vector<std::shared_ptr<membrane::Load>> loads;
-  std::optional<Rigid> rigid;                 ///< set for a body that does not deform; it has no inner fluid, no membrane and no interface
+  std::optional<RigidDrive> rigid;                 ///< set for a body that does not deform; it has no inner fluid, no membrane and no interface
 
   bool slides() const { return interface_motion != "material"; }
 };

@@ -96,9 +96,9 @@ int Ranks::rank() const { return impl_->comm->getRank(); }
 int Ranks::size() const { return impl_->comm->getSize(); }
 void Ranks::measure(Phases& phases) { impl_->phases = &phases; }
 
-void Ranks::own(const std::vector<int>& rows, int n) { own(rows, surface::Symmetry(n)); }
+void Ranks::set_owned_rows(const std::vector<int>& rows, int n) { set_owned_rows(rows, surface::Symmetry(n)); }
 
-void Ranks::own(const std::vector<int>& rows, surface::Symmetry symmetry) {
+void Ranks::set_owned_rows(const std::vector<int>& rows, surface::Symmetry symmetry) {
   impl_->rows = rows;
   impl_->symmetry = std::move(symmetry);
   if (size() == 1) return;
@@ -115,14 +115,14 @@ void Ranks::own(const std::vector<int>& rows, surface::Symmetry symmetry) {
 
 std::vector<int> Ranks::divide_points(const spline::Space& space, const surface::Symmetry& symmetry) {
   std::vector<int> rows = surface::share(space, surface::partition_of_points(space, size(), symmetry.fundamental()), rank()).points;
-  own(rows, symmetry);
+  set_owned_rows(rows, symmetry);
   return rows;
 }
 
 std::vector<int> Ranks::divide_in_order(const surface::Symmetry& symmetry) {
   std::vector<int> rows;
   for (const int k : share(static_cast<int>(symmetry.fundamental().size()))) rows.push_back(symmetry.fundamental()[static_cast<std::size_t>(k)]);
-  own(rows, symmetry);
+  set_owned_rows(rows, symmetry);
   return rows;
 }
 

@@ -48,11 +48,11 @@ class Ranks {
   void measure(Phases& phases);
 
   /// Sets the rows that this rank computes in nets of n rows. Each row has one owner. Collective.
-  void own(const std::vector<int>& rows, int n);
+  void set_owned_rows(const std::vector<int>& rows, int n);
 
   /// Sets the rows that this rank computes, if only the rows of fundamental control points have owners and the other rows are their symmetry images.
   /// Collective.
-  void own(const std::vector<int>& rows, surface::Symmetry symmetry);
+  void set_owned_rows(const std::vector<int>& rows, surface::Symmetry symmetry);
 
   /// Divides the control points of a space among the ranks, and returns the points whose rows this rank computes. Collective.
   std::vector<int> divide_points(const spline::Space& space, const surface::Symmetry& symmetry);

@@ -160,7 +160,7 @@ class Deforming : public ParticleSystem {
   stokes::Evaluations kernel_evaluations() const override { return kernel_evaluations_ + capsule_->kernel_evaluations(); }
 
   Columns row(const motion::State& whole_state, ProgressRow progress) override {
-    const motion::State& state = fields_->of_shape(whole_state);
+    const motion::State state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluate_on_demand(state.x, state.history.front(), scene_.time.tolerance);
     // Solves the linear system for the velocity again in two cases: if the series of tractions on walls need a more accurate velocity than the step,

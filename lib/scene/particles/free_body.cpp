@@ -99,8 +99,8 @@ class Free : public ParticleSystem {
     const Vec3& centre = scene.particle.shape.center;
     if (scene.tube.present || scene.medium())
       return std::make_unique<coupling::BoundedFreeBody>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
-                                                         rigid(scene, body));
-    return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, rigid(scene, body));
+                                                         drive_of(scene, body));
+    return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, drive_of(scene, body));
   }
 
   /// Sets the tank-treading velocity, the frequency and the phase of a rigid body in the plane of the flow (Body::plane). The frequency (6.6) is the

@@ -234,7 +234,7 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
   const Pairs pairs(members, x, cell);
   const NearestPair nearest(pairs, [](std::size_t) { return true; });
   const Nearest found = nearest.of(nearest.with_gap(nearest.gap()));
-  if (found.gap > 10 * gap_accuracy * members.front().body->radius) return check_not_nested(members, x);
+  if (found.gap > 10 * pairs.tolerance()) return check_not_nested(members, x);
   const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].spoken(); };
   if (found.first == found.second)
     throw UserError("Domain is smaller than " + name(found.first) +

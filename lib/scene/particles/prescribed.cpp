@@ -49,7 +49,7 @@ coupling::RigidTractions tractions_of(const ParticleScene& scene, const Body& bo
 
 RigidSolution rigid_solution(const ParticleScene& scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases) {
   const Vec3& centre = scene.particle.shape.center;
-  const coupling::Rigid driven{true, prescribed_motion(scene)};
+  const coupling::RigidDrive driven{true, prescribed_motion(scene)};
   coupling::Tube* const tube = tractions.tube();
   RigidSolution s;
   {

@@ -39,14 +39,14 @@ SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsu
   motion_.emplace(capsule, std::move(on));
 }
 
-const motion::State& SurfaceFields::of_shape(const motion::State& state) {
+motion::State SurfaceFields::of_shape(const motion::State& state) const {
   if (!motion_) return state;
-  shapes_ = {};
-  shapes_.time = state.time, shapes_.step = state.step, shapes_.slope_error = state.slope_error;
-  shapes_.x = shape(state.x), shapes_.frozen = shape(state.frozen), shapes_.frozen_time = state.frozen_time;
-  for (const Net& slope : state.history) shapes_.history.push_back(shape(slope));
-  for (const motion::Place& place : state.places) shapes_.places.push_back({place.time, shape(place.x)});
-  return shapes_;
+  motion::State shapes;
+  shapes.time = state.time, shapes.step = state.step, shapes.slope_error = state.slope_error;
+  shapes.x = shape(state.x), shapes.frozen = shape(state.frozen), shapes.frozen_time = state.frozen_time;
+  for (const Net& slope : state.history) shapes.history.push_back(shape(slope));
+  for (const motion::Place& place : state.places) shapes.places.push_back({place.time, shape(place.x)});
+  return shapes;
 }
 
 void SurfaceFields::put_back(const motion::State& own, motion::State& state) const {

@@ -45,7 +45,7 @@ class SurfaceFields {
 
   /// Returns time, slopes and shapes of a state without the coefficients of fields; the state itself if there are no fields. The result is valid
   /// until the next call.
-  const motion::State& of_shape(const motion::State& state);
+  motion::State of_shape(const motion::State& state) const;
   /// Copies the shapes and slopes of `own`, which of_shape() returned and the caller modified, back into the state.
   void put_back(const motion::State& own, motion::State& state) const;
 
@@ -86,7 +86,6 @@ class SurfaceFields {
   coupling::Capsule& capsule_;
   std::vector<One> all_;
   std::optional<coupling::CoupledMotion> motion_;
-  motion::State shapes_;
 };
 
 /// Returns load, traction, displacement, velocity, tensions and mean curvature at the nodes, and the particle number if there are several particles.

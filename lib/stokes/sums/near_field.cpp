@@ -19,7 +19,7 @@ double share(double tolerance) { return 0.3 * std::pow(tolerance, 1.125); }
 
 Vec3 point(const double* bezier, int n_b, int b) { return {bezier[b], bezier[n_b + b], bezier[2 * n_b + b]}; }
 
-quadrature::Patch flat_picture(const double* bezier, int degree) {
+quadrature::Patch flat_patch(const double* bezier, int degree) {
   const int n = degree + 1, n_b = n * n;
   const Vec3 a = point(bezier, n_b, 0), b = point(bezier, n_b, degree), c = point(bezier, n_b, n_b - 1), d = point(bezier, n_b, n_b - n);
   return {(a + b + c + d) / 4, (b - a + c - d) / 4, (c - b + d - a) / 4};
@@ -76,7 +76,7 @@ void NearField::view(int e) {
   const NodeTable& t = *panels_[e].table;
   const double* points = &(*bezier_)[panels_[e].first_bezier];
   View& view = views_[e];
-  view.flat = flat_picture(points, t.degree);
+  view.flat = flat_patch(points, t.degree);
   view.area = view.flat.area();
   const auto& [centre, u, v] = view.flat;
   double square = 0;

@@ -8,7 +8,7 @@
 namespace tanktread::coupling {
 
 BoundedFreeBody::BoundedFreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
-                                 double viscosity, const Rigid& driven)
+                                 double viscosity, const RigidDrive& driven)
     : LoneRigidBody(surface, centre, radius, flow, driven), body_(body), viscosity_(viscosity) {
   if (body.tube()) modes_.emplace(body, surface, centre, false);
 }
@@ -36,7 +36,7 @@ double BoundedFreeBody::pressure_drop(const Net& place) const {
   const Net x = surface(place);
   const bool carried = flow_.duct() && flow_.amplitude() != 0 && driven_.force.isZero(0) && driven_.torque.isZero(0);
   const Net z = carried ? Net(-f / flow_.amplitude()) : density_at_rest(place, tube->flow().velocities(moved(body_.sites(), place)));
-  return body_.pressure_correction(x, f, rigid_velocity(x, motion, centre_of(place)), flow_, z) - tube->pressure_of(f);
+  return body_.pressure_correction_of(x, f, rigid_velocity(x, motion, centre_of(place)), flow_, z) - tube->pressure_of(f);
 }
 
 /// Returns the force density on the body at rest at `place` in the tube, which causes the given velocities at its sites.
@@ -52,7 +52,7 @@ Net BoundedFreeBody::density_at_rest(const Net& place, const Net& velocities) co
   };
   Eigen::VectorXd right(n), z = Eigen::VectorXd::Zero(n);
   Eigen::Map<Net>(right.data(), n / 3, 3) = velocities * turn;
-  iterations_ += body_.solve({{{"traction", n}}, apply, precondition}, right, z);
+  iterations_ += body_.solve_iteratively({{{"traction", n}}, apply, precondition}, right, z);
   return Eigen::Map<const Net>(z.data(), n / 3, 3) * turn.transpose();
 }
 
@@ -91,7 +91,7 @@ BoundedFreeBody::Solution BoundedFreeBody::in_tube(const Net& place) const {
   Eigen::Map<Net>(right.data(), n, 3) = -flow_.velocities(moved(body_.sites(), place)) * turn;
   right.tail<6>() << turn.transpose() * driven_.force / force_unit, turn.transpose() * driven_.torque / (force_unit * radius_);
   if (unknowns_.size() != right.size()) unknowns_ = Eigen::VectorXd::Zero(right.size());
-  iterations_ += body_.solve({{{"traction", 3 * n}, {"rigid motion", 6}}, apply, precondition}, right, unknowns_);
+  iterations_ += body_.solve_iteratively({{{"traction", 3 * n}, {"rigid motion", 6}}, apply, precondition}, right, unknowns_);
   const Net f = unit * Eigen::Map<const Net>(unknowns_.data(), n, 3);
   const RigidMotion motion = motion_of(Six(unknowns_.tail<6>()).cwiseProduct(of_motion));
   return {{turn * motion.velocity, turn * motion.angular_velocity}, f * turn.transpose(),

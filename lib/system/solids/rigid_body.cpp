@@ -89,7 +89,8 @@ Vec3 centre_of(const Net& place) { return place.row(0).transpose(); }
 
 Mat3 rotation_of(const Net& place) { return quaternion(place).normalized().toRotationMatrix(); }
 
-FreeBody::FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
+FreeBody::FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
+                   const RigidDrive& driven)
     : LoneRigidBody(surface, centre, radius, flow, driven), modes_(body, surface, centre, !flow.affine()) {
   mobility_ = modes_.response.leftCols<6>().inverse();
   drift_ = mobility_ * modes_.response.rightCols(modes_.response.cols() - 6);

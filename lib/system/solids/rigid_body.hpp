@@ -41,7 +41,7 @@ class LoneRigidBody : public Dynamics {
  public:
   /// `surface`: control net of the body in its initial position. `radius`: particle radius R_C. `driven`: given force on the body, and torque about
   /// its centre.
-  LoneRigidBody(const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
+  LoneRigidBody(const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const RigidDrive& driven)
       : surface_(surface), centre_(centre), radius_(radius), flow_(flow), driven_(driven) {}
 
   void at(double time, double start) override { flow_.at(time, start); }
@@ -80,7 +80,7 @@ class LoneRigidBody : public Dynamics {
   Vec3 centre_;
   double radius_;
   stokes::AmbientFlow flow_;  // flow at the time set last
-  Rigid driven_;
+  RigidDrive driven_;
 
  private:
   long evaluations_ = 0;
@@ -91,7 +91,8 @@ class LoneRigidBody : public Dynamics {
 /// second derivatives of v_inf at x_c. A call costs only a few products of small matrices.
 class FreeBody : public LoneRigidBody {
  public:
-  FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven = {});
+  FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
+           const RigidDrive& driven = {});
 
   RigidMotion motion(const Net& place) const override;
   Net force_density(const Net& place) const override;
@@ -118,7 +119,7 @@ class BoundedFreeBody : public LoneRigidBody {
  public:
   /// `body`: equation (2.40) of the traction on the body, including the tube or the medium. `surface`: net of the body in its initial position.
   BoundedFreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
-                 const Rigid& driven = {});
+                 const RigidDrive& driven = {});
 
   void at(double time, double start) override {
     if (flow_.at(time, start)) place_ = {};

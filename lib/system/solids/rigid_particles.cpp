@@ -153,8 +153,8 @@ void RigidParticles::push(const Net& work) {
   for (Body& body : bodies_) body.pushed = work.size() > 0 ? Net(body.block.rows(work)) : Net();
 }
 
-Rigid RigidParticles::Body::given() const {
-  Rigid all = rigid;
+RigidDrive RigidParticles::Body::given() const {
+  RigidDrive all = rigid;
   all.motion.velocity -= cell_velocity;
   for (Eigen::Index a = 0; a < pushed.rows(); ++a) {
     const Vec3 here = pushed.row(a).transpose();
@@ -166,7 +166,7 @@ Rigid RigidParticles::Body::given() const {
 
 void RigidParticles::add_load(Net& load) const {
   for (const Body& body : bodies_)
-    if (const Rigid given = body.given(); !given.prescribed) body.block.rows(load) -= body.field(body.carrying(given.force, given.torque));
+    if (const RigidDrive given = body.given(); !given.prescribed) body.block.rows(load) -= body.field(body.carrying(given.force, given.torque));
 }
 
 Net RigidParticles::Body::single_layer_correction(const RigidMotion& load) const {
@@ -188,7 +188,7 @@ Net RigidParticles::Body::double_layer_correction(const Net& w) const {
 
 void RigidParticles::add_load_correction(Net& v) const {
   for (const Body& body : bodies_)
-    if (const Rigid given = body.given(); !given.prescribed)
+    if (const RigidDrive given = body.given(); !given.prescribed)
       body.block.rows(v) += body.single_layer_correction(body.carrying(given.force, given.torque)) / body.viscosity;
 }
 
@@ -230,7 +230,7 @@ void RigidParticles::move(Net& v) {
   for (Body& body : bodies_) {
     const RigidMotion mean = body.mean(v);
     body.density = body.block.rows(v);
-    const Rigid given = body.given();
+    const RigidDrive given = body.given();
     body.force = given.force, body.torque = given.torque;
     if (body.rigid.prescribed) {
       Motions of_body, integrals;

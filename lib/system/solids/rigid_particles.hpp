@@ -90,7 +90,7 @@ class RigidParticles {
   const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< centre of its volume
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
-  Rigid given(std::size_t p) const { return body(p).given(); }         ///< prescribed motion, or prescribed force and torque plus push()
+  RigidDrive given(std::size_t p) const { return body(p).given(); }         ///< prescribed motion, or prescribed force and torque plus push()
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
   /// Returns whether the bodies p and q have equal shapes and orientations at rest.
@@ -108,7 +108,7 @@ class RigidParticles {
   using Motions = Eigen::Matrix<double, 6, 1>;
   struct Body {
     spline::Block block;
-    Rigid rigid;
+    RigidDrive rigid;
     Net pushed;  // rows of this body in the argument of push(); no rows if there are no such forces
     double radius = 0, viscosity = 0;
     Net rest;             // control net in the reference orientation, relative to the centre of volume
@@ -125,7 +125,7 @@ class RigidParticles {
     RigidMotion motion;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 
-    Rigid given() const;
+    RigidDrive given() const;
     RigidMotion mean(const Net& w) const;      // rigid motion <w> of (2.23): least-squares fit over the body. `w`: net of all particles
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // load a + b x r with the given force and torque
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body

@@ -52,7 +52,7 @@ SolverOptions for_single(SolverOptions solvers) {
 }
 
 /// Returns the indices 6 p + k of the unit motions k = 0 .. 5 of all bodies p whose motion is not prescribed.
-std::vector<int> free_motions(std::span<const Rigid> driven) {
+std::vector<int> free_motions(std::span<const RigidDrive> driven) {
   std::vector<int> free;
   for (std::size_t p = 0; p < driven.size(); ++p)
     for (int k = 0; k < 6; ++k)
@@ -73,10 +73,11 @@ Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resis
 
 /// Returns the amplitudes of the unit motions: prescribed motions, and the motions that give the prescribed forces and torques. `held`: forces and
 /// torques if all bodies are held at rest.
-Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) {
+Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held,
+                        std::span<const RigidDrive> driven) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(held.size()), given = motion;
   for (std::size_t p = 0; p < driven.size(); ++p) {
-    const Rigid& rigid = driven[p];
+    const RigidDrive& rigid = driven[p];
     const auto first = static_cast<Eigen::Index>(6 * p);
     if (rigid.prescribed)
       motion.segment<6>(first) << rigid.motion.velocity, rigid.motion.angular_velocity;
@@ -178,7 +179,7 @@ Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd&
   return work;
 }
 
-void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
+void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const RigidDrive> driven, const stokes::AmbientFlow& flow,
                            std::optional<Surroundings> around) {
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   ++n_solves_;
@@ -230,7 +231,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   }
 }
 
-double RigidTractions::pressure_correction(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, const Net& z) {
+double RigidTractions::pressure_correction_of(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, const Net& z) {
   const Net places = residual_.points().values * x;
   weighted_residual_ = flat(residual_.integrated(x, load(f), v, flow.velocities(places), walls_));
   return walls_.tube->pressure_correction(residual_.points(), walls_.tube->flow().velocities(places), f, corrections(f, flat(z))[0]);
@@ -265,7 +266,7 @@ Mat3 RigidTractions::moment(std::size_t p) {
   return bodies_[p].moment + strain_of_products(densities(velocities).transpose() * weighted_residual_);
 }
 
-int RigidTractions::solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns) {
+int RigidTractions::solve_iteratively(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns) {
   Eigen::VectorXd found = unknowns;
   reports_ = {krylov_.solve(system, right, found, tolerance_)};
   const int iterations = converged_iterations();

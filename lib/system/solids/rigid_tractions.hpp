@@ -85,7 +85,7 @@ class RigidTractions {
   /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles at the net x. `driven`: prescribed force
   /// and torque, or prescribed motion, of each body. `flow`: ambient flow. `centres`, `around`: as for set_shape(). Results are kept until the next
   /// call. Collective.
-  void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
+  void solve(const Net& x, std::span<const Vec3> centres, std::span<const RigidDrive> driven, const stokes::AmbientFlow& flow,
              std::optional<Surroundings> around = {});
 
   /// Returns the force densities, shape (N, 3), that cause these velocities at the collocation sites of the net passed to set_shape() last. Neither
@@ -95,7 +95,7 @@ class RigidTractions {
   /// Returns the correction (2.41) of the pressure drop for the collocation error. `f`: force density on freely moving bodies at the net x. `v`:
   /// control values of the bodies' velocity. `z`: force density due to the flow of the empty duct, of amplitude 1, on bodies at rest; for bodies
   /// without forces and torques in this flow, -f has the same effect. All particles must be bodies. Collective.
-  double pressure_correction(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, const Net& z);
+  double pressure_correction_of(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, const Net& z);
 
   /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
   SolvedBody integrals(std::size_t p, const Net& f);
@@ -126,7 +126,7 @@ class RigidTractions {
   int converged_iterations() const;
   /// Solves the given linear system for a traction. `unknowns`: initial guess, replaced by the solution. Returns the number of iterations. If the
   /// solve does not converge, throws RunFailure and leaves `unknowns` unchanged. Collective.
-  int solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
+  int solve_iteratively(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
   void forget_recycled() const;  ///< discards the data of earlier solves that the iterative solvers of this equation and of the tube's wall keep
   Tube* tube() const { return walls_.tube; }
   stokes::Evaluations kernel_evaluations() const;  ///< of the layers of the bodies and of the tube

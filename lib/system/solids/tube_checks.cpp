@@ -59,7 +59,7 @@ void Tube::weigh_flow() {
 /// Returns the errors of the response in the conditions (2.14). By reciprocity, a force f at y causes the flow rate f.c(y)/mu through the inlet, with
 /// c of (2.13). Therefore no quadrature over the inlet is needed.
 Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
-  Particle& particle = *particle_;
+  Contents& particle = *particle_;
   const double mu = viscosity(), dp = response.pressure_drop;
   const double area = wall_->surface().outline.area();
   weigh_flow();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include <Eigen/SVD>
+#include "base/small_matrices.hpp"
 
 namespace tanktread::coupling {
 
@@ -54,20 +54,12 @@ namespace {
 
 Net centred(const Net& x) { return x.rowwise() - x.colwise().mean(); }
 
-/// Returns the rotation Q that minimises |to - from Q^T|; both nets are centred, one row per point.
-Mat3 best_rotation(const Net& from, const Net& to) {
-  const Eigen::JacobiSVD<Mat3> svd(Mat3(to.transpose() * from), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vec3 signs = Vec3::Ones();
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) signs[2] = -1;
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-}
-
 }  // namespace
 
 Corotation::Corotation(std::span<const Particle> particles, const Net& from, const Net& to) {
   for (const Particle& particle : particles) {
     blocks_.push_back(particle.block);
-    rotations_.push_back(best_rotation(centred(particle.block.rows(from)), centred(particle.block.rows(to))));
+    rotations_.push_back(nearest_rotation(centred(particle.block.rows(to)).transpose() * centred(particle.block.rows(from))));
   }
 }
 
@@ -86,7 +78,7 @@ Net Corotation::deformation(std::span<const Particle> particles, const Net& from
   Net difference(to.rows(), 3);
   for (const Particle& particle : particles) {
     const Net before = centred(particle.block.rows(from)), after = centred(particle.block.rows(to));
-    particle.block.rows(difference) = after - before * best_rotation(before, after).transpose();
+    particle.block.rows(difference) = after - before * nearest_rotation(after.transpose() * before).transpose();
   }
   return difference;
 }

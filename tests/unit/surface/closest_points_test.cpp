@@ -120,6 +120,19 @@ TEST(ClosestPoints, OfSurfacesThatMeetHaveNoGap) {
   EXPECT_LT(closest(shape, shape.sphere, other).gap, 1e-7);
 }
 
+/// Elements on the far side of a thin body are behind a point in front of it, and are no film of width 0, in whichever order they are visited.
+TEST(FilmWidths, InFrontOfAThinBody) {
+  const Shape shape;
+  const Net disc = shape.sphere.array().rowwise() * Eigen::RowVector3d(1, 1, 0.15).array();
+  const Patches own(shape.map, disc);
+  for (const double height : {0.6, -0.6}) {
+    const Patches other(shape.map, disc.rowwise() + Eigen::RowVector3d(0, 0, height));
+    const Patches* const others[] = {&other};
+    const std::vector<double> widths = film_widths(own, others, 0.8);
+    EXPECT_NEAR(*std::ranges::min_element(widths), 0.3, 0.02) << height;  // distance of elements from their tangent planes
+  }
+}
+
 /// A sphere on the axis of a tube: the film is within reach near the equator only.
 TEST(FilmWidths, BesideTheWallOfATube) {
   const Shape shape;

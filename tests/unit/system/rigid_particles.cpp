@@ -36,7 +36,7 @@ struct Bodies {
 
   struct One {
     Vec3 centre, semi_axes = Vec3::Ones();
-    std::optional<Rigid> rigid = Rigid{};
+    std::optional<RigidDrive> rigid = RigidDrive{};
     double viscosity_ratio = 1;
     int elements = 0;  // per side; 0: n
   };
@@ -80,7 +80,7 @@ Mat3 some_gradient() {
 /// The two equations are of different kinds and share only the body.
 TEST(RigidParticles, OneMovesAsTheFirstKindEquationSays) {
   const Vec3 centre(0.3, -0.1, 0.2), axes(1.3, 0.8, 1);
-  const Rigid driven{false, {}, Vec3(1, -2, 3), Vec3(2, 1, -1)};
+  const RigidDrive driven{false, {}, Vec3(1, -2, 3), Vec3(2, 1, -1)};
   Bodies one({{centre, axes, driven}}, 6, some_gradient());
   Capsule system = one.system();
   Net x = one.rest;
@@ -100,12 +100,12 @@ TEST(RigidParticles, OneMovesAsTheFirstKindEquationSays) {
 
 TEST(RigidParticles, ForcesThatAreNeededDriveTheSameMotion) {
   const Vec3 away(0.5, 0.4, 2.6);
-  Rigid told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
-  Bodies held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), Rigid{true, {}}}}, 4, some_gradient());
+  RigidDrive told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
+  Bodies held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), RigidDrive{true, {}}}}, 4, some_gradient());
   Capsule system = held.system();
   const RigidParticles forced = system.evaluate(held.rest)->rigid();
-  Bodies free({{Vec3::Zero(), Vec3(1.2, 1, 0.8), Rigid{false, {}, forced.force(0), forced.torque(0)}},
-               {away, Vec3::Ones(), Rigid{false, {}, forced.force(1), forced.torque(1)}}}, 4, some_gradient());
+  Bodies free({{Vec3::Zero(), Vec3(1.2, 1, 0.8), RigidDrive{false, {}, forced.force(0), forced.torque(0)}},
+               {away, Vec3::Ones(), RigidDrive{false, {}, forced.force(1), forced.torque(1)}}}, 4, some_gradient());
   Capsule other = free.system();
   const RigidParticles moved = other.evaluate(free.rest)->rigid();
   // The residuals of both problems between the collocation sites differ.
@@ -116,7 +116,7 @@ TEST(RigidParticles, ForcesThatAreNeededDriveTheSameMotion) {
 
 /// Compared with the multipole solution for two spheres whose centres are 3 apart (functions of Jeffrey & Onishi).
 TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
-  const Rigid pulled{true, {Vec3(1, 0, 0), Vec3::Zero()}}, held{true, {}};
+  const RigidDrive pulled{true, {Vec3(1, 0, 0), Vec3::Zero()}}, held{true, {}};
   Bodies pair({{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(3, 0, 0), Vec3::Ones(), held}}, 4, Mat3::Zero());
   Capsule system = pair.system();
   const RigidParticles along = system.evaluate(pair.rest)->rigid();
@@ -124,7 +124,7 @@ TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
   EXPECT_NEAR(along.force(0)[0] / unit, 1.3684796, 2e-4);  // n = 4; fourth order in the element size
   EXPECT_NEAR(along.force(1)[0] / unit, -0.670175042, 2e-4);
   EXPECT_LT(along.torque(0).norm() + along.torque(1).norm(), 1e-6);
-  Bodies free({{Vec3::Zero(), Vec3::Ones(), Rigid{}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}}, 4, Mat3(Vec3(1, -0.5, -0.5).asDiagonal()));
+  Bodies free({{Vec3::Zero(), Vec3::Ones(), RigidDrive{}}, {Vec3(3, 0, 0), Vec3::Ones(), RigidDrive{}}}, 4, Mat3(Vec3(1, -0.5, -0.5).asDiagonal()));
   Capsule in_strain = free.system();
   const RigidParticles moved = in_strain.evaluate(free.rest)->rigid();
   EXPECT_NEAR(1 - (moved.motion(1).velocity - moved.motion(0).velocity)[0] / 3, 0.186662636, 1e-4);  // A
@@ -133,7 +133,7 @@ TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
 
 /// The surface is slightly higher at its collocation sites than between them. Without correction the error of the torque is 1.3e-4.
 TEST(RigidParticles, ALoadDrivesItsOwnBodyBetweenSitesToo) {
-  const Rigid turned{true, {Vec3::Zero(), Vec3(0, 0, 1)}};
+  const RigidDrive turned{true, {Vec3::Zero(), Vec3(0, 0, 1)}};
   Bodies one({{Vec3::Zero(), Vec3::Ones(), turned}}, 4, Mat3::Zero());
   Capsule system = one.system();
   EXPECT_NEAR(system.evaluate(one.rest)->rigid().torque(0)[2] / (8 * pi * viscosity), 1, 1e-5);  // the volume equals that of the sphere to 1e-6
@@ -141,14 +141,14 @@ TEST(RigidParticles, ALoadDrivesItsOwnBodyBetweenSitesToo) {
 
 /// The density needs a correction too. Without it the error of the stresslet is 1.4e-4.
 TEST(RigidParticles, ADensityDrivesItsOwnBodyBetweenSitesToo) {
-  Bodies one({{Vec3::Zero(), Vec3::Ones(), Rigid{}}}, 4, Mat3(Vec3(1, -0.5, -0.5).asDiagonal()));
+  Bodies one({{Vec3::Zero(), Vec3::Ones(), RigidDrive{}}}, 4, Mat3(Vec3(1, -0.5, -0.5).asDiagonal()));
   Capsule system = one.system();
   EXPECT_NEAR(system.evaluate(one.rest)->stresslet()(0, 0) / (20 * pi * viscosity / 3), 1, 1e-5);
 }
 
 /// With the inverses of isolated bodies only, the narrower gap takes 41 iterations.
 TEST(RigidParticles, IterationsDoNotGrowAsAFilmThins) {
-  const Rigid pulled{true, {Vec3(1, 0.5, 0), Vec3(0, 1, 2)}}, held{true, {}};
+  const RigidDrive pulled{true, {Vec3(1, 0.5, 0), Vec3(0, 1, 2)}}, held{true, {}};
   std::vector<long> iterations;
   for (const double gap : {0.1, 0.005}) {
     Bodies pair({{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(2 + gap, 0, 0), Vec3(1, 1.2, 0.8), held}}, 7, Mat3::Zero());
@@ -164,7 +164,7 @@ TEST(RigidParticles, IterationsDoNotGrowAsAFilmThins) {
 /// The limit of infinite viscosity is approached like 1/lambda.
 TEST(RigidParticles, VeryViscousDropsMoveAlike) {
   const auto velocity = [](double viscosity_ratio) {
-    const std::optional<Rigid> rigid = viscosity_ratio > 0 ? std::nullopt : std::optional(Rigid{});
+    const std::optional<RigidDrive> rigid = viscosity_ratio > 0 ? std::nullopt : std::optional(RigidDrive{});
     const double ratio = std::max(viscosity_ratio, 1.);
     Bodies pair({{Vec3::Zero(), Vec3::Ones(), rigid, ratio}, {Vec3(2.2, 0.3, 0.4), Vec3(1, 1.1, 0.9), rigid, ratio}}, 4, some_gradient());
     for (Particle& one : pair.parameters.particles) one.measure = stokes::Measure::current;
@@ -200,7 +200,7 @@ struct ByTractions : Bodies {
 };
 
 TEST(RigidTractions, AFailedSolveKeepsTheInitialGuess) {
-  Bodies one({{Vec3::Zero(), Vec3::Ones(), Rigid{}}}, 3, Mat3::Zero());
+  Bodies one({{Vec3::Zero(), Vec3::Ones(), RigidDrive{}}}, 3, Mat3::Zero());
   RigidTractions tractions(one.space, one.rest, 1, viscosity, one.parameters.quadrature, one.parameters.solvers, one.ranks);
   const auto fails = [](const double*, double* out) { std::fill_n(out, 3, std::numeric_limits<double>::quiet_NaN()); };
   const LinearSystem system{{{"traction", 3}}, fails, {}};
@@ -211,7 +211,7 @@ TEST(RigidTractions, AFailedSolveKeepsTheInitialGuess) {
 
 /// The force on spheres that approach each other, compared with the multipole solution above.
 TEST(RigidTractions, ErrLessThanDoubleLayers) {
-  const Rigid one{true, {Vec3(1, 0, 0), Vec3::Zero()}}, other{true, {Vec3(-1, 0, 0), Vec3::Zero()}};
+  const RigidDrive one{true, {Vec3(1, 0, 0), Vec3::Zero()}}, other{true, {Vec3(-1, 0, 0), Vec3::Zero()}};
   const auto error = [&](auto pair) {
     Capsule system = pair->system();
     return std::abs(system.evaluate(pair->rest)->rigid().force(0)[0] / (6 * pi * viscosity) - (1.3684796 + 0.670175042));
@@ -222,7 +222,7 @@ TEST(RigidTractions, ErrLessThanDoubleLayers) {
 
 TEST(RigidTractions, PairsInStrainMoveAndResistAsTheyShould) {
   const Mat3 strain = Vec3(1, -0.5, -0.5).asDiagonal();
-  ByTractions free({{Vec3::Zero(), Vec3::Ones(), Rigid{}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}}, 4, strain);
+  ByTractions free({{Vec3::Zero(), Vec3::Ones(), RigidDrive{}}, {Vec3(3, 0, 0), Vec3::Ones(), RigidDrive{}}}, 4, strain);
   Capsule system = free.system();
   const RigidParticles moved = system.evaluate(free.rest)->rigid();
   EXPECT_NEAR(1 - (moved.motion(1).velocity - moved.motion(0).velocity)[0] / 3, 0.186662636, 2e-6);  // the surfaces are spheres to 1e-6
@@ -230,7 +230,7 @@ TEST(RigidTractions, PairsInStrainMoveAndResistAsTheyShould) {
 }
 
 TEST(RigidTractions, AStressletIsThatOfItsEvaluationAfterAnotherShapeWasSolved) {
-  ByTractions pair({{Vec3::Zero(), Vec3::Ones(), Rigid{}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}}, 3, some_gradient());
+  ByTractions pair({{Vec3::Zero(), Vec3::Ones(), RigidDrive{}}, {Vec3(3, 0, 0), Vec3::Ones(), RigidDrive{}}}, 3, some_gradient());
   pair.parameters.quadrature.tolerance = 1e-5;
   Capsule system = pair.system();
   const auto here = system.evaluate(pair.rest);
@@ -244,12 +244,12 @@ TEST(RigidTractions, AStressletIsThatOfItsEvaluationAfterAnotherShapeWasSolved) 
 
 TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
   const Vec3 away(0.5, 0.4, 2.6);
-  const Rigid told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
-  ByTractions held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), Rigid{}}}, 4, some_gradient());
+  const RigidDrive told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
+  ByTractions held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), RigidDrive{}}}, 4, some_gradient());
   Capsule system = held.system();
   const RigidParticles forced = system.evaluate(held.rest)->rigid();
-  const Rigid driven{false, {}, forced.force(0), forced.torque(0)};
-  ByTractions free({{Vec3::Zero(), Vec3(1.2, 1, 0.8), driven}, {away, Vec3::Ones(), Rigid{}}}, 4, some_gradient());
+  const RigidDrive driven{false, {}, forced.force(0), forced.torque(0)};
+  ByTractions free({{Vec3::Zero(), Vec3(1.2, 1, 0.8), driven}, {away, Vec3::Ones(), RigidDrive{}}}, 4, some_gradient());
   Capsule other = free.system();
   const RigidParticles moved = other.evaluate(free.rest)->rigid();
   // The remaining difference is the collocation error of the correction itself.
@@ -259,7 +259,7 @@ TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
 
 /// Drag of a sphere that moves along a plane wall at a gap of one radius: Goldman, Cox & Brenner 1967.
 TEST(RigidTractions, AWallResists) {
-  ByTractions one({{Vec3(0.2, 0, 2), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
+  ByTractions one({{Vec3(0.2, 0, 2), Vec3::Ones(), RigidDrive{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
   one.parameters.medium = std::make_shared<stokes::PlaneWall>(Vec3::Zero(), Vec3(0, 0, 1));
   Capsule system = one.system();
   EXPECT_NEAR(system.evaluate(one.rest)->rigid().force(0)[0] / (6 * pi * viscosity), 1.38275238, 1e-5);
@@ -267,7 +267,7 @@ TEST(RigidTractions, AWallResists) {
 
 /// Drag of a simple cubic array of spheres at the volume fraction 0.2: multipoles with Ewald sums.
 TEST(RigidTractions, AnArrayResists) {
-  ByTractions one({{Vec3::Zero(), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
+  ByTractions one({{Vec3::Zero(), Vec3::Ones(), RigidDrive{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
   one.parameters.cell = stokes::PeriodicCell(2.7564674676 * Mat3::Identity(), 3);
   one.parameters.quadrature.tolerance = 1e-6, one.parameters.solvers.tolerance = 1e-8;
   Capsule system = one.system();
@@ -277,8 +277,8 @@ TEST(RigidTractions, AnArrayResists) {
 /// A drop 50 radii away changes the motion by 1e-6 at most: the force on the pair causes a strain of order 1/r^2 at the drop, and the stresslet of
 /// the drop a velocity of order 1/r^4 at the pair.
 TEST(RigidTractions, AFarDropChangesNothing) {
-  const Rigid pulled{false, {}, Vec3(6 * pi * viscosity, 0, 0), Vec3::Zero()};
-  std::vector<Bodies::One> bodies{{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}};
+  const RigidDrive pulled{false, {}, Vec3(6 * pi * viscosity, 0, 0), Vec3::Zero()};
+  std::vector<Bodies::One> bodies{{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(3, 0, 0), Vec3::Ones(), RigidDrive{}}};
   ByTractions pair(bodies, 4, Mat3::Zero());
   Capsule two = pair.system();
   const RigidParticles alone = two.evaluate(pair.rest)->rigid();
@@ -297,7 +297,7 @@ struct BesideDrop {
   Vec3 of_drop;
 
   BesideDrop(bool by_tractions, int n, double viscosity_ratio) {
-    const Rigid pulled{false, {}, Vec3(3, -2, 1), Vec3(1, 0, -1)};
+    const RigidDrive pulled{false, {}, Vec3(3, -2, 1), Vec3(1, 0, -1)};
     ByTractions scene({{Vec3(0, 0, 2), Vec3(1, 1.1, 0.9), std::nullopt, viscosity_ratio, 6}, {Vec3(2.4, 0.2, 2.3), Vec3(1, 0.9, 1.1), pulled}}, n,
                       some_gradient(), by_tractions);
     scene.parameters.quadrature.tolerance = 1e-6, scene.parameters.solvers.tolerance = 1e-8;

@@ -97,7 +97,7 @@ TEST(SingleBody, LacksWhatTheReciprocalTheoremGives) {
   const Fixture s = spheroid();
   const stokes::Ellipsoid exact(Vec3(0.7, 0.7, 1.1));
   const Vec3 u(0.6, 0.1, 0.8), centre = Vec3::Zero();
-  const Rigid moving{true, {u, Vec3::Zero()}};
+  const RigidDrive moving{true, {u, Vec3::Zero()}};
   stokes::FlowOptions at_rest;
   at_rest.type = "quiescent";
   s.tractions->solve(s.rest, {&centre, 1}, {&moving, 1}, stokes::AmbientFlow(at_rest));
