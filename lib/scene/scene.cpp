@@ -348,7 +348,7 @@ bool Scene::adapts() const {
 }
 
 bool Scene::lands_on_snapshots() const {
-  return output.between_steps ? *output.between_steps == "land" : !time.fixed_step || adapts();
+  return output.between_steps ? *output.between_steps == "land" : !time.fixed_step || (adapts() && !named());
 }
 
 bool may_change_on_resume(const std::string& path) {

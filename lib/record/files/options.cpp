@@ -12,8 +12,8 @@ void Options::declare(deck::Section& section) {
   section.key("between steps", between_steps, deck::Choice{"land", "interpolate"},
               "treatment of snapshots whose times lie within a time step. `land`: the step is shortened to end at the snapshot time. "
               "`interpolate`: the step keeps its length, and the snapshot shows the cubic interpolant between the ends of the step; a "
-              "run resumed from this snapshot starts at the end of the step. The default is `interpolate` with Time/fixed step unless "
-              "the mesh adapts, and otherwise `land`");
+              "run resumed from this snapshot starts at the end of the step. The default is `interpolate` with Time/fixed step, unless "
+              "the mesh of the section Particle adapts, and otherwise `land`");
   section.key("wall-clock limit", wall_clock_limit, deck::positive(), "seconds",
               "real (wall-clock) time in seconds, from the start of the program, after which the run stops with a checkpoint, from which "
               "--resume continues it; no limit if not given. Steady, Periodic, Spectrum and Continuation cannot be resumed: of a branch, only "
