@@ -1,5 +1,14 @@
 #pragma once
 // All options of a run, as read from its deck.
+//
+// The types that describe a particle, each made from the one before:
+//   ParticleOptions    keys of the section Particle
+//   ParticleKind       all sections of one particle; Scene::particles has one per particle
+//   ParticleScene      a ParticleKind and the options that all particles share: what functions about one particle take
+//   Body               spaces, control nets and moduli on the current mesh (scene/body.hpp)
+//   Member             a ParticleScene with its Body and its rows in the nets of all particles, for the time of a run (scene/member.hpp)
+//   coupling::Particle what the coupled system needs of a Member (system/particle.hpp)
+//   RecordedParticle   what user-defined series get of a Member (scene/registry.hpp)
 
 #include <limits>
 #include <memory>
