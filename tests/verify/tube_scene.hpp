@@ -107,7 +107,7 @@ struct RigidSphere {
   Resistance held() { return resistance({true, {}}, flow); }
 
  private:
-  Resistance resistance(const coupling::Rigid& driven, const stokes::AmbientFlow& in) {
+  Resistance resistance(const coupling::RigidDrive& driven, const stokes::AmbientFlow& in) {
     tube->set_shape(sphere.net);
     tractions->solve(sphere.net, {&sphere.centre, 1}, {&driven, 1}, in);
     return {tractions->bodies().front().force[0] / (6 * std::numbers::pi * radius),

@@ -223,7 +223,7 @@ TEST(Ranks, EveryRankGetsAllRows) {
   std::vector<int> mine;
   for (int i = 0; i < n; ++i)
     if (i * 7 % 11 % ranks.size() == ranks.rank()) mine.push_back(i);
-  ranks.own(mine, n);
+  ranks.set_owned_rows(mine, n);
   Net net = Net::Constant(n, 3, -1);
   for (const int i : mine) net.row(i) << i, 10 * i, 100 * i;
   ranks.replicate(net);
@@ -232,7 +232,7 @@ TEST(Ranks, EveryRankGetsAllRows) {
 
 TEST(Ranks, WhatTheyHaveAddsUp) {
   Ranks ranks;
-  ranks.own(ranks.rank() == 0 ? std::vector<int>{0, 1, 2, 3, 4} : std::vector<int>{}, 5);
+  ranks.set_owned_rows(ranks.rank() == 0 ? std::vector<int>{0, 1, 2, 3, 4} : std::vector<int>{}, 5);
   Net a = Net::Constant(5, 3, 1 + ranks.rank()), b = Net::Zero(5, 3);
   int owners = 0;
   for (int k = 0; k < 15; ++k) {
