@@ -311,7 +311,11 @@ std::vector<ParticleScene> Scene::particle_scenes() const {
   std::vector<ParticleScene> scenes;
   for (const ParticleKind& kind : particles) scenes.emplace_back(*this, kind);
   const auto equation = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
-  for (ParticleScene& one : scenes) one.solvers.rigid_bodies = equation, one.least_radius = least_radius();
+  const bool sized = std::ranges::all_of(particles, [](const ParticleKind& kind) { return kind.particle.shape.sized(); });
+  for (ParticleScene& one : scenes) {
+    one.solvers.rigid_bodies = equation;
+    if (sized) one.least_radius = least_radius();
+  }
   return scenes;
 }
 
