@@ -160,7 +160,6 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.holds(p)) bodies_.rigid.move(p, body->motion, body->force, body->torque, v), ++body;
   e.load_ = load(bodies_.tractions->unknowns());
-  e.traction_solve_ = bodies_.tractions->n_solves();
   for (const SolveReport& report : bodies_.tractions->reports())
     note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()), parameters_.solvers.tolerance);
   if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, bodies_.tractions->pressure_correction());
@@ -168,11 +167,11 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint
 }
 
 /// Returns the first moment int df_i r_j dG of the load df on particle p, a rigid body whose unknown is its traction. r is the position relative to
-/// the centre of the body. `at`: evaluation of the shape. Its system is solved again if another one has been solved since.
+/// the centre of the body. `at`: evaluation of the shape. Its system is solved again if another shape was solved last.
 Mat3 Capsule::moment_by_traction(Evaluation& at, std::size_t p) {
   if (!at.solved_ && at.near_) return moment_by_traction(*at.near_, p);
   at.require_solution();
-  if (at.traction_solve_ != bodies_.tractions->n_solves()) at.solve_again();
+  if (!latest_ || !same(at.x(), latest_->x())) at.solve_again();
   const Mat3 moment = bodies_.tractions->moment(static_cast<std::size_t>(std::ranges::count_if(
       std::span(particles()).first(p), [](const Particle& one) { return one.rigid.has_value(); })));
   for (const SolveReport& report : bodies_.tractions->reports())

@@ -83,7 +83,6 @@ class Evaluation {
   std::vector<Net> load_sums_;
   std::optional<Tube::Response> response_;
   std::optional<RigidParticles> rigid_;
-  int traction_solve_ = 0;  // RigidTractions::n_solves() after the solve of this evaluation
 };
 
 }  // namespace tanktread::coupling

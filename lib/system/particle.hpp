@@ -42,7 +42,7 @@ struct Particle {
 
   /// Loads in addition to elasticity and bending, on `space`. For a rigid body the work of the loads gives the force and torque on it.
   std::vector<std::shared_ptr<membrane::Load>> loads;
-  std::optional<RigidDrive> rigid;                 ///< set for a body that does not deform; it has no inner fluid, no membrane and no interface
+  std::optional<RigidDrive> rigid;            ///< set for a body that does not deform; it has no inner fluid, no membrane and no interface
 
   bool slides() const { return interface_motion != "material"; }
 };

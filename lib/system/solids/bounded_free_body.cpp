@@ -39,13 +39,19 @@ double BoundedFreeBody::pressure_drop(const Net& place) const {
   return body_.pressure_correction_of(x, f, rigid_velocity(x, motion, centre_of(place)), flow_, z) - tube->pressure_of(f);
 }
 
+/// Returns the velocity that the force density f causes at the sites in the tube. f and the velocity have components in axes that turn with the body,
+/// by `turn` since the start.
+Net BoundedFreeBody::caused(const Net& f, const Mat3& turn) const {
+  return body_.layer().velocity(f) + body_.tube()->respond(-f * turn.transpose()).velocity * turn;
+}
+
 /// Returns the force density on the body at rest at `place` in the tube, which causes the given velocities at its sites.
 Net BoundedFreeBody::density_at_rest(const Net& place, const Net& velocities) const {
   const Mat3 turn = rotation_of(place);
   const Eigen::Index n = 3 * surface_.rows();
   const auto apply = [&](const double* in, double* out) {
     const Eigen::Map<const Net> f(in, n / 3, 3);
-    Eigen::Map<Net>(out, n / 3, 3) = body_.layer().velocity(f) + body_.tube()->respond(-f * turn.transpose()).velocity * turn;
+    Eigen::Map<Net>(out, n / 3, 3) = caused(f, turn);
   };
   const auto precondition = [&](const double* in, double* out) {
     Eigen::Map<Eigen::VectorXd>(out, n) = body_.layer().solved(Eigen::Map<const Eigen::VectorXd>(in, n));
@@ -74,8 +80,7 @@ BoundedFreeBody::Solution BoundedFreeBody::in_tube(const Net& place) const {
   const auto apply = [&](const double* in, double* out) {
     const Net f = unit * Eigen::Map<const Net>(in, n, 3);
     const Six motion = Eigen::Map<const Six>(in + 3 * n).cwiseProduct(of_motion);
-    Eigen::Map<Net>(out, n, 3) = body_.layer().velocity(f) + body_.tube()->respond(-f * turn.transpose()).velocity * turn -
-                                 rigid_velocity(body_.sites(), motion_of(motion), centre_);
+    Eigen::Map<Net>(out, n, 3) = caused(f, turn) - rigid_velocity(body_.sites(), motion_of(motion), centre_);
     Eigen::Map<Six>(out + 3 * n) = balance(f).cwiseQuotient(of_force);
   };
   const auto precondition = [&](const double* in, double* out) {

@@ -141,6 +141,7 @@ class BoundedFreeBody : public LoneRigidBody {
   const Solution& solution(const Net& place) const;
   Solution in_tube(const Net& place) const;
   Solution in_medium(const Net& place) const;
+  Net caused(const Net& f, const Mat3& turn) const;
   Net density_at_rest(const Net& place, const Net& velocities) const;
 
   RigidTractions& body_;

@@ -90,7 +90,7 @@ class RigidParticles {
   const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< centre of its volume
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
-  RigidDrive given(std::size_t p) const { return body(p).given(); }         ///< prescribed motion, or prescribed force and torque plus push()
+  RigidDrive given(std::size_t p) const { return body(p).given(); }    ///< prescribed motion, or prescribed force and torque plus push()
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
   /// Returns whether the bodies p and q have equal shapes and orientations at rest.

@@ -92,8 +92,7 @@ Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& res
 RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles,
                                double viscosity, const quadrature::Options& quadrature, const SolverOptions& solvers,
                                std::shared_ptr<const stokes::Medium> medium, Tube* tube, const std::vector<int>& own, Ranks& ranks)
-    : all_rigid_(std::ranges::all_of(particles, [](const Particle& one) { return one.rigid.has_value(); })),
-      particles_(bodies_among(particles)),
+    : particles_(bodies_among(particles)),
       walls_{tube, nullptr, std::move(medium)},
       layer_(particles_, viscosity, quadrature, walls_.medium.get(), own, ranks),
       residual_(space, unstressed, rest, particles, viscosity, quadrature, walls_.medium.get(), ranks),
@@ -156,7 +155,7 @@ Net RigidTractions::force_densities(const Net& y) const {
 /// Returns the unknowns y. If responds() is false, rows of deformable particles are completed by the velocity that the force densities cause there.
 Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
   Net y = as_net(unknowns);
-  if (responds() || all_rigid_) return y;
+  if (responds() || all_rigid()) return y;
   Net minus_velocity = product(force_densities(y));
   for (const Particle& body : particles_) body.block.rows(minus_velocity).setZero();
   return y - minus_velocity;
@@ -173,7 +172,7 @@ void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std:
 /// residual velocity, computed from the weighted residual `weighted_residual_`. In a channel the residual on the wall is included (2.42).
 Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z) {
   Eigen::VectorXd work = z.transpose() * weighted_residual_;
-  if (!walls_.tube || !walls_.tube->fixed() || !all_rigid_) return work;
+  if (!walls_.tube || !walls_.tube->fixed() || !all_rigid()) return work;
   const Tube::Leak leak = walls_.tube->leak(load(y));
   for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(leak, walls_.tube->respond(load(as_net(z.col(k)))));
   return work;
@@ -182,9 +181,8 @@ Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd&
 void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const RigidDrive> driven, const stokes::AmbientFlow& flow,
                            std::optional<Surroundings> around) {
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
-  ++n_solves_;
   set_shape(x, centres, std::move(around));
-  const bool has_pressure = walls_.tube && all_rigid_, driven_by_pressure = flow.duct() && flow.amplitude() != 0;
+  const bool has_pressure = walls_.tube && all_rigid(), driven_by_pressure = flow.duct() && flow.amplitude() != 0;
   const bool apart = has_pressure && !driven_by_pressure;  // true if the density due to the flow of the duct, for (2.41), needs a solve of its own
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1 + apart), fields = Eigen::MatrixXd::Zero(n, m);
   const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);
@@ -252,6 +250,12 @@ SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {
 stokes::Evaluations RigidTractions::kernel_evaluations() const {
   const stokes::Evaluations own = layer_.evaluations() + residual_.evaluations();
   return walls_.tube ? own + walls_.tube->kernel_evaluations() : own;
+}
+
+bool RigidTractions::all_rigid() const {
+  Eigen::Index points = 0;
+  for (const Particle& body : particles_) points += body.block.n_points;
+  return points == collocation_.cols();
 }
 
 bool RigidTractions::inside(const Net& x) const {

@@ -111,14 +111,11 @@ class RigidTractions {
   /// Returns the results for the bodies in the order of the particles. Their moments lack the collocation-error correction that moment() adds.
   const std::vector<SolvedBody>& bodies() const { return bodies_; }
 
-  /// Returns the number of calls of solve() so far, which shows whether the results are still those of an earlier call.
-  int n_solves() const { return n_solves_; }
-
   /// Returns int f r dG of body p for the latest solve. Unless there is a tube, its symmetric traceless part is corrected for the collocation error.
   /// This takes five additional solves, one for each unit strain. Collective.
   Mat3 moment(std::size_t p);
 
-  bool all_rigid() const { return all_rigid_; }             ///< returns whether all particles are rigid bodies
+  bool all_rigid() const;                            ///< returns whether all particles are rigid bodies
   const Net& unknowns() const { return unknowns_; }  ///< control values of f on bodies, and of v on deformable particles
   double pressure_correction() const { return pressure_correction_; }   ///< collocation-error correction of the pressure drop (2.7)
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
@@ -140,7 +137,6 @@ class RigidTractions {
   Net load(const Net& y) const { return around_ ? around_->load(y) : Net(-y); }
   Eigen::VectorXd corrections(const Net& y, const Eigen::MatrixXd& z);
 
-  bool all_rigid_;
   std::vector<Particle> particles_;  // the bodies
   FluidWalls walls_;
   BodyLayer layer_;
@@ -148,7 +144,6 @@ class RigidTractions {
   Eigen::SparseMatrix<double> collocation_;  // collocation matrix R
   membrane::MassMatrix mass_;
   bool repeats_ = false;
-  int n_solves_ = 0;
   Krylov krylov_;
   double tolerance_;
   std::optional<Surroundings> around_;  // surroundings passed to set_shape() last
