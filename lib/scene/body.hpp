@@ -81,7 +81,7 @@ struct Body {
 };
 
 /// Builds the body of a scene with one particle. If the member `alike` is given, its mesh and resting shape are used, and the shape is moved to the
-/// position of this scene's particle.
+/// position of this scene's particle. `empty_duct`: flow of the empty duct if it is known already, as from another particle; otherwise computed.
 Body body(const ParticleScene& scene, const Member* alike = nullptr, std::shared_ptr<const stokes::DuctFlow> empty_duct = nullptr);
 
 /// Returns true if body() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.

@@ -121,10 +121,10 @@ void DomainOptions::reject(const ParticleScene& scene, Rejections& to) const {
           "nothing moves, so that one steady problem is solved");
   to.pair(directions() < 3 && !scene.wall.solid && (prescribed || weight || pushed || scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
-          {prescribed     ? scene.particle.choice()
-           : weight ? "Particle/density difference"
-           : pushed ? "Membrane/forces"
-                    : "Particle/force",
+          {prescribed ? scene.particle.choice()
+           : weight   ? "Particle/density difference"
+           : pushed   ? "Membrane/forces"
+                      : "Particle/force",
            "Particle/motion `prescribed`, Particle/density difference, Particle/force, or Membrane/forces with a net force"},
           "a net force in every cell needs a lattice that is periodic in three directions, or walls");
 }

@@ -67,6 +67,7 @@ coupling::RigidDrive drive_of(const ParticleScene& scene, const Body& body) {
 std::vector<Member> members(const Scene& scene) {
   std::vector<Member> all;
   for (ParticleScene& one : scene.particle_scenes()) {
+    one.least_radius = scene.least_radius();
     const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
     auto its_body = std::make_unique<Body>(body(one, equal == all.end() ? nullptr : &*equal, all.empty() ? nullptr : all.front().body->duct));
     Member& member = all.emplace_back();

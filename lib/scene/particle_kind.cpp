@@ -28,7 +28,7 @@ void ParticleOptions::reject(const ParticleScene& scene, Rejections& to) const {
   to.pair(forces && !prescribed, "Particle/forces", {choice(), "Particle/motion `deforming` or `free`"},
           "it is the method for the force on a body with prescribed motion");
   to.pair(forces && prescribed && scene.in_system() && scene.runs_in_time() && !scene.tube.repulsion, "Particle/forces",
-          {std::string(scene.why_in_system()),
+          {std::string(why_in_system(scene, scene)),
            "Particles, Domain, Output/power balance, Output/series, Flow/history or Flow/type of an added flow"},
           "the force on a body in the coupled system follows from the solution of this system");
   to.pair(rigid() && scene.membrane_given, "Membrane", stiff, "a rigid particle has no membrane");
@@ -82,7 +82,7 @@ void ParticleOptions::declare(deck::Section& section) {
               "accurate; default with Quadrature/rule `adaptive`, the only rule that is accurate enough for it");
 }
 
-void ParticleKind::declare(deck::Section& section) {
+void ParticleKind::declare(deck::Section& section, const Registry& registry) {
   section.mention("like");
   copies.present = section.given("copies");
   if (copies.present || section.documenting())
@@ -93,7 +93,7 @@ void ParticleKind::declare(deck::Section& section) {
     section.mention("copies");
   if (section.documenting()) return;
   particle.declare(section);
-  declare_lists(section);
+  declare_lists(section, registry);
 }
 
 namespace {
@@ -101,16 +101,18 @@ namespace {
 /// Reader of the section Membrane.
 struct MembraneList {
   ParticleKind& kind;
+  const Registry& registry;
 
   void declare(deck::Section& section) {
     kind.membrane.declare(section);
-    kind.loads = kind.registry->loads.read(section, "loads", "loads that this program adds to the loads of the library; none without this section");
+    kind.loads = registry.loads.read(section, "loads", "loads that this program adds to the loads of the library; none without this section");
   }
 };
 
 /// Reader of the section Interface.
 struct InterfaceList {
   ParticleKind& kind;
+  const Registry& registry;
 
   void declare(deck::Section& section) {
     kind.interface.declare(section);
@@ -118,27 +120,27 @@ struct InterfaceList {
     if (section.optional_section("surfactant", given,
                                  "an insoluble surfactant on the interface of a drop; without this section the interface is clean"))
       kind.surfactant = given;
-    kind.fields = kind.registry->fields.read(section, "fields",
+    kind.fields = registry.fields.read(section, "fields",
                                              "fields on the interface or membrane that this program adds; none without this section");
   }
 };
 
 }  // namespace
 
-void ParticleKind::declare_lists(deck::Section& section) {
+void ParticleKind::declare_lists(deck::Section& section, const Registry& registry) {
   surface.of_cylinder = particle.shape.shape == "cylinder";
   surface.fits_tightly = particle.rigid() && particle.shape.sized() && particle.shape.equivalent_radius() > 0.75 * duct_half_width;
   const bool deforms = !particle.rigid() && !surface.of_cylinder;
   if (!deforms) section.leave_out("Membrane");  // removes the keys of Membrane that come from sections shared by several particles, because a
                                                 // particle without a membrane ignores them
   membrane_given = section.given("Membrane");
-  if (MembraneList list{*this}; deforms || membrane_given)
+  if (MembraneList list{*this, registry}; deforms || membrane_given)
     section.section("Membrane", list, "mechanical properties of the particle's membrane or interface");
   if (particle.shape.shape != "file") section.section("Surface", surface, "spline space and mesh of the particle's surface");
   else
     refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
            "the file determines the spline space");
-  InterfaceList list{*this};
+  InterfaceList list{*this, registry};
   section.section("Interface", list, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
   if (!name.empty()) adaptation.film_resolution = particle.rigid() ? 0.5 : motion::AdaptationOptions::default_film_resolution;

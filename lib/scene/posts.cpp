@@ -82,8 +82,7 @@ void take_posts(Scene& scene) {
   std::erase_if(scene.particles, is_post);
   scene.only_solids = scene.particles.empty();
   if (!scene.only_solids) return;
-  scene.particles.emplace_back().registry = scene.parts;
-  scene.particles.front().particle.shape.radius = scene.posts.front().radius;
+  scene.particles.emplace_back().particle.shape.radius = scene.posts.front().radius;
 }
 
 void check_posts(const SharedOptions& scene) {

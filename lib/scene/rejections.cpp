@@ -23,27 +23,27 @@ void reject_registered(const ParticleScene& scene, Rejections& to) {
 
 }  // namespace
 
-std::string_view ParticleScene::why_in_system() const {
-  if (only_solids) return {};
-  if (!name.empty()) return "Particles";
-  if (!particle.rigid()) return "Particle/motion";
-  if (domain.present) return "Domain";
-  if (output.power_balance) return "Output/power balance";
-  if (steady.present || periodic.present || spectrum.present) return "Steady, Periodic or Spectrum";
-  if (tube.repulsion) return "repulsion";
-  if (flow.history && particle.motion == Motion::prescribed) return "Flow/history";
-  if (!series.empty()) return "Output/series";
-  return flow.user && !flow.user->affine() ? "Flow/type" : "";
+std::string_view why_in_system(const SharedOptions& scene, const ParticleKind& kind) {
+  if (scene.only_solids) return {};
+  if (!kind.name.empty()) return "Particles";
+  if (!kind.particle.rigid()) return "Particle/motion";
+  if (scene.domain.present) return "Domain";
+  if (scene.output.power_balance) return "Output/power balance";
+  if (scene.steady.present || scene.periodic.present || scene.spectrum.present) return "Steady, Periodic or Spectrum";
+  if (scene.tube.repulsion) return "repulsion";
+  if (scene.flow.history && kind.particle.motion == Motion::prescribed) return "Flow/history";
+  if (!scene.series.empty()) return "Output/series";
+  return scene.flow.user && !scene.flow.user->affine() ? "Flow/type" : "";
 }
 
 void reject_power(const SharedOptions& scene, bool strong, Rejections& to) {
-  const auto& [output, flow, domain, wall, tube] = std::tie(scene.output, scene.flow, scene.domain, scene.wall, scene.tube);
-  const bool asked = output.power_balance;
+  const stokes::FlowOptions& flow = scene.flow;
+  const bool asked = scene.output.power_balance, plates = scene.wall.solid && scene.wall.distance;
   const std::string word = "Output/power balance";
-  to.pair(asked && flow.type == "parabolic" && domain.present && !(wall.solid && wall.distance), word,
+  to.pair(asked && flow.type == "parabolic" && scene.domain.present && !plates, word,
           {"Domain and " + flow.choice(), "Domain and Flow/type `parabolic`"},
           "the pressure of that flow does work on the flow that particles cause through a cell, which is included only between two plates");
-  to.pair(asked && !tube.present && flow.user && !flow.user->affine(), word, {flow.choice(), "Flow/type of an added flow"},
+  to.pair(asked && !scene.tube.present && flow.user && !flow.user->affine(), word, {flow.choice(), "Flow/type of an added flow"},
           "the pressure of an added flow is not known unless its gradient is uniform");
   to.pair(asked && strong, word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
 }
@@ -67,7 +67,7 @@ void ParticleScene::reject(Rejections& to) const {
 std::string rejection_table(const Registry& registry) {
   Rejections all(true);
   ParticleScene scene;
-  scene.parts = scene.registry = &registry;
+  scene.registry = &registry;
   scene.reject(all);
   std::vector<Rejections::Row> rows = all.rows();
   std::ranges::stable_sort(rows, {}, &Rejections::Row::one);

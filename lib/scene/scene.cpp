@@ -23,7 +23,7 @@ struct OutputList {
 
   void declare(deck::Section& section) {
     scene.output.declare(section);
-    scene.series = scene.parts->series.read(section, "series", "series that this program adds to the record; none without this section");
+    scene.series = scene.registry->series.read(section, "series", "series that this program adds to the record; none without this section");
   }
 };
 
@@ -50,6 +50,7 @@ struct ChannelList {
 struct Kinds {
   std::vector<ParticleKind>& all;
   const ParticleKind& defaults;  // values before any key is read
+  const Registry& registry;
 
   void declare(deck::Section& section) {
     section.each(
@@ -58,7 +59,7 @@ struct Kinds {
         [this](const std::string& name, deck::Section& inner) {
           if (name.find_first_of("/=") != name.npos) throw UserError(inner.path() + ": the name of a particle must not contain `/` or `=`.");
           all.emplace_back(defaults).name = name;
-          all.back().declare(inner);
+          all.back().declare(inner, registry);
         },
         true);
     if (section.documenting()) all.clear();
@@ -102,7 +103,7 @@ void check_needs(const ParticleScene& scene) {
 
 /// Throws UserError if the final time or the expected period is missing, or if the period is not a multiple of that of the flow.
 void check_times(const ParticleScene& scene) {
-  if (std::isnan(scene.time.final_time) && scene.runs_in_time() && !scene.only_solids && !scene.is_resistance_problem())
+  if (std::isnan(scene.time.final_time) && scene.runs_in_time() && !scene.only_solids && (scene.in_system() || scene.particle.motion != Motion::prescribed))
     throw UserError("Time/final time is missing: give the time at which the run ends, in the deck's unit of time.");
   if (scene.periodic.present && std::isnan(scene.periodic.period))
     throw UserError("Periodic/period is missing: give the expected period, in the deck's unit of time.");
@@ -155,7 +156,7 @@ void complete_walls(Scene& scene) {
 
 /// Declares the sections of particles. Returns the particles of the section Particles or, if the deck does not have it, the particle `only` of the
 /// section Particle. `only`: default values; replaced by those of the section Particle.
-std::vector<ParticleKind> declare_particles(deck::Section& root, ParticleKind& only) {
+std::vector<ParticleKind> declare_particles(deck::Section& root, ParticleKind& only, const Registry& registry) {
   std::vector<ParticleKind> all;
   const bool several = root.given("Particles");
   if (several) {
@@ -164,9 +165,9 @@ std::vector<ParticleKind> declare_particles(deck::Section& root, ParticleKind& o
              "give it for each particle in Particles/<name>, or for all particles in Particles/defaults");
   } else {
     root.section("Particle", only.particle, "resting shape, initial shape and motion of the particle");
-    only.declare_lists(root);
+    only.declare_lists(root, registry);
   }
-  if (Kinds kinds{all, only}; several || root.documenting())
+  if (Kinds kinds{all, only, registry}; several || root.documenting())
     root.section("Particles", kinds, "several particles, instead of the sections Particle, Membrane, Surface, Interface and Adaptation");
   else
     root.mention("Particles");
@@ -181,7 +182,7 @@ void Scene::declare(deck::Section& root) {
                                                      "physical units of the deck: the meaning of a length, time or force of 1. With this section a "
                                                      "value may have a unit, `5.3 uN/m`, and results are labelled with SI units"))
     root.take(units = std::make_shared<const deck::Units>(given));
-  flow.registered = &parts->flows, domain.registered = &parts->media;
+  flow.registered = &registry->flows, domain.registered = &registry->media;
   root.section("Flow", flow, "the ambient flow and the outer fluid");
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
   surface::TubeOptions documented;
@@ -190,10 +191,9 @@ void Scene::declare(deck::Section& root) {
   if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;
   ParticleKind only;  // the particle of the section Particle
-  only.registry = parts;
   if (tube.present) only.duct_half_width = tube.half_width();
   const bool several = root.given("Particles");
-  particles = declare_particles(root, only);
+  particles = declare_particles(root, only, *registry);
   if (several || root.given("Domain") || root.documenting())
     root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
   volume_given = root.given("Volume");
@@ -311,11 +311,7 @@ std::vector<ParticleScene> Scene::particle_scenes() const {
   std::vector<ParticleScene> scenes;
   for (const ParticleKind& kind : particles) scenes.emplace_back(*this, kind);
   const auto equation = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
-  const bool sized = std::ranges::all_of(particles, [](const ParticleKind& kind) { return kind.particle.shape.sized(); });
-  for (ParticleScene& one : scenes) {
-    one.solvers.rigid_bodies = equation;
-    if (sized) one.least_radius = least_radius();
-  }
+  for (ParticleScene& one : scenes) one.solvers.rigid_bodies = equation;
   return scenes;
 }
 

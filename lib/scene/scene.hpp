@@ -81,7 +81,6 @@ struct ParticleKind {
   surface::MeshOptions surface;
   coupling::InterfaceOptions interface;
   std::optional<membrane::SurfactantOptions> surfactant;  ///< Interface/surfactant; not set for a clean interface
-  const Registry* registry = &no_parts;                   ///< user-defined loads, fields, flows, media and series
   std::vector<membrane::LoadParts::Chosen> loads;         ///< Membrane/loads
   std::vector<membrane::FieldParts::Chosen> fields;       ///< Interface/fields
   motion::AdaptationOptions adaptation;
@@ -90,9 +89,10 @@ struct ParticleKind {
   double duct_half_width = std::numeric_limits<double>::infinity();  ///< least distance of the axis of Tube or Channel from its wall, if known
   double field_length = 0;      ///< length by which values of surface fields are multiplied to become rows of a state x; 0: R_C of the particle
 
-  void declare(deck::Section& section);        ///< declares Particles/<name>: the keys of Particle, and the inner sections `copies`, Membrane,
-                                               ///< Surface, Interface and Adaptation
-  void declare_lists(deck::Section& section);  ///< declares the sections Membrane, Surface, Interface and Adaptation
+  /// Declares Particles/<name>: the keys of Particle, and the inner sections `copies`, Membrane, Surface, Interface and Adaptation. `registry`:
+  /// user-defined loads and fields.
+  void declare(deck::Section& section, const Registry& registry);
+  void declare_lists(deck::Section& section, const Registry& registry);  ///< declares the sections Membrane, Surface, Interface and Adaptation
   void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices that contradict the mesh, membrane or interface
 };
 
@@ -110,7 +110,7 @@ struct ContactOptions {
 
 /// Options of a deck that all particles share, with one section of the deck each.
 struct SharedOptions {
-  const Registry* parts = &no_parts;  ///< user-defined loads, fields, flows, media and series
+  const Registry* registry = &no_parts;  ///< user-defined loads, fields, flows, media and series
   stokes::FlowOptions flow;
   std::shared_ptr<const deck::Units> units;  ///< units of the deck's values; null if the deck does not set them
   ContactOptions contact;
@@ -149,12 +149,16 @@ struct SharedOptions {
   double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, but at most the final time
 };
 
+/// Returns the key or section of the deck that requires a coupled system of all particles; empty if there is none. Then `kind` is the only particle,
+/// and the scene is the motion or resistance problem of one rigid body.
+std::string_view why_in_system(const SharedOptions& scene, const ParticleKind& kind);
+
 /// One particle of a scene, with the options that it shares with the others.
 struct ParticleScene : SharedOptions, ParticleKind {
   ParticleScene() = default;
   ParticleScene(const SharedOptions& shared, const ParticleKind& kind) : SharedOptions(shared), ParticleKind(kind) {}
 
-  std::optional<double> least_radius;  ///< smallest radius R_C of all particles, by which gaps are divided; not set if this is the only particle
+  std::optional<double> least_radius;  ///< smallest radius R_C of all particles, by which gaps are divided; set by members()
 
   /// Throws UserError if options of this particle, or shared options, contradict each other or if the problem is too large. `found`: rejected
   /// combinations of the whole scene.
@@ -162,13 +166,7 @@ struct ParticleScene : SharedOptions, ParticleKind {
   void reject(Rejections& to) const;  ///< adds the combinations of choices that the program rejects
   bool load_is_strong() const { return membrane.load == "strong"; }
 
-  /// Returns true if the particle is solved for in a coupled system of all particles. Otherwise it is the only particle, and the scene is the motion
-  /// or resistance problem of one rigid body.
-  bool in_system() const { return !why_in_system().empty(); }
-  /// Returns the key or section of the deck that requires a coupled system; empty if there is none.
-  std::string_view why_in_system() const;
-  /// Returns true if the scene is the resistance problem of one body with prescribed motion.
-  bool is_resistance_problem() const { return !only_solids && particle.motion == Motion::prescribed && !in_system(); }
+  bool in_system() const { return !why_in_system(*this, *this).empty(); }  ///< see Scene
 
   /// Returns the options of the time integration, with `unit` set to the time scale 1/rate() of the particle.
   motion::TimeOptions time_options() const;
@@ -198,7 +196,7 @@ struct Scene : SharedOptions {
   std::vector<ParticleKind> particles;
 
   Scene() = default;
-  explicit Scene(const Registry& registered) { parts = &registered; }
+  explicit Scene(const Registry& parts) { registry = &parts; }
 
   void declare(deck::Section& root);
 
@@ -215,8 +213,9 @@ struct Scene : SharedOptions {
   bool by_tractions() const;  ///< returns true if the unknowns of rigid bodies are tractions, by the integral equation of the first kind (2.40)
 
   /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the motion or resistance problem of one rigid body.
-  bool in_system() const { return !only_solids && first().in_system(); }
-  bool is_resistance_problem() const { return first().is_resistance_problem(); }  ///< see ParticleScene
+  bool in_system() const { return !why_in_system(*this, particles.front()).empty(); }
+  /// Returns true if the scene is the resistance problem of one body with prescribed motion.
+  bool is_resistance_problem() const { return !only_solids && particles.front().particle.motion == Motion::prescribed && !in_system(); }
   /// Returns true if the scene changes in time, so that its run can be resumed; false for steady problems, searches and spectra.
   bool has_time() const { return runs_in_time() && !only_solids && !is_resistance_problem(); }
   /// Returns true if gaps exist: between several particles, or between a particle and its periodic images.
