@@ -196,14 +196,13 @@ class Run:
         radius, viscosity = self.radius, float(self.value("Flow/viscosity", 1))
         rate, words = self.rate
         symbol = "σ" if "surface tension" in self.values_of("Membrane/law")[:1] else "G$_s$"
-        moduli = [float(self.values_of(f"Membrane/{key}")[0]) for key in ("shear modulus", "surface tension")
-                  if self.values_of(f"Membrane/{key}")]
+        moduli = self.values_of("Membrane/surface tension" if symbol == "σ" else "Membrane/shear modulus")
         speeds = [numpy.linalg.norm(speed) / radius for speed in self.values_of("Particle/velocity")]
         speeds += [numpy.linalg.norm(speed) for speed in self.values_of("Particle/angular velocity")]
         if words:
             stress, velocity = f"(μ · {words})", f"({words} · R$_C$)"
         elif moduli:
-            rate, stress, velocity = moduli[0] / (viscosity * radius), f"({symbol} / R$_C$)", f"({symbol} / μ)"
+            rate, stress, velocity = float(moduli[0]) / (viscosity * radius), f"({symbol} / R$_C$)", f"({symbol} / μ)"
         elif any(speeds):
             rate, stress, velocity = float(max(speeds)), "(μ · speed / R$_C$)", "speed"
         else:
