@@ -154,7 +154,7 @@ class Run {
     judge();
     ++totals_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
-    if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
+    if (!lands && snapshot_due_ && state_.time > snapshot) interpolate_within(before);
     if (within_step_ && scene_.adapts()) {
       within_step_->sampled = sample();
       particle_->dynamics().at(state_.time, began_);
@@ -237,7 +237,7 @@ class Run {
   }
 
   /// Interpolates the state at the latest snapshot time that the step has passed. The snapshot shows this state.
-  void picture_within(const motion::State& before) {
+  void interpolate_within(const motion::State& before) {
     double time = scene_.next_snapshot(before.time);
     for (double next = scene_.next_snapshot(time); next <= state_.time && next > time; next = scene_.next_snapshot(time)) time = next;
     const motion::DenseOutput dense(before, state_);

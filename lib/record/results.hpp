@@ -110,7 +110,7 @@ class Results {
   };
   Sampled sample(const SurfaceSnapshot& snapshot, double time);
 
-  /// Saves a checkpoint of the current step, and the snapshot `snapshot`, which belongs to the end of the step or to a time within it. `checkpoint`:
+  /// Saves a checkpoint of the current step, and `snapshot`, which belongs to the end of the step or to a time within it. `checkpoint`:
   /// data for a resumed run. `state` and `totals` are added to these data.
   void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& snapshot);
 
