@@ -42,6 +42,7 @@ def pressure_drops_in_ducts_superpose():
   %s
   Particle: {radius: 0.5, center: [0.1, 0.15, -0.1], %s}
   Surface: {elements per side: 3}
+  Solvers: {tolerance: 1.0e-11}  # the drops below are compared to 1e-8
   Time: {final time: 0.01, fixed step: 0.01}
 """
 
