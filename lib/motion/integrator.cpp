@@ -88,11 +88,12 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   const Net& slope = state.history.front();
   const double speed = dynamics.norm(slope);
   if (speed == 0) return std::min(1e-3 * options.final_time, options.maximum_step.value_or(1e300));
-  const double trial = 1e-3 / speed;
+  const double longest = std::min(options.final_time, options.maximum_step.value_or(1e300));
+  const double trial = std::min(1e-3 / speed, longest);  // `speed` is round-off if the shape does not change
   dynamics.at(state.time + trial, state.time);
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
   const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // std::max ignores `change` if NaN
-  return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});
+  return std::min(step, longest);
 }
 
 double step_towards(double time, double limit, double step) {

@@ -151,7 +151,7 @@ Net PowerBalance::residual_velocity(Evaluation& e, Net v, const RigidParticles& 
     Net part = u;
     layers_.apply(load, inside, viscosity_, own, u);
     if (SolidResponse* solids = capsule_.solids()) solids->velocity_at(at, own, by_solids, part), u(own, Eigen::all) += part(own, Eigen::all);
-    if (Tube* tube = capsule_.tube()) tube->velocity_at(at, e.response(), own, part), u(own, Eigen::all) += part(own, Eigen::all);
+    if (Tube* tube = capsule_.tube()) tube->velocity_at(values_, x, e.response(), own, part), u(own, Eigen::all) += part(own, Eigen::all);
   });
 }
 

@@ -42,7 +42,7 @@ Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net f
     layers_.apply(load, v, viscosity_, own, u);
     Net part(u.rows(), 3);
     const auto add = [&] { u(own, Eigen::all) += part(own, Eigen::all); };
-    if (walls.tube) walls.tube->velocity_at(at, response, own, part), add();
+    if (walls.tube) walls.tube->velocity_at(between_.values, x, response, own, part), add();
     if (walls.solids) walls.solids->velocity_at(at, own, by_solids, part), add();
   });
   return between_.weights * (between_.values * v - flow);

@@ -142,16 +142,17 @@ Net Tube::driven(const Net& at) const {
   return cell() ? Net(viscosity() / empty_pressure_drop() * flow_->velocities(at)) : wall_->inlet().integral(at);
 }
 
-void Tube::velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u) {
-  Net at = x;
-  at.col(0).array() -= particle_->centroid;
+void Tube::velocity_at(const Eigen::SparseMatrix<double>& points, const Net& x, const Response& response, std::span<const int> rows, Net& u) {
+  Net shape = x;
+  shape.col(0).array() -= particle_->centroid;  // before the product, so that points at nodes of the particle stay there up to rounding (node_sum)
+  const Net at = points * shape;
   wall_->layer().apply(wall_->on_space(response.wall_traction), at, rows, u);
   const Net by_pressure = cell() ? Net(driven(at)(rows, Eigen::all)) : driven(at(rows, Eigen::all));
   for (std::size_t k = 0; k < rows.size(); ++k)
     u.row(rows[k]) = (response.pressure_drop * by_pressure.row(static_cast<Eigen::Index>(k)) - u.row(rows[k])) / viscosity();
   if (cell()) particle_->sources.add_velocity(response.load, response.moves, at, rows, u, {.first_image_row = 0});
   if (const double slower = slowed(response.pressure_drop); slower != 0) {
-    const Net ambient = flow_->velocities(x);
+    const Net ambient = flow_->velocities(points * x);
     for (const int i : rows) u.row(i) -= slower * ambient.row(i);
   }
 }

@@ -90,9 +90,10 @@ class Tube {
   /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `pressure_correction`: collocation-error correction of dp.
   Response respond(const Net& f, const Net& v = {}, double pressure_correction = 0);
 
-  /// Computes rows `rows` of the velocity u of a response at the points x (laboratory frame), which may be on the particle or anywhere in the fluid.
-  /// Not collective, except if the duct repeats or its pressure drop is prescribed: then every rank must call it with the same x.
-  void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
+  /// Computes rows `rows` of the velocity u of a response at points on the particle. `points`: values of its basis functions there. `x`: its control
+  /// points (laboratory frame). Not collective, except if the duct repeats or its pressure drop is prescribed: then every rank must call it with the
+  /// same x.
+  void velocity_at(const Eigen::SparseMatrix<double>& points, const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
   /// Stores the operators of the current shape as low-precision blocks for the Jacobian.
   void freeze();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -12,6 +13,7 @@
 #include "spline/t_mesh.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
+#include "system/collocation.hpp"
 #include "system/solids/rigid_body.hpp"
 #include "system/solids/tube.hpp"
 
@@ -135,16 +137,13 @@ TEST(Tube, ServesAnotherMeshOfTheParticle) {
 
 TEST(Tube, GivesItsAnswerAnywhere) {
   Fixture s(5);
-  s.tube->set_shape(s.x.rowwise() + Eigen::RowVector3d(7, 0, 0));
+  const Net x = s.x.rowwise() + Eigen::RowVector3d(7, 0, 0);
+  s.tube->set_shape(x);
   const Tube::Response r = s.tube->respond(s.f, s.v);
-  Net u(s.x.rows(), 3), sites(s.x.rows(), 3);
-  std::vector<int> all;
-  for (int i = 0; i < s.space.n_points; ++i) {
-    all.push_back(i);
-    sites.row(i) =
-        surface::value(s.space, s.x, s.space.collocation[static_cast<std::size_t>(i)].front()).transpose() + Eigen::RowVector3d(7, 0, 0);
-  }
-  s.tube->velocity_at(sites, r, all, u);
+  Net u(x.rows(), 3);
+  std::vector<int> all(static_cast<std::size_t>(s.space.n_points));
+  std::iota(all.begin(), all.end(), 0);
+  s.tube->velocity_at(collocation_matrix(s.space), x, r, all, u);
   EXPECT_LT((u - r.velocity).norm() / u.norm(), 1e-12);
 }
 
