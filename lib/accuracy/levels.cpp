@@ -122,8 +122,6 @@ void set_wall(Setter& to, const std::string& list, int level) {
   const double n = elements_per_side(level), around = to.number(list + "/azimuthal elements", 24) / 24;
   to.set_whole(list + "/azimuthal elements", 4 * n * around, 8, 400);
   to.scale_whole(list + "/axial elements", n / 6, 8, 400);
-  if (list == "Tube" && !to.has("Tube/axial elements") && !to.has("Tube/periodic length") && !to.has("Domain/periodic"))
-    to.set_whole(list + "/axial elements", surface::TubeOptions::default_axial_elements * n / 6, 8, 400);
   to.set_whole(list + "/flow elements", 16 * n, 8, 4000);
 }
 

@@ -28,8 +28,8 @@ double points(const ParticleScene& scene) {
 }
 
 double wall_points(const SharedOptions& scene) {
-  const int of_tube = scene.tube.axial_elements.value_or(surface::TubeOptions::default_axial_elements);
-  const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : of_tube;
+  const double of_tube = scene.tube.axial_elements ? *scene.tube.axial_elements : std::ceil(scene.tube.default_axial_elements());
+  const double along = scene.tube.channel ? surface::Channel(scene.tube).elements() : of_tube;
   return scene.tube.azimuthal_elements * (along + 3.0);
 }
 

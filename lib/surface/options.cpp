@@ -257,8 +257,8 @@ void TubeOptions::declare(deck::Section& list) {
              "x1 with this length");
     list.key("images", images, deck::between(1, 100), "1", "obsolete key without effect: a periodic tube has all its images");
     list.key("axial elements", axial_elements, deck::between(4, 400), "1",
-             "number of elements along the wall of the tube, from end to end or over one period. If not given: 25, or in a periodic tube "
-             "as many elements per length as 25 give in a tube with ends");
+             "number of elements along the wall of the tube, from end to end or over one period. If not given: 25 beside 24 `azimuthal "
+             "elements` and otherwise in proportion, or in a periodic tube as many elements per length as these give in a tube with ends");
     list.key(
         "grading", grading, deck::between(1.0, 20.0), "1",
         "ratio g of the density of wall elements next to the particles to the density far from them; 1: all elements are equally long. "

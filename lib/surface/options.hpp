@@ -147,9 +147,10 @@ struct TubeOptions {
   /// number M of periodic images; has no effect, because the kernels of a periodic tube contain all images
   std::optional<int> images;
   int azimuthal_elements = 24;   ///< number of elements around the wall
-  static constexpr int default_axial_elements = 25;
-  std::optional<int> axial_elements;  ///< number of elements along the wall, or along one period; a wall with ends has three more rows of control
-                                      ///< points
+  /// number of elements along the wall, or along one period; a wall with ends has three more rows of control points
+  std::optional<int> axial_elements;
+  /// Returns the number of elements along a wall with ends if `axial_elements` is not set: 25 if there are 24 around, otherwise in proportion.
+  double default_axial_elements() const { return azimuthal_elements * 25. / 24; }
   double grading = 4;            ///< density of elements along the tube near the particle, divided by the density far from it
 
   /// smallest allowed gap between particle and wall, divided by the particle radius R_C; a run stops if the gap is smaller

@@ -103,7 +103,7 @@ TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std
 }  // namespace
 
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length) {
-  const int elements = options.axial_elements.value_or(TubeOptions::default_axial_elements);
+  const int elements = options.axial_elements.value_or(static_cast<int>(std::ceil(options.default_axial_elements())));
   const double width = std::max(section.radius(), half_length);
   return straight_wall(section, options.azimuthal_elements, graded_knots(length, elements, options.grading, width), {});
 }
@@ -185,7 +185,7 @@ int elements_per_period(const TubeOptions& options, double radius, double period
   if (options.axial_elements) return *options.axial_elements;
   const double width = std::max(radius, half_length), usual = tube_length({}, radius, 0);
   const auto share = count(period / (2 * width), options.grading) / count(usual / (2 * radius), options.grading) * width / radius;
-  return static_cast<int>(std::clamp(std::ceil(TubeOptions::default_axial_elements * share - 1e-9), 4., 1e9));
+  return static_cast<int>(std::clamp(std::ceil(options.default_axial_elements() * share - 1e-9), 4., 1e9));
 }
 
 void check_length(const TubeWall& wall, double first, double last) {

@@ -111,6 +111,15 @@ TEST(TubeWall, HasALengthThatSuitsTheParticle) {
   EXPECT_EQ(tube_length(o, 1, 3), 5);
 }
 
+TEST(TubeWall, HasElementsAlongItInProportionToThoseAroundIt) {
+  for (const int around : {12, 24, 48}) {
+    TubeOptions o;
+    o.section = "circle", o.radius = 1, o.azimuthal_elements = around;
+    EXPECT_EQ(of(o).space.elements.size(), static_cast<std::size_t>(around * std::ceil(25. * around / 24))) << around;
+    EXPECT_NEAR(elements_per_period(o, 1, 2 * pi, 1), 25. * around / 24, 1) << around;  // as many as in a tube with ends of this length
+  }
+}
+
 TEST(TubeWall, IsRefusedWhenItIsTooShort) {
   const TubeWall wall = of(circle(12, 8));
   EXPECT_NO_THROW(check_length(wall, -1.4, 1.4));
