@@ -260,9 +260,8 @@ class SteadyRun {
     coupling::CoupledMotion* fields = system->particle->fields();
     if (fields) shapes.add_fields(*fields, state_.x);
     const std::vector<motion::Conserved> kept = conserved_quantities(capsule, fields, x);
-    if (options.number > shapes.size())
-      throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),
-                                options.number));
+    if (const int n = static_cast<int>(shapes.size()); options.number > n)
+      results_.warn_once("modes", formatted("Spectrum/number is %d, but the shape has only %d unknowns and modes", options.number, n));
     if (returns_) {
       std::optional<motion::ReturnMap> of_parity;
       if (system != system_) of_parity.emplace(*system->motion, time_, scene_.solvers.nox, scene_.periodic, state_.x);

@@ -24,7 +24,8 @@ void SpectrumOptions::declare(deck::Section& section) {
               "method for the eigenvalues of the Jacobian J of the velocity with respect to the shape. `dense`: all eigenvalues of the "
               "whole matrix, which needs two velocity evaluations per column. `krylov`, for large meshes: the eigenvalues with the growth rates "
               "closest to Spectrum/shift, by block Krylov-Schur with (I - J/shift)^-1; every product is a linear solve by Solvers/spectrum, "
-              "preconditioned by an approximate Jacobian");
+              "preconditioned by an approximate Jacobian. A shape with fewer unknowns than the method keeps vectors has its modes computed as "
+              "with `dense`");
   section.key("shift", shift, deck::positive(), "1/time",
               "shift of the shift-and-invert method Spectrum/method `krylov`, which finds the modes with the growth rates closest to this "
               "value first. If not given, the rate of the flow; without flow, the relaxation rate of the membrane, modulus / (viscosity x "
@@ -48,17 +49,21 @@ const char* name(ModeKind kind) {
   return names[static_cast<int>(kind)];
 }
 
-void Mode::add_columns(const std::string& number, Columns& to) const {
+void add_columns(const std::complex<double>& rate, const std::string& number, Columns& to) {
+  constexpr const char* fewer = "the shape has fewer modes than Spectrum/number";
   to.add(rate.real(), {"rate_" + number, "1/time",
                        "growth rate of eigenmode k of the steady shape, k from 1: real part of the eigenvalue. Spectrum/number and "
-                       "Spectrum/near determine the order of the modes"});
+                       "Spectrum/near determine the order of the modes",
+                       fewer});
   to.add(std::abs(rate.imag()), {"frequency_" + number, "1/time",
                                  "angular frequency of eigenmode k of the steady shape, in radians per time: magnitude of the imaginary "
-                                 "part of the eigenvalue; 0 if the mode does not oscillate"});
+                                 "part of the eigenvalue; 0 if the mode does not oscillate",
+                                 fewer});
 }
 
-void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
-  double leading = std::numeric_limits<double>::quiet_NaN();
+void add_columns(const std::vector<Mode>& modes, int number, bool all_rigid, Columns& to) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double leading = none;
   int unstable = 0;
   for (const Mode& mode : modes)
     if (mode.kind == ModeKind::shape || (all_rigid && mode.kind == ModeKind::rotation))
@@ -68,7 +73,8 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
                    "the steady shape is stable. Motions of several particles relative to each other count as changes of the shape",
                    "none of the reported modes changes the shape"});
   to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes (positive growth rate) among those that change the shape"});
-  for (int k = 0; const Mode& mode : modes) mode.add_columns(std::to_string(++k), to);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(number); ++k)
+    add_columns(k < modes.size() ? modes[k].rate : std::complex(none, none), std::to_string(k + 1), to);
 }
 
 Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
@@ -232,7 +238,8 @@ Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& sh
 
 std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
                            const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
-  Pairs pairs = options.method == "dense" ? dense(dynamics, shapes, x, kept, options) : shifted(dynamics, shapes, x, kept, options, solver);
+  const bool whole = options.method == "dense" || shapes.size() <= coupling::krylov_vectors(options.number, options.block);
+  Pairs pairs = whole ? dense(dynamics, shapes, x, kept, options) : shifted(dynamics, shapes, x, kept, options, solver);
   const auto rank = [&](const coupling::Eigenpair& pair) { return options.near ? std::abs(pair.value - *options.near) : -pair.value.real(); };
   std::ranges::stable_sort(pairs, {}, rank);
   pairs.resize(std::min<std::size_t>(pairs.size(), static_cast<std::size_t>(options.number)));

@@ -51,12 +51,14 @@ struct Mode {
   std::complex<double> rate;
   Net real, imaginary;
   ModeKind kind = ModeKind::shape;
-
-  void add_columns(const std::string& number, Columns& to) const;
 };
 
-/// Adds the columns of a spectrum; modes are numbered from 1. `all_rigid`: no particle deforms, so the modes are rotations.
-void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
+/// Adds the columns of one eigenmode. `number`: number of the mode, from 1.
+void add_columns(const std::complex<double>& rate, const std::string& number, Columns& to);
+
+/// Adds the columns of a spectrum of `number` modes, numbered from 1. If there are fewer modes, the values of the others are NaN. `all_rigid`: no
+/// particle deforms, so the modes are rotations.
+void add_columns(const std::vector<Mode>& modes, int number, bool all_rigid, Columns& to);
 
 /// Computes J y, with J the Jacobian of the velocity v and y the coordinates of a displacement d of x, by a central difference of velocities:
 ///

@@ -93,8 +93,8 @@ std::vector<Kind> kinds() {
   among_others.name = "one";
   Columns capsule = run_columns(deforming, true), spectrum, branch, folds, periodic;
   capsule.append(particle_columns(deforming.first(), true));
-  motion::add_columns(std::vector<motion::Mode>(), false, spectrum);
-  motion::Mode().add_columns("k", spectrum);
+  motion::add_columns(std::vector<motion::Mode>(), 0, false, spectrum);
+  motion::add_columns(std::complex<double>(), "k", spectrum);
   motion::BranchPoint().add_columns(false, branch), motion::BranchPoint().add_columns(true, folds);
   SteadyRow().add_columns(returning, periodic);
   return {{"capsule, drop", capsule},

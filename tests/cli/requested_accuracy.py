@@ -258,6 +258,20 @@ def resistance_has_errors():
     check(found["accuracy"]["met"] and found["error"]["drag_x3"] > 0, found["accuracy"])
 
 
+def coarse_levels_may_have_fewer_modes_than_are_asked_for():
+    """The level with 3 elements per side has 7 unknowns, and 12 modes are reported by default."""
+    deck(BRANCH[:BRANCH.index("  Continuation")] + "  Spectrum: {}\n", "modes.yaml")
+    said = run("modes.yaml", "--accuracy", "rate_2=1%,rate_12=5%", "--quiet", "--output", "modes").stderr
+    check("has only 7 unknowns" in said, said)
+    found = summary("modes")
+    check(found["accuracy"]["met"] and found["error"]["rate_12"] > 0, found["accuracy"], found["error"])
+    run("modes.yaml", "--quiet", "--output", "krylov", "--set", "Spectrum/method=krylov")
+    run("modes.yaml", "--quiet", "--output", "dense")
+    for k in range(1, 13):
+        one, other = series("krylov", f"rate_{k}")[-1], series("dense", f"rate_{k}")[-1]
+        check(one == other or (k > 7 and math.isnan(one) and math.isnan(other)), k, one, other)
+
+
 def tables_reports_and_bands_have_errors():
     import numpy
     from tanktread import report

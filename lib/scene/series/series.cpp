@@ -140,9 +140,7 @@ Columns columns(const Scene& scene) {
   Columns all = run_columns(scene);
   if (!scene.in_system()) return all;
   for (const ParticleScene& one : scene.particle_scenes()) all.append(particle_columns(one), one.name.empty() ? "" : one.name + "/");
-  SteadyRow found;
-  found.modes.resize(static_cast<std::size_t>(scene.spectrum.number));
-  found.add_columns(scene, all);
+  SteadyRow().add_columns(scene, all);
   return all;
 }
 
@@ -150,7 +148,7 @@ void SteadyRow::add_columns(const Scene& scene, Columns& to) const {
   if (scene.continuation.present) point.add_columns(scene.continuation.second_parameter.has_value(), to);
   if (scene.periodic.present) to.add(period, {"period", "time", "period of the periodic motion, after which the shape recurs"});
   const auto rigid = [](const ParticleScene& one) { return one.particle.rigid(); };
-  if (scene.spectrum.present) motion::add_columns(modes, std::ranges::all_of(scene.particle_scenes(), rigid), to);
+  if (scene.spectrum.present) motion::add_columns(modes, scene.spectrum.number, std::ranges::all_of(scene.particle_scenes(), rigid), to);
 }
 
 void put_in_order(Columns& columns) { columns.sort(rank); }

@@ -36,7 +36,12 @@ std::vector<Eigenpair> unpacked(const Eigen::VectorXcd& values, const Eigen::Mat
   return pairs;
 }
 
+/// Returns the number of blocks of vectors of the block Krylov-Schur iteration, without the block of its residual.
+int blocks(int number, int block) { return 2 * number / block + 10; }
+
 }  // namespace
+
+Eigen::Index krylov_vectors(int number, int block) { return static_cast<Eigen::Index>(blocks(number, block) + 1) * block; }
 
 std::vector<Eigenpair> eigenpairs(Eigen::MatrixXd a) {
   const int n = static_cast<int>(a.rows());
@@ -70,8 +75,7 @@ std::vector<Eigenpair> largest_eigenpairs(const Apply& a, Eigen::Index n, int nu
   problem->setNEV(number);
   if (!problem->setProblem()) throw not_found;
   Teuchos::ParameterList list;
-  const int most = static_cast<int>(n) / block - 1;
-  list.set("Which", "LM").set("Block Size", block).set("Num Blocks", std::min(most, 2 * number / block + 10));
+  list.set("Which", "LM").set("Block Size", block).set("Num Blocks", blocks(number, block));
   list.set("Maximum Restarts", 50).set("Convergence Tolerance", tolerance).set("Verbosity", static_cast<int>(Anasazi::Errors));
   Anasazi::BlockKrylovSchurSolMgr<double, Vectors, Operator> manager(problem, list);
   if (manager.solve() != Anasazi::Converged) throw not_found;
