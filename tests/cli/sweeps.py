@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from unittest import mock
 
 import h5py
 import numpy
@@ -57,6 +58,19 @@ def what_stays_in_a_constriction_is_told_from_what_creeps():
     check(critical.stays(t[:50], 0 * t[:50], 1, 1) is None, "nobody looked for long enough")
     refused = package("critical", "deck.yaml", "--between", "2", "1", "--past", "0")
     check(refused.returncode == 2 and "ascend" in refused.stderr, refused.stderr)
+
+
+def both_ends_of_a_critical_value_were_run():
+    from tanktread.studies import critical
+    runs = []
+    with mock.patch.object(critical, "stays_at", lambda parsed, study, value: runs.append(value) or value < 1.2):
+        found = package("critical", "deck.yaml", "--between", "1", "2", "--past", "0", "--within", "0.1")
+        critical.common.edge(lambda value: critical.stays_at(None, None, value), 1, 2, 1.1)
+        low, high = (f"{end:.5g}" for end in (max(value for value in runs if value < 1.2), min(value for value in runs if value > 1.2)))
+        check(found.stdout == f"critical Flow/mean velocity: {low} (stays) to {high} (passes)\n", found.stdout, found.stderr, runs)
+        for ends, said in (("1.3", "2"), "the particle passes at 1.3: give --between a smaller"), (("1", "1.1"), "the particle stays at 1.1: give --between a larger"):
+            found = package("critical", "deck.yaml", "--between", *ends, "--past", "0")
+            check(found.returncode == 2 and said in found.stderr, found.stderr)
 
 
 def tumbling_is_told_from_treading_by_shape_and_membrane():

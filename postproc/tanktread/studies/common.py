@@ -12,17 +12,19 @@ from ..runs import PROGRAM, Study, quoted, shared, text_of
 
 
 def edge(holds, low, high, factor=1.05):
-    """Returns the largest value, up to a factor, for which holds(value) is true, and how the search ended: `edge`,
-    `holds to here` (true up to `high`) or `fails from here` (false from `low` on). The search bisects the logarithm of
-    the value. It assumes that holds(value) is true below the edge and false above it."""
+    """Returns the largest value for which holds(value) was found true, the smallest value for which it was found false,
+    and how the search ended: `edge`, `holds to here` (true up to `high`) or `fails from here` (false from `low` on). A
+    value that was not found is NaN. If the search ended with `edge`, the two values differ by at most a factor. The
+    search bisects the logarithm of the value. It assumes that holds(value) is true below the edge and false above
+    it."""
     if not holds(low):
-        return low, "fails from here"
+        return numpy.nan, low, "fails from here"
     if holds(high):
-        return high, "holds to here"
+        return high, numpy.nan, "holds to here"
     while high / low > factor:
         middle = (low * high) ** 0.5
         low, high = (middle, high) if holds(middle) else (low, middle)
-    return low, "edge"
+    return low, high, "edge"
 
 
 def arguments(parser, results, limit=300, jobs=None):
