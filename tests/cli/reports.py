@@ -138,6 +138,8 @@ def a_sweep_is_a_table_and_a_plot():
     _script("report", "results/study", "-o", "page.html")
     content = _content("page.html")
     check(content["scatter"]["keys"] == ["Membrane/capillary number"] and len(content["scatter"]["values"]["D"]) == 3, content["scatter"])
+    rows = [dict(zip(content["sections"][0][2][0], row)) for row in content["sections"][0][2][1:]]
+    check([row["status"] for row in rows] == ["done", "done", "refused"] and "Membrane/capillary number" in rows[2]["message"] and not rows[0]["message"], rows)
     told = _used("page.html")
     check(told is None or {"Membrane/capillary number", "A, length²"} <= set(told["texts"]), told)
     check(told is None or told["value"].count(", ") == 1, told)

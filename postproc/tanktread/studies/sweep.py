@@ -191,17 +191,18 @@ class Sweep:
         single = [word for name in self.columns if name not in whole for word in (name, f"{name} error")
                   if word == name or any(word in values for values in found)]
         columns = {name: [values.get(name, numpy.nan) for values in found] for name in single}
+        messages = [own.get("message", "") if one.done else one.message for one, own in zip(self.outcomes, found)]
         with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
             out.writerow([*self.keys, *single, "status", "processor_seconds", "directory", "message"])
-            for one, own, *values in zip(self.outcomes, found, *shown.values(), *columns.values()):
-                out.writerow([*values, one.status, f"{one.processor_seconds:.3g}", one.directory.name,
-                              own.get("message", "") if one.done else one.message])
+            for one, message, *values in zip(self.outcomes, messages, *shown.values(), *columns.values()):
+                out.writerow([*values, one.status, f"{one.processor_seconds:.3g}", one.directory.name, message])
         for name in [*whole, "time"] if whole else []:
             padded = itertools.zip_longest(*(values.get(name, []) for values in found), fillvalue=numpy.nan)
             columns[name] = numpy.reshape(list(padded), (-1, len(found))).T
         with h5py.File(directory / "table.h5", "w") as file:
             file["status"] = [outcome.status for outcome in self.outcomes]
+            file["message"] = messages
             file["directory"] = [str(outcome.directory) for outcome in self.outcomes]
             file.attrs["keys"] = self.keys
             for key, values in keys.items():
