@@ -142,7 +142,8 @@ def of_fit(directory):
     for law, fit in fits.items():
         for name, one in fit["unknown"].items():
             found = [one["value"], one["error"]] if numpy.isfinite(one["error"]) else ["not determined", ""]
-            rows.append([law, name, *found, one.get("at bound", ""), *(fit[key] for key in of_law)])
+            label = f"{name}, {one['unit']}" if "unit" in one else name
+            rows.append([law, label, *found, one.get("at bound", ""), *(fit[key] for key in of_law)])
     picture = base64.b64encode((directory / "fit.png").read_bytes()).decode()
     return {"title": f"fit {directory.resolve().name}", "facts": {"best law": next(iter(fits))}, "picture": picture,
             "sections": [("What the data say", "text", parsed(directory / "fit.txt", str)),

@@ -89,6 +89,17 @@ def check_errors(fit):
            "for all data")
 
 
+def recorded(fit):
+    """Returns {unknown: {value, error, unit, at bound}} for fit.yaml. `unit` is absent if the unknown is dimensionless
+    or the deck has no section Units, and `at bound` if the value does not lie at a bound."""
+    found = {}
+    for unknown, bound, (name, (value, error)) in zip(fit.unknowns, fit.at_bound, fit.values.items()):
+        unit = fit.runs.unit(unknown.key).removeprefix(", ")
+        found[name] = {"value": float(value), "error": float(error)} | ({"unit": unit} if unit else {})
+        found[name] |= {"at bound": bound} if bound else {}
+    return found
+
+
 def run(path, directory=None, jobs=None, laws=None):
     """Fits the laws of an experiment file, writes fit.txt, fit.yaml and fit.png, and returns the Fits, the best first.
     `directory`: of these and runs/ (default: results/<experiment>). `jobs`: runs at a time (default: the number of
@@ -110,10 +121,8 @@ def run(path, directory=None, jobs=None, laws=None):
     (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
     record = {fit.law: {
         "chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic), "runs": fit.runs.count,
-        "unknown": {name: dict(zip(("value", "error"), map(float, found))) | ({"at bound": bound} if bound else {})
-                    for (name, found), bound in zip(fit.values.items(), fit.at_bound)}}
-        for fit in fits}
-    (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False), encoding="utf-8")
+        "unknown": recorded(fit)} for fit in fits}
+    (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False, allow_unicode=True), encoding="utf-8")
     style.save(style.draw(draw, fits), directory / "fit.png")
     return fits
 
