@@ -6,6 +6,7 @@ import functools
 import hashlib
 import json
 import math
+import numbers
 import os
 import pathlib
 import re
@@ -15,6 +16,8 @@ import subprocess
 import sys
 import time
 from shlex import quote as quoted
+
+import numpy
 
 from .files import Named, parsed
 from .mistakes import Mistake, expect
@@ -52,8 +55,16 @@ def deck_at(name):
     return found.resolve()
 
 
+def _plain(value):
+    """Returns a value with lists instead of arrays of numpy and tuples, and numbers of Python instead of numpy's."""
+    if isinstance(value, (numpy.ndarray, numpy.generic)):
+        return value.tolist()
+    return [_plain(one) for one in value] if isinstance(value, (list, tuple)) else value
+
+
 def text_of(value):
-    """Returns a value as text for the command line."""
+    """Returns a value as text for the command line. Arrays of numpy and tuples are written as lists."""
+    value = _plain(value)
     text = f"{value:.15g}" if isinstance(value, float) else str(value)
     return text.lower() if isinstance(value, bool) else text
 
@@ -67,9 +78,9 @@ def settings_of(words):
 
 def run(where, settings=None):
     """Returns the Run of a results directory or of a deck (a .yaml file). A deck is run first if it has no results.
-    With settings {"Section/key": value}, the deck is run with these keys changed; its directory below `results` is
-    named by the deck and a checksum of deck and settings. If `where` is a Run, it is returned. Raises Mistake if the
-    run fails."""
+    With settings {"Section/key": value}, the deck is run with these keys changed; a value may be an array. The
+    directory of this run below `results` is named by the deck and a checksum of deck and settings. If `where` is a Run,
+    it is returned. Raises Mistake if the run fails."""
     if isinstance(where, Run):
         return where
     if settings:
@@ -108,7 +119,7 @@ def _files_of(value, folders):
     found is used, or run.h5 if the name is a results directory."""
     for one in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
         yield from _files_of(one, folders)
-    if value and isinstance(value, (str, pathlib.Path)):
+    if isinstance(value, (str, pathlib.Path)) and str(value):
         places = (folder / value / part for folder in folders for part in ("", "run.h5"))
         yield from [place for place in places if os.path.isfile(place)][:1]
 
@@ -175,6 +186,7 @@ class Study:
     runs. `fresh`: if true, existing results are not used."""
 
     def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False):
+        expect(isinstance(jobs, numbers.Integral) and jobs > 0, f"jobs must be a whole number above 0, but is {jobs}")
         self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)
         self.limit, self.jobs, self.fresh = limit, jobs, fresh
         self._made, self._running = set(), set()

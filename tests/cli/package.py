@@ -246,6 +246,38 @@ def a_run_with_one_row_is_drawn_as_dots():
         figures.animation("steady", frame=0)
 
 
+def _mistake(function):
+    """Returns the sentence of the Mistake that a function raises."""
+    try:
+        function()
+    except tanktread.Mistake as mistake:
+        return str(mistake)
+    raise AssertionError("no Mistake")
+
+
+def settings_may_be_arrays_of_numpy():
+    path, axes = deck(CAPSULE), [1.0, 1.0, 0.8]
+    found = [tanktread.run(path, {"Particle/shape": "spheroid", "Particle/semi-axes": one, "Surface/elements per side": three}).directory
+             for one, three in ((numpy.array(axes), numpy.array(3)), (tuple(axes), numpy.int64(3)), (axes, 3), ([*map(numpy.float64, axes)], 3))]
+    check(len(set(found)) == 1 and tanktread.run(found[0]).value("Particle/semi-axes") == axes, found)
+    check(tanktread.text_of(numpy.array([[True, False]])[0, 0]) == "true" and tanktread.text_of(numpy.float64(0.1)) == "0.1", "a logical value and a number")
+    check("Particle/semi-axes" in _mistake(lambda: tanktread.run(path, {"Particle/semi-axes": numpy.eye(3)})), "a matrix")
+
+
+def wrong_arguments_of_the_package_are_one_sentence():
+    from tanktread.studies import fit, sweep
+    deck("deck: deck.yaml\nrecord: [area]\n", "study.yaml")
+    for jobs in 0, -1, 1.5, "2", None:
+        check(_mistake(lambda: tanktread.Study(jobs=jobs)) == f"jobs must be a whole number above 0, but is {jobs}", jobs)
+    for study in sweep, fit:
+        check("jobs must be a whole number above 0, but is 0" in _mistake(lambda: study.run("study.yaml", jobs=0)), "of a study")
+    check(tanktread.Study(jobs=numpy.int64(2)).jobs == 2, "a number of numpy")
+    for name, draw in figures.FIGURES.items():
+        check(name in _mistake(lambda: draw([])), name)
+    check(_mistake(lambda: figures.shape([])) == "the figure `shape` needs at least one run, but is given an empty list", "no runs")
+    check(_mistake(lambda: figures.animation(["one", "two"])) == "the figure `animation` needs one run, but is given a list", "several runs")
+
+
 def figures_of_experiments_are_drawn_from_their_runs():
     _made_up("turn", {"Membrane": {"law": "Skalak"}}, {"phase": 3600 * numpy.linspace(0, 1, 201), "inclination": numpy.full(201, 12.0)})
     t = numpy.linspace(0, 1, 201)

@@ -105,7 +105,7 @@ def run(path, directory=None, jobs=None, laws=None):
     `directory`: of these and runs/ (default: results/<experiment>). `jobs`: runs at a time (default: the number of
     cores). `laws`: names of the laws that are fitted (default: all)."""
     directory = pathlib.Path(directory or f"results/{pathlib.Path(path).stem}")
-    fits, text = load(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count()))
+    fits, text = load(path, Study(directory=directory / "runs", jobs=os.cpu_count() if jobs is None else jobs))
     known = [fit.law for fit in fits]
     expect(set(laws or known) <= set(known), f"there is no such law; there are: {', '.join(known)}")
     fits = [fit for fit in fits if fit.law in (laws or known)]

@@ -270,7 +270,7 @@ def run(path, directory=None, jobs=None, fresh=False):
     table.h5 and runs/ (default: results/<study>). `jobs`: number of simultaneous runs (default: one per core). `fresh`:
     if true, existing results are not used."""
     directory = pathlib.Path(directory or f"results/{pathlib.Path(path).stem}")
-    sweep = Sweep(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count(), fresh=fresh))
+    sweep = Sweep(path, Study(directory=directory / "runs", jobs=os.cpu_count() if jobs is None else jobs, fresh=fresh))
     directory.mkdir(parents=True, exist_ok=True)
     sweep.make()
     sweep.write(directory)
