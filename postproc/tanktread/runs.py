@@ -182,11 +182,13 @@ class Outcome:
 
 class Study:
     """Runs of decks with changed keys. Their results are kept in `directory`; a run with the same decks and settings is
-    not repeated. `limit`: largest processor time of a run in seconds (None: no limit). `jobs`: number of simultaneous
-    runs. `fresh`: if true, existing results are not used."""
+    not repeated. `limit`: largest processor time of a run in seconds (None: no limit); the limit of a run with several
+    ranks holds for each rank, and is rounded up to whole seconds. `jobs`: number of simultaneous runs. `fresh`: if
+    true, existing results are not used."""
 
     def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False):
         expect(isinstance(jobs, numbers.Integral) and jobs > 0, f"jobs must be a whole number above 0, but is {jobs}")
+        expect(limit is None or 0 < limit < math.inf, f"limit must be a number above 0, but is {limit}")
         self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)
         self.limit, self.jobs, self.fresh = limit, jobs, fresh
         self._made, self._running = set(), set()
@@ -228,20 +230,26 @@ class Study:
         bounds = ["setpriv", "--pdeathsig", "KILL"]  # a run must not outlive the study that made it
         bounds += ["prlimit", f"--cpu={math.ceil(self.limit)}"] if self.limit else []
         with subprocess.Popen(bounds + words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                              env=os.environ | ENVIRONMENT) as process:
+                              env=os.environ | ENVIRONMENT, preexec_fn=self._start_timer) as process:
             self._running.add(process)
             said = process.stderr.read().strip().splitlines()
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = code = os.waitstatus_to_exitcode(status)
             self._running.discard(process)
         killed = _signal(code)
-        if self.limit and killed in (signal.SIGKILL, signal.SIGXCPU):
+        if self.limit and killed in (signal.SIGKILL, signal.SIGXCPU, signal.SIGPROF):
             code, said = None, [f"stopped after {self.limit:g} s of processor time"]
         elif killed:
             said.append(f"killed by signal {killed}")
         return {"code": code, "message": said[-1] if said else "", "limit": self.limit,
                 "seconds": time.monotonic() - start,
                 "processor_seconds": usage.ru_utime + usage.ru_stime, "command": " ".join(map(quoted, words))}
+
+    def _start_timer(self):
+        """Starts the timer that ends a run of one rank at the limit. It is kept by exec, and counts fractions of a
+        second, which prlimit does not. It is not inherited by the ranks that mpirun starts."""
+        if self.limit:
+            signal.setitimer(signal.ITIMER_PROF, self.limit)
 
     @staticmethod
     def name(decks, settings, ranks=1):

@@ -329,6 +329,19 @@ def a_run_that_reached_its_limit_is_made_again_with_a_larger_one():
     check(ends == ["stopped", "stopped", "done"] and times[0] == times[1], ends, times)
 
 
+def a_limit_is_not_rounded_to_seconds():
+    path = deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "scheme: bs3, final time: 400.0"))  # twenty processor seconds
+    for limit in 0.4, 1.2:
+        ended = tanktread.Study(limit=limit).run(path, {})
+        check(ended.status == "stopped" and ended.message == f"stopped after {limit} s of processor time", ended.message)
+        # tolerance: the kernel counts processor time in ticks, and stops a run later if the processor is shared
+        check(limit - 0.1 < ended.processor_seconds < (limit + numpy.ceil(limit)) / 2, ended.processor_seconds)
+    for limit, words in ((-1, "but is -1"), (0, "but is 0"), (float("inf"), "but is inf")):
+        deck(f"deck: deck.yaml\nrecord: [area]\nlimit: {str(limit).replace('inf', '.inf')}\n", "study.yaml")
+        said = _sweep("study.yaml", code=2)
+        check("limit must be a number above 0" in said and words in said and said.count("\n") == 1, said)
+
+
 def a_sweep_that_is_killed_goes_on():
     deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "final time: 8.0"))
     deck(STUDY, "study.yaml")

@@ -51,7 +51,7 @@ import yaml
 from ..figures import style
 from ..mistakes import command_line, expect, log, progress
 from ..runs import Study
-from .common import keys_of, number, optional, study_of
+from .common import keys_of, optional, positive, study_of
 from .fit_data import Experiment, Unknown
 from .fit_model import Fit, Runs
 from .fit_report import draw, further, told
@@ -59,7 +59,7 @@ from .fit_report import draw, further, told
 def load(path, study):
     """Returns the fits of all laws, not yet solved, and the content of the file."""
     text = study_of(path, {"set", "unknown", "laws", "experiments", "next"}, {"limit"})
-    study.limit = optional(number, text, "limit", path)
+    study.limit = optional(positive, text, "limit", path)
     expect(text["experiments"], f"{path} has no experiments")
     laws = {law: keys_of(settings, f"{path}: the law {law}") for law, settings in text["laws"].items()}
     experiments = [Experiment(name, given, pathlib.Path(path).parent) for name, given in text["experiments"].items()]

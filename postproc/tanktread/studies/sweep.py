@@ -45,7 +45,7 @@ from ..files import Named, opened
 from ..interpolation import interpolated, mean
 from ..mistakes import Mistake, command_line, expect, log, progress
 from ..runs import Study, text_of
-from .common import keys_of, number, optional, spaced, study_of, values_of, whole
+from .common import keys_of, number, optional, positive, spaced, study_of, values_of, whole
 
 TAKES = {"last": lambda time, values: values[-1], "smallest": lambda time, values: values.min(),
          "largest": lambda time, values: values.max(), "mean": mean, "all": None}
@@ -156,7 +156,7 @@ class Sweep:
         self.name, self.study, self.decks = pathlib.Path(path).stem, study, text["deck"]
         self.ranks = whole(text.get("ranks", 1), f"{path}: ranks")
         self.rows, self.columns = combinations(text), columns_of(text, path)
-        self.study.limit = optional(number, text, "limit", path)
+        self.study.limit = optional(positive, text, "limit", path)
         self.keys = [key for key in dict.fromkeys(key for row in self.rows for key in row)
                      if len({str(row.get(key)) for row in self.rows}) > 1]
 
