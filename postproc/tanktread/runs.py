@@ -142,7 +142,8 @@ class Outcome:
     """Outcome of one run of a Study. One of these is true: `done` (the run was completed), `failed`, `refused` (the
     deck has a mistake), or `slow` (stopped at the time limit or by a signal). `stopped`: true if stopped by a signal.
     `message`: last line on standard error. `seconds`: wall time. `processor_seconds`: processor time of all ranks.
-    `limit`: the limit at which the run was stopped; infinite if there was none.
+    Both times include the earlier parts of a resumed run. `limit`: the limit at which the run was stopped; infinite if
+    there was none.
     `series`: series of the run. `final`, `counts`, `phases`: sections of its summary."""
 
     def __init__(self, directory, note):
@@ -180,11 +181,22 @@ class Outcome:
         return 0.0
 
 
+def _earlier(directory, before, ranks):
+    """Returns the wall time and the processor time that a run has taken before it is resumed. `before`: its Outcome. If
+    this is None, because the study was killed during the run, both times follow from the series `wall_seconds`."""
+    if before:
+        return {"seconds": before.seconds, "processor_seconds": before.processor_seconds}
+    seconds = 0.0
+    with contextlib.suppress(Mistake, IndexError):
+        seconds = float(Run(directory).series["wall_seconds"][-1])
+    return {"seconds": seconds, "processor_seconds": ranks * seconds}
+
+
 class Study:
     """Runs of decks with changed keys. Their results are kept in `directory`; a run with the same decks and settings is
-    not repeated. `limit`: largest processor time of a run in seconds (None: no limit); the limit of a run with several
-    ranks holds for each rank, and is rounded up to whole seconds. `jobs`: number of simultaneous runs. `fresh`: if
-    true, existing results are not used."""
+    not repeated. `limit`: largest processor time of a run in seconds (None: no limit); it does not
+    count the earlier parts of a resumed run. The limit of a run with several ranks holds for each rank and is rounded
+    up to whole seconds. `jobs`: number of simultaneous runs. `fresh`: if true, existing results are not used."""
 
     def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False):
         expect(isinstance(jobs, numbers.Integral) and jobs > 0, f"jobs must be a whole number above 0, but is {jobs}")
@@ -213,7 +225,9 @@ class Study:
         program, made = launcher + [str(self.program), "--quiet"], None
         # If results exist without outcome.json, the study was killed during the run.
         if (where / "run.h5").exists() and unfinished and not self.fresh:
+            earlier = _earlier(where, before, ranks)
             made = self._make(program + ["--resume", str(where)])
+            made |= {name: made[name] + seconds for name, seconds in earlier.items()}
         if made is None or made["code"] == 2:  # not resumed, or there is no checkpoint
             shutil.rmtree(where, ignore_errors=True)
             where.mkdir(parents=True)

@@ -3,6 +3,7 @@
 # Tests of the Python package: installation, exact surfaces, conversion for pandas, xarray, meshio and VTK, and all
 # figures.
 import importlib.util
+import json
 import os
 import pathlib
 import re
@@ -276,6 +277,24 @@ def wrong_arguments_of_the_package_are_one_sentence():
         check(name in _mistake(lambda: draw([])), name)
     check(_mistake(lambda: figures.shape([])) == "the figure `shape` needs at least one run, but is given an empty list", "no runs")
     check(_mistake(lambda: figures.animation(["one", "two"])) == "the figure `animation` needs one run, but is given a list", "several runs")
+
+
+def the_processor_time_of_a_resumed_run_includes_its_earlier_parts():
+    """The first part is given a processor time of 1000 s in its record. The last part follows a part without a record,
+    as a study that is killed leaves it."""
+    path = deck(CAPSULE.replace("per side: 3", "per side: 6").replace("final time: 0.2", "scheme: bs3, final time: 1000"))
+
+    def part():
+        return tanktread.Study(directory="runs").run(path, {"Output/wall-clock limit": 0.3})
+
+    note = part().directory / "outcome.json"
+    note.write_text(json.dumps(json.loads(note.read_text()) | {"processor_seconds": 1000.0, "seconds": 2000.0}))
+    resumed = part()
+    check("--resume" in resumed.command and 1000 < resumed.processor_seconds < 1100 and 2000 < resumed.seconds < 2100, resumed.processor_seconds, resumed.seconds)
+    before = resumed.series["wall_seconds"][-1]
+    note.unlink()
+    resumed = part()
+    check("--resume" in resumed.command and before < resumed.processor_seconds < 100, resumed.processor_seconds, before)
 
 
 def figures_of_experiments_are_drawn_from_their_runs():
