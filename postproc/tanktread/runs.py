@@ -18,8 +18,9 @@ import time
 from shlex import quote as quoted
 
 import numpy
+import yaml
 
-from .files import Named, parsed
+from .files import Named, parsed, yaml_text
 from .mistakes import Mistake, expect
 from .results import Run
 
@@ -194,9 +195,9 @@ def _earlier(directory, before, ranks):
 
 class Study:
     """Runs of decks with changed keys. Their results are kept in `directory`; a run with the same decks and settings is
-    not repeated. `limit`: largest processor time of a run in seconds (None: no limit); it does not
-    count the earlier parts of a resumed run. The limit of a run with several ranks holds for each rank and is rounded
-    up to whole seconds. `jobs`: number of simultaneous runs. `fresh`: if true, existing results are not used."""
+    not repeated. `limit`: largest processor time of a run in seconds (None: no limit); it does not count
+    the earlier parts of a resumed run. The limit of a run with several ranks holds for each rank and is rounded up to
+    whole seconds. `jobs`: number of simultaneous runs. `fresh`: if true, existing results are not used."""
 
     def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False):
         expect(isinstance(jobs, numbers.Integral) and jobs > 0, f"jobs must be a whole number above 0, but is {jobs}")
@@ -269,10 +270,11 @@ class Study:
     def name(decks, settings, ranks=1):
         """Returns the name of a run's directory: the name of the last deck, and a checksum of the settings, the decks,
         and the content of all files that they name."""
-        texts = [parsed(deck_at(deck), str) for deck in decks]
-        named, folders = [dict(sorted(settings.items()))], [pathlib.Path(), *(deck_at(deck).parent for deck in decks)]
-        with contextlib.suppress(Mistake):  # the program refuses a deck that is not YAML
-            named += [parsed(deck_at(deck)) for deck in decks]
+        paths = [deck_at(deck) for deck in decks]
+        texts = [parsed(path, str) for path in paths]
+        named, folders = [dict(sorted(settings.items()))], [pathlib.Path(), *(path.parent for path in paths)]
+        with contextlib.suppress(yaml.YAMLError, ValueError):  # the program refuses a deck that is not YAML
+            named += [yaml_text(text) for text in texts]
         files = [hashlib.sha1(path.read_bytes()).hexdigest() for path in _files_of(named, folders)]
         text = json.dumps([texts, {key: text_of(value) for key, value in sorted(settings.items())}, ranks, *files])
         return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]

@@ -297,6 +297,17 @@ def the_processor_time_of_a_resumed_run_includes_its_earlier_parts():
     check("--resume" in resumed.command and before < resumed.processor_seconds < 100, resumed.processor_seconds, before)
 
 
+def the_name_of_a_run_is_found_by_reading_each_deck_once():
+    paths, read, opened = [deck(CAPSULE), deck("Tanktread: { Time: { final time: 0.1 } }\n", "other.yaml")], [], pathlib.Path.read_text
+    with mock.patch.object(pathlib.Path, "read_text", lambda path, **more: read.append(path.name) or opened(path, **more)):
+        first = tanktread.Study.name(paths, {})
+    check(read == ["deck.yaml", "other.yaml"], read)
+    deck("Tanktread: { Time: { final time: 0.2 } }\n", "other.yaml")
+    check(tanktread.Study.name(paths, {}) != first, "a deck with another content")
+    deck("Tanktread: [", "other.yaml")
+    check(tanktread.Study.name(paths, {}).startswith("other_"), "a deck that is not YAML")
+
+
 def figures_of_experiments_are_drawn_from_their_runs():
     _made_up("turn", {"Membrane": {"law": "Skalak"}}, {"phase": 3600 * numpy.linspace(0, 1, 201), "inclination": numpy.full(201, 12.0)})
     t = numpy.linspace(0, 1, 201)
