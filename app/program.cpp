@@ -258,6 +258,7 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
     request.output = directory, request.resume = resume, request.overwrite = true, request.quiet = true, request.of_ladder = true;
     return simulate(of_level, request);
   };
+  program.reason_of_stop = reason_of_stop;
   if (!arguments.check) return accuracy::climb(task, program);
   for (const std::string& line : accuracy::forecast(task, program))
     if (speaks) std::cout << line << "\n";

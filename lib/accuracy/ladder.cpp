@@ -287,9 +287,10 @@ class Ladder {
       }
       throw RunFailure("no accuracy level was completed" + (failure_.empty() ? "" : ": " + failure_));
     }
+    const std::string status = code == stopped ? program_.reason_of_stop() : "";
     const auto outcome = coupling::decided([&] {
       answer_all();
-      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_, answers_), why, seconds_);
+      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_, answers_), {status, why}, seconds_);
       report(code, why, missed_expectations);
       return std::vector<double>{double(code == met && !missed_expectations.empty() ? missed : code)};
     });
