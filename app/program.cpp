@@ -365,7 +365,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
     if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {
-    return report((spoken(reason_of_stop()) + " before there was anything to keep").c_str(), stopped);
+    return report((spoken(reason_of_stop()) + " before any results were written").c_str(), stopped);
   } catch (const UserErrors& errors) {
     for (const std::string& sentence : errors.all) report(sentence.c_str(), mistake);
     message = one_line(errors.what());

@@ -93,7 +93,8 @@ std::string sentence(const Answer& one) {
   const std::string name = one.request.text();
   if (!one.estimate.trusted()) return name + ": the error cannot be estimated, because " + one.estimate.untrusted;
   const std::string found = name + formatted(": estimated error %.2g, allowed %.2g", one.estimate.error, one.allowed);
-  return one.met || one.estimate.error > one.allowed ? found : found + formatted(" (%g times the estimate must be allowed)", margin);
+  if (one.met || one.estimate.error > one.allowed) return found;
+  return found + formatted(" (a request is met if it allows %g times the estimated error)", margin);
 }
 
 std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,

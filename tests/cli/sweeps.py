@@ -151,7 +151,7 @@ curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}
     deck("deck: deck.yaml\nmotion: rolling\nalong: {key: a, from: 1, to: 2, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
     refused = package("phases", "wrong.yaml")
     check(refused.returncode == 2 and "shear or capillary, not rolling" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
-    for words, said in (("begin: half", "half is not a number"), ("begin: 2", "less than 1"), ("literature: {paper: [1, 2]}", "rows of"), ("set: 3", "list of keys")):
+    for words, said in (("begin: half", "half is not a number"), ("begin: 2", "less than 1"), ("literature: {paper: [1, 2]}", "rows of"), ("set: 3", "section of keys")):
         deck(f"deck: deck.yaml\nalong: {{key: a, from: 1, to: 2, within: 1.1}}\nacross: {{b: [1]}}\ncurves: {{one: {{}}}}\n{words}\n", "wrong.yaml")
         refused = package("phases", "wrong.yaml")
         check(refused.returncode == 2 and said in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
@@ -369,8 +369,8 @@ def mistakes_are_one_sentence():
                         ("deck: deck.yaml\nkeys: {}", "keys is not known"), ("deck: deck.yaml\nrecord: {D: {take: most}}", "take most"),
                         ("deck: deck.yaml\nrecord: {D: {series: a, take: mean, at: 1}}", "take or at"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1}}", "from, to and number"), ("a: [", "not YAML"),
-                        ("deck: 3", "but 3 is none"), ("deck: deck.yaml\nrecord: [a]\nset: 3", "set must be a list of keys"),
-                        ("deck: deck.yaml\nrecord: [a]\ngrid: [A/b]", "grid must be a list of keys"), ("deck: deck.yaml\nrecord: D", "record must be"),
+                        ("deck: 3", "but 3 is none"), ("deck: deck.yaml\nrecord: [a]\nset: 3", "set must be a section of keys"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: [A/b]", "grid must be a section of keys"), ("deck: deck.yaml\nrecord: D", "record must be"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: x, to: 2, number: 3}}", "x is not a number"),
                         ("deck: deck.yaml\nrecord: [a]\nrandom: {number: -1, keys: {A/b: [1]}}", "a whole number above 0"),
                         ("deck: deck.yaml\nrecord: [a]\nranks: 0", "a whole number above 0"), ("deck: deck.yaml\nrecord: [a]\nlimit: x", "limit: x is not")):

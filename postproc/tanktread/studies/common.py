@@ -86,7 +86,7 @@ def whole(given, name):
 
 def keys_of(given, name):
     """Returns a section of a YAML file; {} if it is absent."""
-    expect(given is None or isinstance(given, dict), f"{name} must be a list of keys with values, but is {given}")
+    expect(given is None or isinstance(given, dict), f"{name} must be a section of keys with values, but is {given}")
     return given or {}
 
 
@@ -95,7 +95,7 @@ def study_of(path, sections, others):
     Absent sections are {}. `deck` is a list of paths; decks are searched for next to the file, in the current
     directory, and in the directories of shared()."""
     text, known = content_of(path), sorted({"deck"} | sections | others)
-    expect(isinstance(text, dict), f"{path} must be a list of keys: {', '.join(known)}")
+    expect(isinstance(text, dict), f"{path} must be a section of keys: {', '.join(known)}")
     for key in text:
         expect(key in known, f"{path}: {key} is not known; there are: {', '.join(known)}")
     expect(text.get("deck"), f"{path} names no deck")
