@@ -73,6 +73,17 @@ def both_ends_of_a_critical_value_were_run():
             check(found.returncode == 2 and said in found.stderr, found.stderr)
 
 
+def the_atlas_finds_the_largest_step_of_a_scheme():
+    with mock.patch.object(sys, "path", [str(SOURCE / "tests/benchmark"), *sys.path]):
+        from edges_of_methods import largest_step
+    limit, steps = 2.51 / (2 * 4 / 0.3), []
+    for stable, expected in (1.5, "edge"), (20, "holds to here"), (0.1, "fails from here"):
+        end = {"taylor_inertia": 1, "energy": 1}
+        made = mock.Mock(run=lambda deck, given: mock.Mock(done=not steps.append(step := given.get("Time/fixed step", 0)) and step <= stable * limit, final=end))
+        step, how = largest_step(made, {"Surface/elements per side": 4}, "bs3")
+        check(how == expected and step in steps and (expected != "edge" or step <= 1.5 * limit < 1.1 * step), stable, step / limit, how)
+
+
 def tumbling_is_told_from_treading_by_shape_and_membrane():
     from tanktread.studies import phases
     t = numpy.linspace(0, 40, 801)
