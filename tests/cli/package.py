@@ -308,6 +308,12 @@ def the_name_of_a_run_is_found_by_reading_each_deck_once():
     check(tanktread.Study.name(paths, {}).startswith("other_"), "a deck that is not YAML")
 
 
+def the_command_below_a_chart_starts_from_the_source_directory():
+    from tanktread.studies import common
+    said = common.command_of(SOURCE / "tests/benchmark/atlas.py", "--map", "fixed step")
+    check(said == "tests/benchmark/atlas.py --map 'fixed step'" and (SOURCE / said.split()[0]).is_file(), said)
+
+
 def figures_of_experiments_are_drawn_from_their_runs():
     _made_up("turn", {"Membrane": {"law": "Skalak"}}, {"phase": 3600 * numpy.linspace(0, 1, 201), "inclination": numpy.full(201, 12.0)})
     t = numpy.linspace(0, 1, 201)

@@ -8,7 +8,7 @@ import numpy
 
 from ..files import parsed as content_of
 from ..mistakes import Mistake, expect, log
-from ..runs import PROGRAM, Study, quoted, shared, text_of
+from ..runs import PROGRAM, SOURCE, Study, quoted, shared, text_of
 
 
 def edge(holds, low, high, factor=1.05):
@@ -54,8 +54,8 @@ def write_table(path, head, rows):
 
 
 def command_of(script, *words):
-    """Returns the command line that reproduces a chart; it is printed below the chart."""
-    return " ".join([f"{pathlib.Path(script).parent.name}/{pathlib.Path(script).name}", *map(quoted, words)])
+    """Returns the command line, from the source directory, that reproduces a chart; it is printed below the chart."""
+    return " ".join([str(pathlib.Path(script).resolve().relative_to(SOURCE)), *map(quoted, words)])
 
 
 def number(given, name):
