@@ -258,6 +258,7 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
     request.output = directory, request.resume = resume, request.overwrite = true, request.quiet = true, request.of_ladder = true;
     return simulate(of_level, request);
   };
+  program.reason_of_stop = reason_of_stop;
   if (!arguments.check) return accuracy::climb(task, program);
   for (const std::string& line : accuracy::forecast(task, program))
     if (speaks) std::cout << line << "\n";
@@ -364,7 +365,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
     if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {
-    return report((spoken(reason_of_stop()) + " before there was anything to keep").c_str(), stopped);
+    return report((spoken(reason_of_stop()) + " before any results were written").c_str(), stopped);
   } catch (const UserErrors& errors) {
     for (const std::string& sentence : errors.all) report(sentence.c_str(), mistake);
     message = one_line(errors.what());

@@ -218,7 +218,7 @@ class Run {
     totals_.kernel = earlier_kernel_ + ranks_.of_all(particle_->kernel_evaluations());
     totals_.warnings = warnings_.memory();
 #ifndef NDEBUG
-    if (!output::equal_on_all_ranks(state_)) fail("the ranks hold states that are not the same to the bit");
+    if (!output::equal_on_all_ranks(state_)) fail("the states on the ranks are not identical");
 #endif
   }
 

@@ -354,12 +354,12 @@ class SteadyRun {
     if (!failure_.empty()) account.status = "failed: " + failure_, account.whole = false;
     if (!stopped_.empty()) {
       account.status = stopped_, account.whole = false;
-      account.remark = spoken(stopped_) + "; what was reached is in " + results_.directory().string();
+      account.remark = spoken(stopped_) + "; the results so far are in " + results_.directory().string();
     }
     int k = 0;
     for (const motion::Mode& mode : found_.modes) account.modes.emplace_back(std::to_string(++k), motion::name(mode.kind));
     const int code = results_.close(account, phases_);
-    if (!failure_.empty()) throw RunFailure(failure_ + "; what was reached is in " + results_.directory().string());
+    if (!failure_.empty()) throw RunFailure(failure_ + "; the results so far are in " + results_.directory().string());
     return stopped_.empty() ? code : stopped;
   }
 

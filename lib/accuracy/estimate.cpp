@@ -17,9 +17,9 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 Estimate estimated(const std::vector<double>& differences, double scale, const std::vector<double>& expected) {
   const std::size_t n = differences.size();
-  if (n == 0 || !std::isfinite(differences.back())) return {unknown, unknown, "it has no value on two levels"};
+  if (n == 0 || !std::isfinite(differences.back())) return {unknown, unknown, "fewer than two levels have a value of it"};
   const double last = differences.back(), finest = expected[n];
-  if (n == 1 || !std::isfinite(differences[n - 2])) return {last, unknown, "it needs three levels"};
+  if (n == 1 || !std::isfinite(differences[n - 2])) return {last, unknown, "it needs the results of three levels"};
   if (std::max(last, differences[n - 2]) <= round_off * scale) return {std::max(last, differences[n - 2]), unknown, ""};
   const auto factor = [&](std::size_t level) { return differences[level - 1] / (expected[level - 1] - expected[level]); };
   const double error = factor(n) * finest;

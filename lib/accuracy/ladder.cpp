@@ -45,7 +45,7 @@ class Ladder {
       const int code = run(k);
       if (code == stopped) return conclude(stopped, formatted("level %d was stopped", k));
       if (count_ >= 3 && failure_of_last_.empty() && judge(k)) return conclude(met, "");
-      if (hopeless()) return conclude(missed, "finer levels do not help");
+      if (hopeless()) return conclude(missed, "finer levels are not expected to reduce the error");
     }
     if (count_ == 0) throw RunFailure("no accuracy level was completed: " + failure_);
     if (!failure_of_last_.empty()) return conclude(missed, formatted("level %d failed: ", task_.options.levels - 1) + failure_);
@@ -168,7 +168,7 @@ class Ladder {
     const auto start = static_cast<Start>(static_cast<int>(known[0]));
     resuming_ = start == Start::resume;
     if (start == Start::failed) {
-      fail(name, failure + " (found before; without " + failure_file + " it is searched for again)");
+      fail(name, failure + " (recorded by an earlier run; to search again, delete " + failure_file + ")");
       return 0;
     }
     double seconds = 0;
@@ -287,9 +287,10 @@ class Ladder {
       }
       throw RunFailure("no accuracy level was completed" + (failure_.empty() ? "" : ": " + failure_));
     }
+    const std::string status = code == stopped ? program_.reason_of_stop() : "";
     const auto outcome = coupling::decided([&] {
       answer_all();
-      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_, answers_), why, seconds_);
+      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_, answers_), {status, why}, seconds_);
       report(code, why, missed_expectations);
       return std::vector<double>{double(code == met && !missed_expectations.empty() ? missed : code)};
     });

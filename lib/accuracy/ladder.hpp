@@ -13,7 +13,7 @@
 
 namespace tanktread::accuracy {
 
-/// Functions of the program with which one deck is run on finer and finer levels. Both are collective.
+/// Functions of the program with which one deck is run on finer and finer levels. All are collective.
 struct Program {
   /// Returns the effective deck with the keys in `settings` (`Section/key=value`) changed, and without the sections Accuracy and Expect.
   std::function<std::string(const std::vector<std::string>& settings)> deck;
@@ -22,6 +22,9 @@ struct Program {
   /// code: 0, or `stopped` if the run can be resumed. Throws RunFailure if the run fails, and motion::Stopped if it is stopped before it can be
   /// resumed.
   std::function<int(const std::string& deck, const std::filesystem::path& directory, bool resume, std::optional<double> limit)> run;
+
+  /// Returns the status of results that are stopped now: `stopped: by a signal` or `stopped: at the wall-clock limit`.
+  std::function<std::string()> reason_of_stop;
 };
 
 /// A deck with requests.

@@ -93,11 +93,12 @@ std::string sentence(const Answer& one) {
   const std::string name = one.request.text();
   if (!one.estimate.trusted()) return name + ": the error cannot be estimated, because " + one.estimate.untrusted;
   const std::string found = name + formatted(": estimated error %.2g, allowed %.2g", one.estimate.error, one.allowed);
-  return one.met || one.estimate.error > one.allowed ? found : found + formatted(" (%g times the estimate must be allowed)", margin);
+  if (one.met || one.estimate.error > one.allowed) return found;
+  return found + formatted(" (a request is met if it allows %g times the estimated error)", margin);
 }
 
 std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,
-                    const std::string& why, double seconds) {
+                    const End& end, double seconds) {
   const Outcome& finest = levels.back();
   output::start_results(task.directory);
   link_files(finest.directory, task.directory);
@@ -118,11 +119,12 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
 
   const std::vector<deck::Verdict> verdicts = deck::verdicts(task.expect.all, table);
   std::string text = text_of_file(finest.directory / "summary.yaml", "summary.yaml", 10'000'000);
+  if (!end.status.empty()) text.replace(0, text.find('\n'), "status: " + in_quotes(end.status));
   text = with_expect(without_statement(text), output::yaml(verdicts, estimates(task.expect, errors, table.at("time"))));
   text += "error:\n";
   for (const SeriesError& one : errors)
     text += "  " + (deck::is_plain(one.name) ? one.name : in_quotes(one.name)) + ": " + real_text(one.values.back()) + "\n";
-  text += accuracy_text(task, levels, answers, why, seconds);
+  text += accuracy_text(task, levels, answers, end.why, seconds);
   output::write_whole(task.directory / "summary.yaml", text, output::Durable::yes);
   return deck::missed(verdicts, [](const std::string& sentence) { std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str()); });
 }

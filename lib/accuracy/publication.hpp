@@ -12,12 +12,17 @@ namespace tanktread::accuracy {
 /// Returns one sentence that compares the estimated error of a series with the error that was requested for it.
 std::string sentence(const Answer& answer);
 
+/// How a ladder ended.
+struct End {
+  std::string status;  ///< `status` of its summary; empty if it is the status of the finest level
+  std::string why;     ///< reason why not all requests are met; empty if they are met
+};
+
 /// Publishes the results of the finest level in the directory of the ladder. The directory then has the files of this level, with `/error/<series>`
 /// in `run.h5`, the field `position error` in snapshots if there are at least three levels and obstacle() reports nothing, and the sections `error`,
-/// `accuracy` and `expect` in `summary.yaml`. `why`: reason why the ladder ended without meeting all requests; empty if it met them. `seconds`: wall
-/// seconds of all runs. Prints a warning for each missed expectation that has the key `not binding`. Returns one line that lists all other missed
-/// expectations; empty if there are none. Serial.
+/// `accuracy` and `expect` in `summary.yaml`. `seconds`: wall seconds of all runs. Prints a warning for each missed expectation that has the key
+/// `not binding`. Returns one line that lists all other missed expectations; empty if there are none. Serial.
 std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,
-                    const std::string& why, double seconds);
+                    const End& end, double seconds);
 
 }  // namespace tanktread::accuracy

@@ -17,7 +17,7 @@ std::string text_of_file(const std::filesystem::path& file, const std::string& w
   if (status.type() == fs::file_type::not_found) throw UserError(what + " does not exist.");
   if (fs::is_directory(status)) throw UserError(what + " is a directory, not a file.");
   if (error) throw UserError(what + " cannot be read: " + error.message() + ".");
-  if (!fs::is_regular_file(status)) throw UserError(what + " is no regular file, but a pipe or a device.");
+  if (!fs::is_regular_file(status)) throw UserError(what + " is not a regular file, but a pipe or a device.");
   if (fs::file_size(file, error) > most) throw UserError(what + " is larger than " + std::to_string(most / 1'000'000) + " MB.");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw UserError(what + " cannot be read.");

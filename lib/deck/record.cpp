@@ -43,7 +43,7 @@ std::string unknown_key(const List& list, const List& root, const std::string& k
   if (meant.find(" or ") == meant.npos && std::ranges::find(names, last) != names.end()) meant = list.path_of(last);
   if (meant.empty()) meant = elsewhere(root, key);
   if (!meant.empty()) return what + "; was " + meant + " meant?";
-  return what + "; " + (list.path.empty() ? "its lists are " : list.path + " has ") + alternatives(names) + ".";
+  return what + "; " + (list.path.empty() ? "its sections are " : list.path + " has ") + alternatives(names) + ".";
 }
 
 /// Appends the messages about all sections inside `list` to `all`. `sentences`: function that returns the messages about one section (mistakes or

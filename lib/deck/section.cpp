@@ -140,7 +140,7 @@ void state(List& list, std::string_view name, Field& field, const std::string& v
 std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::string& name, std::vector<std::string> above) {
   const std::string path = all.path_of(name);
   const auto* entry = all.given->getEntryPtr(name);
-  if (!entry->isList()) throw UserError(path + " must be a list of keys, but is " + description(*entry) + ".");
+  if (!entry->isList()) throw UserError(path + " must be a section of keys, but is " + description(*entry) + ".");
   const auto& own = Teuchos::getValue<Teuchos::ParameterList>(*entry);
   auto merged = std::make_shared<Teuchos::ParameterList>();
   if (const auto* like = own.getEntryPtr("like")) {
@@ -233,7 +233,7 @@ Section Section::enter(std::string_view name, std::string_view meaning) {
     if (entry->isList())
       inner->given = &Teuchos::getValue<Teuchos::ParameterList>(*entry);
     else
-      outer.mistakes.push_back(inner->path + " must be a list of keys, but is " + description(*entry) + ".");
+      outer.mistakes.push_back(inner->path + " must be a section of keys, but is " + description(*entry) + ".");
   }
   outer.lists.push_back(std::move(inner));
   return Section(std::make_shared<State>(State{outer.lists.back().get(), state_->documenting, state_->units}));

@@ -42,7 +42,7 @@ std::shared_ptr<Teuchos::ParameterList> root_list(const Teuchos::ParameterList& 
 }
 
 std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const std::string& origin) {
-  if (levels_of_xml(text) > 100) throw UserError(origin + ": its elements lie more than 100 deep in each other.");
+  if (levels_of_xml(text) > 100) throw UserError(origin + ": its elements are nested more than 100 deep.");
   std::smatch name;  // name of the outermost list, which the XML reader of Teuchos does not return
   std::regex_search(text, name, std::regex("<ParameterList\\s+name=\"([^\"]{1,60})\""));
   Teuchos::ParameterList whole;

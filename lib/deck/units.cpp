@@ -56,7 +56,7 @@ void UnitOptions::declare(Section& section) {
 Units::Units(const UnitOptions& options) : options_(options) {
   ut_set_error_message_handler(ut_ignore);
   system_ = {ut_read_xml(nullptr), [](void* system) { ut_free_system(static_cast<ut_system*>(system)); }};
-  if (!system_) throw UserError("Units: the library UDUNITS finds no table of units: install it, in Debian the package libudunits2-data.");
+  if (!system_) throw UserError("Units: the library UDUNITS does not find its table of units: install it (package libudunits2-data of Debian).");
   const auto check = [this](const char* key, const std::string& text, const char* si) {
     if (!(ratio(parsed(system_, text), parsed(system_, si)) > 0))
       throw UserError("Units/" + std::string(key) + " must be a number and a unit of " + key + ", for example 1 " + si + ", but is " +
@@ -83,7 +83,7 @@ double Units::number(const std::string& text, std::string_view kind) const {
   const Unit own = parsed(system_, scaled(kind));
   const double factor = ratio(unit, own);
   if (factor > 0) return number * factor;
-  throw std::invalid_argument(own && kind != "1" ? "has a unit of another kind" : std::string(plain));
+  throw std::invalid_argument(own && kind != "1" ? "has a unit of another dimension" : std::string(plain));
 }
 
 std::string Units::in_si(std::string_view kind, double number) const {

@@ -89,7 +89,7 @@ bool same_value(const Teuchos::ParameterEntry& a, const Teuchos::ParameterEntry&
 }
 
 std::string description(const Teuchos::ParameterEntry& entry) {
-  if (entry.isList()) return Teuchos::getValue<Teuchos::ParameterList>(entry).numParams() > 0 ? "a list of keys" : "nothing";
+  if (entry.isList()) return Teuchos::getValue<Teuchos::ParameterList>(entry).numParams() > 0 ? "a section of keys" : "nothing";
   if (const auto text = as_text(entry)) return in_quotes(shortened(*text, 80)) + " (text)";
   if (const auto* texts = held<Teuchos::Array<std::string>>(entry); texts && texts->size() > 12)
     return std::to_string(texts->size()) + " words";
@@ -132,7 +132,7 @@ namespace {
 
 /// Returns the type of an entry in words; empty if no deck can hold this type.
 std::string kind(const Teuchos::ParameterEntry& entry) {
-  if (entry.isList()) return "a list of keys";
+  if (entry.isList()) return "a section of keys";
   if (entry.isType<double>()) return "a number with a point";
   if (entry.isType<int>()) return "a whole number";
   if (entry.isType<bool>()) return "true or false";
@@ -154,7 +154,7 @@ void check_foreign(const std::string& path, const Teuchos::ParameterList& given,
                       (meant.empty() ? "." : "; was " + path + "/" + meant + " meant?"));
     }
     const std::string wanted = kind(*known);
-    if (wanted.empty()) throw UserError(here + " is a parameter that no deck can hold.");
+    if (wanted.empty()) throw UserError(here + " is a parameter of a type that a deck cannot contain.");
     if (wanted != kind(item.second)) throw UserError(here + " must be " + wanted + ", but is " + description(item.second) + ".");
     if (item.second.isList())
       check_foreign(here, Teuchos::getValue<Teuchos::ParameterList>(item.second), Teuchos::getValue<Teuchos::ParameterList>(*known));

@@ -19,7 +19,7 @@ std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& ent
 /// Returns whether both entries have the same value. A whole number equals the same number of type double.
 bool same_value(const Teuchos::ParameterEntry& a, const Teuchos::ParameterEntry& b);
 
-/// Returns the value of an entry as text for a message: `-1`, `"one"` (text), `[1, 2]`, a list of keys.
+/// Returns the value of an entry as text for a message: `-1`, `"one"` (text), `[1, 2]`, a section of keys.
 std::string description(const Teuchos::ParameterEntry& entry);
 
 /// Returns a parameter list as YAML, indented by `depth` steps.

@@ -94,7 +94,7 @@ class Walk {
       const std::string& name = key.Scalar();
       const std::string here = path.empty() ? name : path + "/" + name;
       const auto [first, is_new] = lines.emplace(name, key.Mark().line + 1);
-      if (!is_new) refuse(key, here + " is given a second time; it already stands in line " + std::to_string(first->second));
+      if (!is_new) refuse(key, here + " is set twice; it was first set in line " + std::to_string(first->second));
       add(name, item.second, level == 0 ? "" : here, level, list);
     }
   }
@@ -102,7 +102,7 @@ class Walk {
   /// Adds one key and its value to `list`. `path` is the path of the key in the deck.
   void add(const std::string& name, const YAML::Node& value, const std::string& path, int level, Teuchos::ParameterList& list) {
     if (++nodes_ > most_nodes || level > most_levels)
-      refuse(value, "lists lie more than " + std::to_string(most_levels) + " deep in each other, or hold more than 100,000 values");
+      refuse(value, "sections and sequences are nested more than " + std::to_string(most_levels) + " deep, or hold more than 100,000 values");
     if (value.IsScalar())
       check(value), list.setEntry(name, typed(value));
     else if (value.IsSequence())
@@ -179,7 +179,7 @@ void check_lines(const std::vector<std::string>& lines, const std::string& origi
   if (line.substr(0, indentation).find('\t') != std::string::npos) refuse_line(origin, number, "indent with spaces, not with tabs");
   line = shortened(line.substr(indentation), 80);
   const std::string what = reason == YAML::ErrorMsg::END_OF_MAP ? "the indentation fits none of the lines above" : reason;
-  refuse_line(origin, number, "this is not YAML that can be read (" + what + "): `" + line + "`");
+  refuse_line(origin, number, "this is not valid YAML (" + what + "): `" + line + "`");
 }
 
 /// Returns the tree of the document from yaml-cpp. Throws UserError if the text is not valid YAML.
@@ -191,7 +191,7 @@ YAML::Node document(const std::string& text, const std::string& origin) {
     if (root.IsScalar() || root.IsSequence()) refuse_yaml(lines, origin, root.Mark(), "no key followed by a colon");
     return root;
   } catch (const YAML::DeepRecursion&) {
-    throw UserError(origin + ": lists lie more than " + std::to_string(most_levels) + " deep in each other.");
+    throw UserError(origin + ": sections are nested more than " + std::to_string(most_levels) + " deep.");
   } catch (const YAML::Exception& error) {
     refuse_yaml(lines, origin, error.mark, error.msg);
   }
@@ -221,7 +221,7 @@ std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting)
   try {
     Walk(origin).add(keys.back(), YAML::Load(setting.substr(equals + 1)), setting.substr(0, equals), static_cast<int>(keys.size()), *list);
   } catch (const YAML::Exception&) {
-    throw UserError(origin + ": the value is not YAML that can be read.");
+    throw UserError(origin + ": the value is not valid YAML.");
   }
   return root;
 }

@@ -8,11 +8,11 @@
 namespace tanktread::motion {
 
 std::string Approach::text() const {
-  if (by_shorter_steps) return "nothing was found from the initial shape with Steady/step, but with a tenth of it";
-  if (amplitudes.empty()) return "nothing was found from the initial shape, nor with shorter steps, nor in weaker flows";
+  if (by_shorter_steps) return "no steady shape was found from the initial shape with Steady/step; one was found with a tenth of this step";
+  if (amplitudes.empty()) return "no steady shape was found: not from the initial shape, not with shorter steps, and not in weaker flows";
   std::string all;
   for (const double amplitude : amplitudes) all += (all.empty() ? "" : ", ") + formatted("%.4g", amplitude);
-  return "nothing was found from the initial shape; steady shapes of the flow times " + all +
+  return "no steady shape was found from the initial shape; steady shapes of the flow times " + all +
          (arrived() ? " led to it" : " were found, but none of the full flow");
 }
 

@@ -83,8 +83,8 @@ output::Entries<std::string> evaluation_cost(const Scene& scene) {
     }
     const double ratio = elements(scene) / cost.elements, seconds = cost.seconds * ratio * ratio;
     if (seconds > longest)
-      return {{"evaluation", formatted("not timed, because one velocity evaluation would take some %.0f s, by %.2g s on %.0f elements", seconds,
-                                       cost.seconds, cost.elements)}};
+      return {{"evaluation", formatted("not timed, because one velocity evaluation would take about %.0f s, as follows from %.2g s on %.0f elements",
+                                       seconds, cost.seconds, cost.elements)}};
     break;
   }
   const Cost cost = measured(scene);

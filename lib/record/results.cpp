@@ -171,7 +171,8 @@ std::optional<Resumed> Results::resumed() {
   Resumed resumed = stored_run(saved.checkpoint, directory_);
   last_saved_ = resumed.totals.step;
   if (saved.file.step != last_saved_)
-    throw UserError("--resume " + directory_.string() + ": " + chosen + formatted(" is of step %d, a different step than its name", last_saved_));
+    throw UserError("--resume " + directory_.string() + ": " + chosen +
+                    formatted(" contains step %d, but its name states another step", last_saved_));
   for (const Warning& warning : resumed.totals.warnings.said) warnings_.push_back(warning.sentence);
   write([&] {
     load_record(saved.checkpoint, chosen);

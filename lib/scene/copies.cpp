@@ -194,7 +194,7 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
   for (long trial = 0; static_cast<int>(copies.size()) < number; ++trial) {
     if (trial == most)
       throw UserError(
-          formatted("%s: there is no room for all copies: %zu of %d were placed in %ld trials; give fewer copies, a larger box or ball, or "
+          formatted("%s: not all copies fit: %zu of %d were placed in %ld trials; give fewer copies, a larger box or ball, or "
                     "a smaller `least gap`.",
                     list.c_str(), copies.size(), number, most));
     Vec3 place;

@@ -37,7 +37,7 @@ bool same_space(const spline::Space& one, const spline::Space& other) {
 Net net_of_file(const spline::Space& space, const std::string& name, const std::string& path) {
   const spline::SplineSurface surface = spline::read_iga(name);
   if (!same_space(surface.space, space))
-    throw UserError(path + formatted(": %s contains another spline space, of %d control points; it must be that of the particle, of %d.",
+    throw UserError(path + formatted(": %s contains another spline space than the particle's: it has %d control points, and the particle has %d.",
                                      name.c_str(), surface.space.n_points, space.n_points));
   return surface.net;
 }
@@ -48,7 +48,7 @@ void check_surface(const ParticleScene& scene, const output::Checkpoint& run, co
   Scene of_run(*scene.registry);
   deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
   deck.declare(of_run);
-  if (of_run.particles.size() > 1) throw UserError(key + "run: " + name + " is the run of several particles; it must be that of one.");
+  if (of_run.particles.size() > 1) throw UserError(key + "run: " + name + " is a run of several particles, but must be a run of one particle.");
   const ParticleScene before = of_run.first();
   const auto refuse = [&](const char* what) { throw UserError(key + "run: " + what + " must be the same as in " + name + "."); };
   if (!(before.surface == scene.surface)) refuse("Surface");
@@ -105,7 +105,7 @@ Net initial_shape(const ParticleScene& scene, const Body& body, const output::Ch
   if (const auto map = initial.affine(shape.rotation())) return image(body.rest, shape.center, *map / (own ? 1 : std::cbrt(map->determinant())));
   Net x = before ? shape_of(*before) : net_of_file(body.space, initial.file.value(), key + "file");
   if (x.rows() != body.space.n_points)
-    throw UserError(key + formatted("run: its surface has %d control points; it must have the particle's %d.", static_cast<int>(x.rows()),
+    throw UserError(key + formatted("run: its surface has %d control points, but the particle has %d.", static_cast<int>(x.rows()),
                                     body.space.n_points));
   if (initial.mode) x += initial.mode_amplitude * body.radius * mode_of_run(*before, *initial.mode, x.rows());
   x = (x * initial.turn.transpose()).rowwise() + initial.shift.transpose();

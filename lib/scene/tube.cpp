@@ -234,7 +234,7 @@ void check_spread(const Scene& scene, const surface::TubeWall& wall, const surfa
                                                                          // the disturbance decays over about R_T
   if (wall.length() < needed)
     throw RunFailure(
-        formatted("%s, from x1 = %.4g to %.4g seen from the centroid: with less than R_T = %.4g left at an end, Tube/length = %.4g is "
+        formatted("%s, from x1 = %.4g to %.4g relative to the centroid: with less than R_T = %.4g left at an end, Tube/length = %.4g is "
                   "too short",
                   scene.particles.size() == 1 ? "the particle has become long" : "the particles have drawn apart", x1.minCoeff(), x1.maxCoeff(),
                   wall.radius(), wall.length()));

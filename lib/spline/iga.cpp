@@ -171,8 +171,8 @@ std::string fault_of_closed_surface(const Space& space, const Net& net, const st
       if (!is_new && twice < 0) once = side->second.first, twice = k;
     }
   if (twice >= 0)
-    return "element " + std::to_string(twice) + " runs along one of its sides the same way as element " + std::to_string(once) +
-           ", so one of them is inverted.";
+    return "element " + std::to_string(twice) + " traverses one of its sides in the same direction as its neighbour, element " +
+           std::to_string(once) + ", so one of them is inverted.";
 
   // Line integrals (vectors) of cos(k_i . x) dx and sin(k_i . x) dx, with fixed wave vectors k_i, along all sides without a matching side. They are 0
   // if these sides cancel as curves, which means that both directions cover each curve equally often.
@@ -191,7 +191,7 @@ std::string fault_of_closed_surface(const Space& space, const Net& net, const st
       }
     }
   if (!open.empty() && sum.cwiseAbs().maxCoeff() > 1e-5 * length)
-    return "the surface is not closed: element " + std::to_string(open.begin()->second.first) + " is among those beside a hole.";
+    return "the surface is not closed: element " + std::to_string(open.begin()->second.first) + " is next to a hole.";
   if (const int other = separate_element(space, places); other >= 0)
     return "the surface has separate parts, but a particle has one closed surface: element " + std::to_string(other) +
            " is not connected with element 0.";
@@ -276,11 +276,11 @@ SplineSurface read_iga(const std::filesystem::path& file) {
       out.space.elements.push_back(std::move(e));
     } else if (key != "set" && key != "domain") {
       if (n_elements >= 0 && int(out.space.elements.size()) == n_elements) break;  // other data after the elements
-      in.fail("`" + key + "` is no keyword here; type, nodeN, elemN, node, belem, set and domain are.");
+      in.fail("`" + key + "` is not a keyword of the format; the keywords are type, nodeN, elemN, node, belem, set and domain.");
     }
   }
   if (n_elements < 1 || int(out.space.elements.size()) != n_elements)
-    in.fail("elemN says " + std::to_string(n_elements) + " elements, the file has " + std::to_string(out.space.elements.size()) + ".");
+    in.fail("elemN states " + std::to_string(n_elements) + " elements, but the file contains " + std::to_string(out.space.elements.size()) + ".");
   out.space.n_points = nodes;
   out.net.resize(nodes, 3);
   for (int i = 0; i < nodes; ++i) out.net.row(i) = points[i];

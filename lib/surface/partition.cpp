@@ -97,7 +97,7 @@ Partition partition_of_points(const spline::Space& space, int parts, std::span<c
   const std::size_t n = space.elements.size();
   if (static_cast<std::size_t>(parts) > n)
     throw UserError("A surface of " + std::to_string(n) + " elements cannot be shared among " + std::to_string(parts) +
-                    " ranks; use at most one rank an element.");
+                    " ranks; use at most one rank per element.");
   const std::vector<std::vector<int>> elements_of = elements_of_points(space);
   std::vector<int> owner(n, 0);
   if (parts > 1) {

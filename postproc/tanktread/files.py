@@ -24,7 +24,7 @@ def parsed(path, parse=yaml_text, kind=object):
         raise Mistake(f"{path} is not YAML: {error}") from None
     except (OSError, ValueError) as error:
         raise Mistake(f"{path} cannot be read: {getattr(error, 'strerror', error)}") from None
-    expect(isinstance(found, kind), f"{path} is damaged: it holds no list of keys with values")
+    expect(isinstance(found, kind), f"{path} is damaged: it holds no section of keys with values")
     return found
 
 

@@ -121,8 +121,11 @@ def of_sweep(directory):
     single = {name: values for name, values in columns.items() if values.ndim == 1}
     with opened(directory / "table.h5") as file:
         status = file["status"].asstr()[:]
+        # tables of earlier versions contain no messages
+        messages = file["message"].asstr()[:] if "message" in file else numpy.full(len(status), "")
     numbers = [name for name, values in single.items() if values.dtype.kind in "fiu"]
-    rows = [[*(labels[name] for name in single), "status"], *zip(*(one.tolist() for one in single.values()), status)]
+    rows = [[*(labels[name] for name in single), "status", "message"],
+            *zip(*(one.tolist() for one in single.values()), status, messages)]
     scatter = {"keys": [key for key in keys if key in numbers], "columns": [one for one in numbers if one not in keys],
                "labels": labels, "values": {name: _list(single[name]) for name in numbers}}
     facts = {"runs": len(status), "done": int((status == "done").sum()), "keys": ", ".join(keys)}
@@ -139,7 +142,8 @@ def of_fit(directory):
     for law, fit in fits.items():
         for name, one in fit["unknown"].items():
             found = [one["value"], one["error"]] if numpy.isfinite(one["error"]) else ["not determined", ""]
-            rows.append([law, name, *found, one.get("at bound", ""), *(fit[key] for key in of_law)])
+            label = f"{name}, {one['unit']}" if "unit" in one else name
+            rows.append([law, label, *found, one.get("at bound", ""), *(fit[key] for key in of_law)])
     picture = base64.b64encode((directory / "fit.png").read_bytes()).decode()
     return {"title": f"fit {directory.resolve().name}", "facts": {"best law": next(iter(fits))}, "picture": picture,
             "sections": [("What the data say", "text", parsed(directory / "fit.txt", str)),

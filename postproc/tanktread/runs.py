@@ -6,6 +6,7 @@ import functools
 import hashlib
 import json
 import math
+import numbers
 import os
 import pathlib
 import re
@@ -16,7 +17,10 @@ import sys
 import time
 from shlex import quote as quoted
 
-from .files import Named, parsed
+import numpy
+import yaml
+
+from .files import Named, parsed, yaml_text
 from .mistakes import Mistake, expect
 from .results import Run
 
@@ -52,8 +56,16 @@ def deck_at(name):
     return found.resolve()
 
 
+def _plain(value):
+    """Returns a value with lists instead of arrays of numpy and tuples, and numbers of Python instead of numpy's."""
+    if isinstance(value, (numpy.ndarray, numpy.generic)):
+        return value.tolist()
+    return [_plain(one) for one in value] if isinstance(value, (list, tuple)) else value
+
+
 def text_of(value):
-    """Returns a value as text for the command line."""
+    """Returns a value as text for the command line. Arrays of numpy and tuples are written as lists."""
+    value = _plain(value)
     text = f"{value:.15g}" if isinstance(value, float) else str(value)
     return text.lower() if isinstance(value, bool) else text
 
@@ -67,9 +79,9 @@ def settings_of(words):
 
 def run(where, settings=None):
     """Returns the Run of a results directory or of a deck (a .yaml file). A deck is run first if it has no results.
-    With settings {"Section/key": value}, the deck is run with these keys changed; its directory below `results` is
-    named by the deck and a checksum of deck and settings. If `where` is a Run, it is returned. Raises Mistake if the
-    run fails."""
+    With settings {"Section/key": value}, the deck is run with these keys changed; a value may be an array. The
+    directory of this run below `results` is named by the deck and a checksum of deck and settings. If `where` is a Run,
+    it is returned. Raises Mistake if the run fails."""
     if isinstance(where, Run):
         return where
     if settings:
@@ -108,7 +120,7 @@ def _files_of(value, folders):
     found is used, or run.h5 if the name is a results directory."""
     for one in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
         yield from _files_of(one, folders)
-    if value and isinstance(value, (str, pathlib.Path)):
+    if isinstance(value, (str, pathlib.Path)) and str(value):
         places = (folder / value / part for folder in folders for part in ("", "run.h5"))
         yield from [place for place in places if os.path.isfile(place)][:1]
 
@@ -131,7 +143,8 @@ class Outcome:
     """Outcome of one run of a Study. One of these is true: `done` (the run was completed), `failed`, `refused` (the
     deck has a mistake), or `slow` (stopped at the time limit or by a signal). `stopped`: true if stopped by a signal.
     `message`: last line on standard error. `seconds`: wall time. `processor_seconds`: processor time of all ranks.
-    `limit`: the limit at which the run was stopped; infinite if there was none.
+    Both times include the earlier parts of a resumed run. `limit`: the limit at which the run was stopped; infinite if
+    there was none.
     `series`: series of the run. `final`, `counts`, `phases`: sections of its summary."""
 
     def __init__(self, directory, note):
@@ -169,12 +182,26 @@ class Outcome:
         return 0.0
 
 
+def _earlier(directory, before, ranks):
+    """Returns the wall time and the processor time that a run has taken before it is resumed. `before`: its Outcome. If
+    this is None, because the study was killed during the run, both times follow from the series `wall_seconds`."""
+    if before:
+        return {"seconds": before.seconds, "processor_seconds": before.processor_seconds}
+    seconds = 0.0
+    with contextlib.suppress(Mistake, IndexError):
+        seconds = float(Run(directory).series["wall_seconds"][-1])
+    return {"seconds": seconds, "processor_seconds": ranks * seconds}
+
+
 class Study:
     """Runs of decks with changed keys. Their results are kept in `directory`; a run with the same decks and settings is
-    not repeated. `limit`: largest processor time of a run in seconds (None: no limit). `jobs`: number of simultaneous
-    runs. `fresh`: if true, existing results are not used."""
+    not repeated. `limit`: largest processor time of a run in seconds (None: no limit); it does not count
+    the earlier parts of a resumed run. The limit of a run with several ranks holds for each rank and is rounded up to
+    whole seconds. `jobs`: number of simultaneous runs. `fresh`: if true, existing results are not used."""
 
     def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False):
+        expect(isinstance(jobs, numbers.Integral) and jobs > 0, f"jobs must be a whole number above 0, but is {jobs}")
+        expect(limit is None or 0 < limit < math.inf, f"limit must be a number above 0, but is {limit}")
         self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)
         self.limit, self.jobs, self.fresh = limit, jobs, fresh
         self._made, self._running = set(), set()
@@ -199,7 +226,9 @@ class Study:
         program, made = launcher + [str(self.program), "--quiet"], None
         # If results exist without outcome.json, the study was killed during the run.
         if (where / "run.h5").exists() and unfinished and not self.fresh:
+            earlier = _earlier(where, before, ranks)
             made = self._make(program + ["--resume", str(where)])
+            made |= {name: made[name] + seconds for name, seconds in earlier.items()}
         if made is None or made["code"] == 2:  # not resumed, or there is no checkpoint
             shutil.rmtree(where, ignore_errors=True)
             where.mkdir(parents=True)
@@ -216,14 +245,14 @@ class Study:
         bounds = ["setpriv", "--pdeathsig", "KILL"]  # a run must not outlive the study that made it
         bounds += ["prlimit", f"--cpu={math.ceil(self.limit)}"] if self.limit else []
         with subprocess.Popen(bounds + words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                              env=os.environ | ENVIRONMENT) as process:
+                              env=os.environ | ENVIRONMENT, preexec_fn=self._start_timer) as process:
             self._running.add(process)
             said = process.stderr.read().strip().splitlines()
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = code = os.waitstatus_to_exitcode(status)
             self._running.discard(process)
         killed = _signal(code)
-        if self.limit and killed in (signal.SIGKILL, signal.SIGXCPU):
+        if self.limit and killed in (signal.SIGKILL, signal.SIGXCPU, signal.SIGPROF):
             code, said = None, [f"stopped after {self.limit:g} s of processor time"]
         elif killed:
             said.append(f"killed by signal {killed}")
@@ -231,14 +260,21 @@ class Study:
                 "seconds": time.monotonic() - start,
                 "processor_seconds": usage.ru_utime + usage.ru_stime, "command": " ".join(map(quoted, words))}
 
+    def _start_timer(self):
+        """Starts the timer that ends a run of one rank at the limit. It is kept by exec, and counts fractions of a
+        second, which prlimit does not. It is not inherited by the ranks that mpirun starts."""
+        if self.limit:
+            signal.setitimer(signal.ITIMER_PROF, self.limit)
+
     @staticmethod
     def name(decks, settings, ranks=1):
         """Returns the name of a run's directory: the name of the last deck, and a checksum of the settings, the decks,
         and the content of all files that they name."""
-        texts = [parsed(deck_at(deck), str) for deck in decks]
-        named, folders = [dict(sorted(settings.items()))], [pathlib.Path(), *(deck_at(deck).parent for deck in decks)]
-        with contextlib.suppress(Mistake):  # the program refuses a deck that is not YAML
-            named += [parsed(deck_at(deck)) for deck in decks]
+        paths = [deck_at(deck) for deck in decks]
+        texts = [parsed(path, str) for path in paths]
+        named, folders = [dict(sorted(settings.items()))], [pathlib.Path(), *(path.parent for path in paths)]
+        with contextlib.suppress(yaml.YAMLError, ValueError):  # the program refuses a deck that is not YAML
+            named += [yaml_text(text) for text in texts]
         files = [hashlib.sha1(path.read_bytes()).hexdigest() for path in _files_of(named, folders)]
         text = json.dumps([texts, {key: text_of(value) for key, value in sorted(settings.items())}, ranks, *files])
         return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]

@@ -81,9 +81,10 @@ def stiffness(settings):
 
 
 def largest_step(study, settings, scheme):
-    """Returns the largest fixed step of a scheme, and how the search ended (studies.edge). A step counts as stable if
-    the run is completed and its D and energy agree within 5 % with a run with controlled steps. The run is forty times
-    as long as the explicit stability limit, so that instabilities can grow. The bisection starts around this limit."""
+    """Returns the largest fixed step of a scheme, or the smallest step that was tried if it is too large, and how the
+    search ended (studies.edge). A step counts as stable if the run is completed and its D and energy agree within 5 %
+    with a run with controlled steps. The run is forty times as long as the explicit stability limit, so that
+    instabilities can grow. The bisection starts around this limit."""
     limit = 2.51 / stiffness(settings)
     settings = settings | {"Time/final time": 40 * limit, "Output/interval": 40 * limit}
     reference = study.run(SHEAR, settings | {"Time/scheme": "tr-bdf2"})
@@ -95,7 +96,8 @@ def largest_step(study, settings, scheme):
         return outcome.done and all(abs(outcome.final[name] / reference.final[name] - 1) < 0.05
                                     for name in ("taylor_inertia", "energy"))
 
-    return studies.edge(follows, (0.1 if scheme == "crank-nicolson" else 0.3) * limit, 10 * limit, 1.1)
+    low, high, how = studies.edge(follows, (0.1 if scheme == "crank-nicolson" else 0.3) * limit, 10 * limit, 1.1)
+    return (high if how == "fails from here" else low), how
 
 
 def largest_steps(study, given, axes):

@@ -42,7 +42,7 @@ def what_is_no_channel_is_refused():
     numpy.savetxt("eight.csv", numpy.column_stack([numpy.sin(turns), numpy.sin(2 * turns)]), delimiter=",")
     _refused(["Channel/outline", "eight.csv", "crosses itself"], "Channel/section=file", "Channel/outline=eight.csv")
     circle = numpy.column_stack([numpy.cos(turns), numpy.sin(turns)])
-    for name, rows, words in (("twice", circle[[*range(24), 0, 0]], ["line 25", "the point of line 1 stands"]), ("open", 1e-6 * circle[:16], ["open", "e-06"])):
+    for name, rows, words in (("twice", circle[[*range(24), 0, 0]], ["line 25", "the point of line 1 is repeated"]), ("open", 1e-6 * circle[:16], ["open", "e-06"])):
         numpy.savetxt(f"{name}.csv", rows, delimiter=",")
         _refused([f"{name}.csv", *words], "Channel/section=file", f"Channel/outline={name}.csv")
     numpy.savetxt("aside.csv", circle + [0.5, 0], delimiter=",")

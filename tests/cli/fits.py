@@ -209,7 +209,7 @@ def mistakes_are_one_sentence():
                           ({"experiments": {"a": {"data": [bare]}}, "unknown": {"Membrane/capillary number": {"known": 0.3, "error": 0.1}}},
                            "Membrane/capillary number has an error, but the data have none"),
                           ({"experiments": {"a": {"data": [{"outline": "circle.csv", "scale": 1, "scale error": 0.1}]}}}, "the scale of a: data has an error"),
-                          ({"set": 3}, "set must be a list of keys"), ({"laws": {"one": 3}}, "the law one must be"), ({"next": {"A/b": 3}}, "a list of values"),
+                          ({"set": 3}, "set must be a section of keys"), ({"laws": {"one": 3}}, "the law one must be"), ({"next": {"A/b": 3}}, "a list of values"),
                           ({"experiments": {"a": {"data": [datum | {"value": "much"}]}}}, "much is not a number"),
                           ({"unknown": {"Membrane/capillary numbr": 0.3}}, "capillary number meant"),
                           ({"set": {"Time/minimum step": 0.9, "Time/initial step": 0.95, "Membrane/capillary number": 1e-3}, "unknown": {"Particle/radius": 1.0}},

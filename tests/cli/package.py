@@ -3,6 +3,7 @@
 # Tests of the Python package: installation, exact surfaces, conversion for pandas, xarray, meshio and VTK, and all
 # figures.
 import importlib.util
+import json
 import os
 import pathlib
 import re
@@ -244,6 +245,73 @@ def a_run_with_one_row_is_drawn_as_dots():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         figures.animation("steady", frame=0)
+
+
+def _mistake(function):
+    """Returns the sentence of the Mistake that a function raises."""
+    try:
+        function()
+    except tanktread.Mistake as mistake:
+        return str(mistake)
+    raise AssertionError("no Mistake")
+
+
+def settings_may_be_arrays_of_numpy():
+    path, axes = deck(CAPSULE), [1.0, 1.0, 0.8]
+    found = [tanktread.run(path, {"Particle/shape": "spheroid", "Particle/semi-axes": one, "Surface/elements per side": three}).directory
+             for one, three in ((numpy.array(axes), numpy.array(3)), (tuple(axes), numpy.int64(3)), (axes, 3), ([*map(numpy.float64, axes)], 3))]
+    check(len(set(found)) == 1 and tanktread.run(found[0]).value("Particle/semi-axes") == axes, found)
+    check(tanktread.text_of(numpy.array([[True, False]])[0, 0]) == "true" and tanktread.text_of(numpy.float64(0.1)) == "0.1", "a logical value and a number")
+    check("Particle/semi-axes" in _mistake(lambda: tanktread.run(path, {"Particle/semi-axes": numpy.eye(3)})), "a matrix")
+
+
+def wrong_arguments_of_the_package_are_one_sentence():
+    from tanktread.studies import fit, sweep
+    deck("deck: deck.yaml\nrecord: [area]\n", "study.yaml")
+    for jobs in 0, -1, 1.5, "2", None:
+        check(_mistake(lambda: tanktread.Study(jobs=jobs)) == f"jobs must be a whole number above 0, but is {jobs}", jobs)
+    for study in sweep, fit:
+        check("jobs must be a whole number above 0, but is 0" in _mistake(lambda: study.run("study.yaml", jobs=0)), "of a study")
+    check(tanktread.Study(jobs=numpy.int64(2)).jobs == 2, "a number of numpy")
+    for name, draw in figures.FIGURES.items():
+        check(name in _mistake(lambda: draw([])), name)
+    check(_mistake(lambda: figures.shape([])) == "the figure `shape` needs at least one run, but is given an empty list", "no runs")
+    check(_mistake(lambda: figures.animation(["one", "two"])) == "the figure `animation` needs one run, but is given a list", "several runs")
+
+
+def the_processor_time_of_a_resumed_run_includes_its_earlier_parts():
+    """The first part is given a processor time of 1000 s in its record. The last part follows a part without a record,
+    as a study that is killed leaves it."""
+    path = deck(CAPSULE.replace("per side: 3", "per side: 6").replace("final time: 0.2", "scheme: bs3, final time: 1000"))
+
+    def part():
+        return tanktread.Study(directory="runs").run(path, {"Output/wall-clock limit": 0.3})
+
+    note = part().directory / "outcome.json"
+    note.write_text(json.dumps(json.loads(note.read_text()) | {"processor_seconds": 1000.0, "seconds": 2000.0}))
+    resumed = part()
+    check("--resume" in resumed.command and 1000 < resumed.processor_seconds < 1100 and 2000 < resumed.seconds < 2100, resumed.processor_seconds, resumed.seconds)
+    before = resumed.series["wall_seconds"][-1]
+    note.unlink()
+    resumed = part()
+    check("--resume" in resumed.command and before < resumed.processor_seconds < 100, resumed.processor_seconds, before)
+
+
+def the_name_of_a_run_is_found_by_reading_each_deck_once():
+    paths, read, opened = [deck(CAPSULE), deck("Tanktread: { Time: { final time: 0.1 } }\n", "other.yaml")], [], pathlib.Path.read_text
+    with mock.patch.object(pathlib.Path, "read_text", lambda path, **more: read.append(path.name) or opened(path, **more)):
+        first = tanktread.Study.name(paths, {})
+    check(read == ["deck.yaml", "other.yaml"], read)
+    deck("Tanktread: { Time: { final time: 0.2 } }\n", "other.yaml")
+    check(tanktread.Study.name(paths, {}) != first, "a deck with another content")
+    deck("Tanktread: [", "other.yaml")
+    check(tanktread.Study.name(paths, {}).startswith("other_"), "a deck that is not YAML")
+
+
+def the_command_below_a_chart_starts_from_the_source_directory():
+    from tanktread.studies import common
+    said = common.command_of(SOURCE / "tests/benchmark/atlas.py", "--map", "fixed step")
+    check(said == "tests/benchmark/atlas.py --map 'fixed step'" and (SOURCE / said.split()[0]).is_file(), said)
 
 
 def figures_of_experiments_are_drawn_from_their_runs():

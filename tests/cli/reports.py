@@ -138,6 +138,8 @@ def a_sweep_is_a_table_and_a_plot():
     _script("report", "results/study", "-o", "page.html")
     content = _content("page.html")
     check(content["scatter"]["keys"] == ["Membrane/capillary number"] and len(content["scatter"]["values"]["D"]) == 3, content["scatter"])
+    rows = [dict(zip(content["sections"][0][2][0], row)) for row in content["sections"][0][2][1:]]
+    check([row["status"] for row in rows] == ["done", "done", "refused"] and "Membrane/capillary number" in rows[2]["message"] and not rows[0]["message"], rows)
     told = _used("page.html")
     check(told is None or {"Membrane/capillary number", "A, length²"} <= set(told["texts"]), told)
     check(told is None or told["value"].count(", ") == 1, told)
@@ -154,6 +156,17 @@ def a_fit_is_a_picture_and_a_table():
     check(row["unknown"] == "Membrane/capillary number" and row.get("at bound") == "to", row)
     told = _used("page.html")
     check(told is None or (told["pictures"][0] > 300 and "Membrane/capillary number" in told["cells"]), told)
+
+
+def unknowns_of_a_fit_have_the_units_of_the_deck():
+    deck(DECK[:DECK.index("  Expect")].replace("  Flow:", "  Units: { length: 1 um, time: 1 ms, force: 1 nN }\n  Flow:").replace("capillary number: 0.3", "shear modulus: 1"))
+    deck("deck: deck.yaml\nset: {Flow/viscosity: 0.2, Time/final time: 0.2}\nunknown: {Membrane/shear modulus: {start: 0.9}}\n"
+         "experiments: {one: {data: [{series: taylor_inertia, value: 0.05, error: 0.01}, {series: length_x1, value: 2.1, error: 0.01}]}}\n", "experiment.yaml")
+    _script("fit", "experiment.yaml", "--jobs", "1")
+    _script("report", "results/experiment", "-o", "page.html")
+    row = dict(zip(*_content("page.html")["sections"][1][2][:2]))
+    check(row["unknown"] == "Membrane/shear modulus, nN/µm", row)
+    check(yaml.safe_load(pathlib.Path("results/experiment/fit.yaml").read_text())["the deck's law"]["unknown"]["Membrane/shear modulus"]["unit"] == "nN/µm", "fit.yaml")
 
 
 def what_is_no_result_is_said():

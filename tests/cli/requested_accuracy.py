@@ -156,6 +156,7 @@ def a_signal_in_a_search_stops_the_levels_and_the_finished_ones_are_published():
     said = process.communicate()[1]
     check(process.returncode == 4 and "was stopped; --resume levels continues" in said, process.returncode, said)
     check(len(summary("levels")["accuracy"]["levels"]) >= 2, summary("levels")["accuracy"])
+    check(summary("levels")["status"] == "stopped: by a signal", summary("levels")["status"])
 
 
 def a_plain_run_does_not_become_a_ladder():
@@ -173,6 +174,12 @@ def the_wall_clock_limit_is_honoured_and_said():
                  code=4, timeout=60)
     check("wall-clock limit" in result.stderr or "was stopped" in result.stderr, result.stderr)
     check("--resume short continues the run" in result.stderr and "--resume short/level" not in result.stderr, result.stderr)
+    run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/levels=3", "--quiet", "--output", "few", code=1)
+    check(summary("few")["status"] == "done", summary("few")["status"])
+    run("--resume", "few", "--set", "Accuracy/levels=8", "--set", "Accuracy/wall-clock limit=1e-6", "--quiet", code=4)
+    check(summary("few")["status"] == "stopped: at the wall-clock limit" and summary("few/level_2")["status"] == "done", summary("few")["status"])
+    run("--resume", "few", "--set", "Accuracy/levels=4", "--set", "Accuracy/wall-clock limit=600", "--quiet", code=1)
+    check(summary("few")["status"] == "done" and summary("few")["accuracy"]["levels"][-1]["level"] == 3, summary("few")["status"])
     said = run("deck.yaml", "--accuracy", "taylor_inertia=1%", "--set", "Accuracy/wall-clock limit=1e-6", "--check", "--quiet", code=4).stderr
     check(len(said.splitlines()) == 1 and "wall-clock limit" in said, said)
 

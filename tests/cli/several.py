@@ -433,7 +433,7 @@ Tanktread:
 def mistakes_of_copies_are_named():
     deck("0, 0, 0\n1.5, 0\n", "short.csv")
     for how, words in (
-        ("number: 500, box: [4.0, 4.0, 4.0]", ["Particles/many/copies", "no room", "of 500"]),
+        ("number: 500, box: [4.0, 4.0, 4.0]", ["Particles/many/copies", "not all copies fit", "of 500"]),
         ("number: 5", ["box", "ball", "Domain"]),
         ("volume fraction: 0.1, box: [2504.0, 2504.0, 2504.0]", ["Particles/many/copies", "at most 1000000", "memory", "29985"]),
         ("lattice: [1000, 1001, 1], spacing: [1.0, 1.0, 1.0]", ["Particles/many/copies", "at most 1000000", "1001000"]),
@@ -454,7 +454,7 @@ def mistakes_of_copies_are_named():
 def mistakes_are_named():
     deck(MIXED)
     for setting, words in (
-        ("Particles/small/center=[1.5, 0, 0]", ["Particles/drop and Particles/small overlap", "about ["]),
+        ("Particles/small/center=[1.5, 0, 0]", ["Particles/drop and Particles/small overlap", "near ["]),
         ("Particles/small/center=[1.5, 0.0, -0.4]", ["Particles/small is inside of Particles/drop"]),
         ("Particles/small/like=drp", ["Particles/small/like", "drp"]),
         ("Particles/capsule/like=small", ["/like must be", "does not lead back"]),

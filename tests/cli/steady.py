@@ -64,7 +64,7 @@ Tanktread:
   Surface: {elements per side: 4}
 """
     found = run(deck(text + "  Steady: {}\n"), "--output", "steps").stdout
-    check("with a tenth of it" in found, found)
+    check("with a tenth of this step" in found, found)
     run(deck(text + "  Time: {final time: 20, steady tolerance: 1.0e-5}\n"), "--output", "in_time", "--quiet")
     pairs = [(series(name, "length_x1")[-1], series(name, "velocity_x1")[-1]) for name in ("steps", "in_time")]
     check(all(abs(a / b - 1) < 1e-4 for a, b in zip(*pairs)), pairs)  # ten times the steady tolerance

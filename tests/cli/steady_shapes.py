@@ -125,10 +125,10 @@ def a_branch_that_is_stopped_keeps_its_points():
     said["signal"] = process.communicate()[1]
     check(process.returncode == 4, process.returncode, said)
     for name, reason in ("clock", "stopped: at the wall-clock limit"), ("signal", "stopped: by a signal"):
-        check(summary(name)["status"] == reason and f"what was reached is in {name}" in said[name], summary(name)["status"], said[name])
+        check(summary(name)["status"] == reason and f"the results so far are in {name}" in said[name], summary(name)["status"], said[name])
         check(series(name, "parameter")[-1] > 0.02, series(name, "parameter"))
     said = run(words[0], "--set", "Output/wall-clock limit=1e-9", "--output", "none", "--quiet", code=4).stderr
-    check("stopped at the wall-clock limit before there was anything to keep" in said, said)
+    check("stopped at the wall-clock limit before any results were written" in said, said)
 
 
 def a_branch_coarsens_its_mesh_at_every_point():
@@ -175,7 +175,7 @@ Tanktread:
   Continuation: {parameter: Particle/radius, to: 1.4}
 """
     said = run(deck(text), "--output", "refused", "--quiet", code=3).stderr
-    check("set Adaptation/enabled to false" in said and "what was reached is in refused" in said, said)
+    check("set Adaptation/enabled to false" in said and "the results so far are in refused" in said, said)
     run(deck(text), "--output", "fixed", "--quiet", "--set", "Adaptation/enabled=false")
     sizes = series("fixed", "volume") / series("fixed", "parameter")**3
     check(abs(sizes / sizes[0] - 1).max() < 1e-5, sizes)  # tolerance: search
@@ -244,7 +244,7 @@ def a_parity_needs_a_symmetry_and_signs():
 
 def above_the_fold_nothing_is_found_and_what_was_reached_is_kept():
     said = run(deck(DECK), "--set", "Membrane/capillary number=0.3", "--set", "Steady/iterations=20", "--output", "none", "--quiet", code=3).stderr
-    check(len(said.splitlines()) == 1 and "not found" in said and "what was reached" in said, said)
+    check(len(said.splitlines()) == 1 and "not found" in said and "the results so far" in said, said)
     check(summary("none")["status"].startswith("failed"), summary("none")["status"])
     check(len(series("none", "taylor_surface")) == 1, "the row of what was reached")
 

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from unittest import mock
 
 import h5py
 import numpy
@@ -57,6 +58,30 @@ def what_stays_in_a_constriction_is_told_from_what_creeps():
     check(critical.stays(t[:50], 0 * t[:50], 1, 1) is None, "nobody looked for long enough")
     refused = package("critical", "deck.yaml", "--between", "2", "1", "--past", "0")
     check(refused.returncode == 2 and "ascend" in refused.stderr, refused.stderr)
+
+
+def both_ends_of_a_critical_value_were_run():
+    from tanktread.studies import critical
+    runs = []
+    with mock.patch.object(critical, "stays_at", lambda parsed, study, value: runs.append(value) or value < 1.2):
+        found = package("critical", "deck.yaml", "--between", "1", "2", "--past", "0", "--within", "0.1")
+        critical.common.edge(lambda value: critical.stays_at(None, None, value), 1, 2, 1.1)
+        low, high = (f"{end:.5g}" for end in (max(value for value in runs if value < 1.2), min(value for value in runs if value > 1.2)))
+        check(found.stdout == f"critical Flow/mean velocity: {low} (stays) to {high} (passes)\n", found.stdout, found.stderr, runs)
+        for ends, said in (("1.3", "2"), "the particle passes at 1.3: give --between a smaller"), (("1", "1.1"), "the particle stays at 1.1: give --between a larger"):
+            found = package("critical", "deck.yaml", "--between", *ends, "--past", "0")
+            check(found.returncode == 2 and said in found.stderr, found.stderr)
+
+
+def the_atlas_finds_the_largest_step_of_a_scheme():
+    with mock.patch.object(sys, "path", [str(SOURCE / "tests/benchmark"), *sys.path]):
+        from edges_of_methods import largest_step
+    limit, steps = 2.51 / (2 * 4 / 0.3), []
+    for stable, expected in (1.5, "edge"), (20, "holds to here"), (0.1, "fails from here"):
+        end = {"taylor_inertia": 1, "energy": 1}
+        made = mock.Mock(run=lambda deck, given: mock.Mock(done=not steps.append(step := given.get("Time/fixed step", 0)) and step <= stable * limit, final=end))
+        step, how = largest_step(made, {"Surface/elements per side": 4}, "bs3")
+        check(how == expected and step in steps and (expected != "edge" or step <= 1.5 * limit < 1.1 * step), stable, step / limit, how)
 
 
 def tumbling_is_told_from_treading_by_shape_and_membrane():
@@ -137,7 +162,7 @@ curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}
     deck("deck: deck.yaml\nmotion: rolling\nalong: {key: a, from: 1, to: 2, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
     refused = package("phases", "wrong.yaml")
     check(refused.returncode == 2 and "shear or capillary, not rolling" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
-    for words, said in (("begin: half", "half is not a number"), ("begin: 2", "less than 1"), ("literature: {paper: [1, 2]}", "rows of"), ("set: 3", "list of keys")):
+    for words, said in (("begin: half", "half is not a number"), ("begin: 2", "less than 1"), ("literature: {paper: [1, 2]}", "rows of"), ("set: 3", "section of keys")):
         deck(f"deck: deck.yaml\nalong: {{key: a, from: 1, to: 2, within: 1.1}}\nacross: {{b: [1]}}\ncurves: {{one: {{}}}}\n{words}\n", "wrong.yaml")
         refused = package("phases", "wrong.yaml")
         check(refused.returncode == 2 and said in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
@@ -315,6 +340,19 @@ def a_run_that_reached_its_limit_is_made_again_with_a_larger_one():
     check(ends == ["stopped", "stopped", "done"] and times[0] == times[1], ends, times)
 
 
+def a_limit_is_not_rounded_to_seconds():
+    path = deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "scheme: bs3, final time: 400.0"))  # twenty processor seconds
+    for limit in 0.4, 1.2:
+        ended = tanktread.Study(limit=limit).run(path, {})
+        check(ended.status == "stopped" and ended.message == f"stopped after {limit} s of processor time", ended.message)
+        # tolerance: the kernel counts processor time in ticks, and stops a run later if the processor is shared
+        check(limit - 0.1 < ended.processor_seconds < (limit + numpy.ceil(limit)) / 2, ended.processor_seconds)
+    for limit, words in ((-1, "but is -1"), (0, "but is 0"), (float("inf"), "but is inf")):
+        deck(f"deck: deck.yaml\nrecord: [area]\nlimit: {str(limit).replace('inf', '.inf')}\n", "study.yaml")
+        said = _sweep("study.yaml", code=2)
+        check("limit must be a number above 0" in said and words in said and said.count("\n") == 1, said)
+
+
 def a_sweep_that_is_killed_goes_on():
     deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "final time: 8.0"))
     deck(STUDY, "study.yaml")
@@ -342,8 +380,8 @@ def mistakes_are_one_sentence():
                         ("deck: deck.yaml\nkeys: {}", "keys is not known"), ("deck: deck.yaml\nrecord: {D: {take: most}}", "take most"),
                         ("deck: deck.yaml\nrecord: {D: {series: a, take: mean, at: 1}}", "take or at"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1}}", "from, to and number"), ("a: [", "not YAML"),
-                        ("deck: 3", "but 3 is none"), ("deck: deck.yaml\nrecord: [a]\nset: 3", "set must be a list of keys"),
-                        ("deck: deck.yaml\nrecord: [a]\ngrid: [A/b]", "grid must be a list of keys"), ("deck: deck.yaml\nrecord: D", "record must be"),
+                        ("deck: 3", "but 3 is none"), ("deck: deck.yaml\nrecord: [a]\nset: 3", "set must be a section of keys"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: [A/b]", "grid must be a section of keys"), ("deck: deck.yaml\nrecord: D", "record must be"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: x, to: 2, number: 3}}", "x is not a number"),
                         ("deck: deck.yaml\nrecord: [a]\nrandom: {number: -1, keys: {A/b: [1]}}", "a whole number above 0"),
                         ("deck: deck.yaml\nrecord: [a]\nranks: 0", "a whole number above 0"), ("deck: deck.yaml\nrecord: [a]\nlimit: x", "limit: x is not")):

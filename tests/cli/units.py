@@ -91,7 +91,7 @@ def values_with_units_give_the_same_as_their_numbers():
         check(abs(length**3 * series(name, "volume") - series("plain", "volume")).max() < 1e-10, name)
         check(summary(name)["final in SI"]["volume"].endswith("e-17 m^3"), summary(name)["final in SI"]["volume"])
     refused(["Flow/shear rate", "section Units", "100 1/s"], deck(said.replace("  Units: {%s}\n", "")), mistakes=8)
-    refused(["Particle/radius", "another kind", "2 uN"], deck(said % ""), "--set", "Particle/radius=2 uN")
+    refused(["Particle/radius", "another dimension", "2 uN"], deck(said % ""), "--set", "Particle/radius=2 uN")
     refused(["Particle/center", "1e999"], deck(said.replace("[0, 0, 1 um]", "[1e999, 0, 1 um]") % ""))
     refused(["Units/force", "unit of force", "1 kg"], deck(said % "force: 1 kg"))
     refused(["Units/length", "unit of length", "..."], deck(said % f"length: {'7' * 1000} um"))

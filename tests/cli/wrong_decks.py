@@ -63,7 +63,7 @@ SETTINGS = [
     (["Particle/center=[0, 1]"], ["Particle/center", "three numbers", "[0, 1]"]),
     (["Flow/type=linear", "Flow/gradient=[1, 2, 3]"], ["Flow/gradient", "nine numbers", "[1, 2, 3]"]),
     (["Membrane/law=3"], ["Membrane/law", "neo-Hookean", "3"]),
-    (["Time/final time/value=3"], ["Time/final time", "a number", "a list"]),
+    (["Time/final time/value=3"], ["Time/final time", "a number", "a section of keys"]),
     (["Quadrature/far precision=single", "Quadrature/tolerance=1e-8"], ["Quadrature/far precision", "1e-08", "`double`"]),
     (["Quadrature/tolerance=nan"], ["Quadrature/tolerance", "a number", "nan"]),
     # values outside their rule
@@ -171,18 +171,18 @@ SETTINGS = [
     (["Solvers/Belos/Num Blocks=30", "Solvers/Belos/Output Style=0"], ["Solvers/Belos/Output Style", "cannot be set"]),
     (["Solvers/iterative solver=GCRODR", "Solvers/Belos/Output Frequency=-1"], ["Solvers/Belos/Output Frequency", "cannot be set"]),
     # numbers for lists and lists for numbers, in lists of others
-    (["Solvers/Belos/Num Blocks/Verbosity=1"], ["Solvers/Belos/Num Blocks must be a whole number", "a list of keys"]),
-    (["Solvers/Belos/Orthogonalization/Foo/Bar=1"], ["Solvers/Belos/Orthogonalization must be text", "a list of keys"]),
-    (["Solvers/Belos/Output Stream/Foo=1"], ["Solvers/Belos/Output Stream", "no deck can hold"]),
-    (["Solvers/Amesos2/Transpose/Foo=1"], ["Solvers/Amesos2/Transpose must be true or false", "a list of keys"]),
-    (["Solvers/Belos=1"], ["Solvers/Belos must be a list of keys", "1"]),
+    (["Solvers/Belos/Num Blocks/Verbosity=1"], ["Solvers/Belos/Num Blocks must be a whole number", "a section of keys"]),
+    (["Solvers/Belos/Orthogonalization/Foo/Bar=1"], ["Solvers/Belos/Orthogonalization must be text", "a section of keys"]),
+    (["Solvers/Belos/Output Stream/Foo=1"], ["Solvers/Belos/Output Stream", "a deck cannot contain"]),
+    (["Solvers/Amesos2/Transpose/Foo=1"], ["Solvers/Amesos2/Transpose must be true or false", "a section of keys"]),
+    (["Solvers/Belos=1"], ["Solvers/Belos must be a section of keys", "1"]),
     (["Time/nonlinear solver=newton-krylov", "Solvers/NOX/Nonlinear Solver/Foo=1"], ["Solvers/NOX/Nonlinear Solver", "cannot solve"]),
     (["Time/nonlinear solver=newton-krylov", "Solvers/NOX/Direction=1"], ["Solvers/NOX/Direction, which is 1", "cannot solve"]),
     (["Time/nonlinear solver=anderson", "Solvers/NOX/Anderson Parameters/Storage Depth/Foo=1"], ["Solvers/NOX/Anderson Parameters/Storage Depth"]),
     # not of the form Section/key=value
     (["Flow/viscosity"], ["Flow/viscosity", "Section/key=value"]),
     (["viscosity=1"], ["viscosity=1", "Section/key=value"]),
-    (["Flow/viscosity=[1"], ["Flow/viscosity=[1", "not YAML"]),
+    (["Flow/viscosity=[1"], ["Flow/viscosity=[1", "not valid YAML"]),
     (["Flow/viscosity=1\nFlow: 2"], ["Section/key=value"]),
     (["Flow/shaer rate = 1"], ["Flow/shaer rate is not a key"]),
 ]
@@ -199,19 +199,19 @@ TEXTS = [
     ("Tanktread:\n  Flow: {type: quiescent, shear rate: 2}\n  Membrane: {shear modulus: 1}\n  Time: {final time: 1}\n",
      ["Flow/shear rate", "quiescent", "no rate"]),
     ("# only a comment\n", ["empty", "Tanktread"]),
-    ("Dear reader,\nthis is a letter.\n", ["not YAML", "Dear reader,"]),
-    ("<html><body>404</body></html>\n", ["not YAML", "line 1"]),
-    ("Tanktread:\n  Flow: {type: simple shear\n", ["not YAML", "line 2"]),
-    ("Tanktread:\n  Flow:\n    type: uniform\n    type: linear\n", ["line 4", "Flow/type", "second time", "line 3"]),
-    ("Tanktread:\n  Flow: {type: uniform, type: linear}\n", ["line 2", "Flow/type", "second time"]),
+    ("Dear reader,\nthis is a letter.\n", ["not valid YAML", "Dear reader,"]),
+    ("<html><body>404</body></html>\n", ["not valid YAML", "line 1"]),
+    ("Tanktread:\n  Flow: {type: simple shear\n", ["not valid YAML", "line 2"]),
+    ("Tanktread:\n  Flow:\n    type: uniform\n    type: linear\n", ["line 4", "Flow/type", "set twice", "line 3"]),
+    ("Tanktread:\n  Flow: {type: uniform, type: linear}\n", ["line 2", "Flow/type", "set twice"]),
     ("Tanktread: {}\n---\nTanktread: {}\n", ["line 2", "second document"]),
-    ("Tanktread: &a {Flow: *a}\n", ["deep in each other"]),
+    ("Tanktread: &a {Flow: *a}\n", ["nested more than"]),
     ("Tanktread:\n  Flow:\n    type: uniform\n   viscosity: 1\n", ["line 4", "indentation"]),
     ("Tanktread:\n\tFlow: {}\n", ["line 2", "tabs"]),
     ("Flow:\n  type: uniform\n", ["Tanktread", "Flow"]),
     ("Tanktread:\n  Flow: {}\nMembrane: {}\n", ["Tanktread", "Membrane"]),
     ("Tanktread: 7\n", ["Tanktread"]),
-    ("Tanktread:\n  Flow: 7\n", ["Flow", "list of keys", "7"]),
+    ("Tanktread:\n  Flow: 7\n", ["Flow", "section of keys", "7"]),
     ("Tanktread:\n  Membrane:\n    - law: Skalak\n    - law: Skalak\n", ["line 3", "Membrane", "sequence"]),
     ("Tanktread:\n  Flow: {type: \x07}\n", ["line 2", "not text"]),
 ]
@@ -242,7 +242,7 @@ def all_mistakes_are_told_at_once():
         return lines
 
     lines = told("Flow/shaer rate=1", "Membrane/law=rubber", "Particle/radius=-1", "Zebra/stripes=1", "Flow/history=3")
-    for word in ("Flow/shaer rate is not a key", "Membrane/law must be", "Particle/radius must be", "Zebra is not a key", "Flow/history must be a list"):
+    for word in ("Flow/shaer rate is not a key", "Membrane/law must be", "Particle/radius must be", "Zebra is not a key", "Flow/history must be a section of keys"):
         check(sum(word in line for line in lines) == 1, word, lines)
     check(len(lines) == 5, lines)
     lines = told("Volume/constraint=none", "Membrane/load measure=reference", "Particle/motion=free", "Particle/viscosity ratio=2")
@@ -297,11 +297,11 @@ def wrong_files_arerefused():
     refused(["latin.yaml, line 6", "UTF-8"], "latin.yaml")
     pathlib.Path("binary.yaml").write_bytes(bytes(range(256)))
     refused(["binary.yaml", "not text"], "binary.yaml")
-    refused(["/dev/zero", "no regular file"], "/dev/zero")
+    refused(["/dev/zero", "not a regular file"], "/dev/zero")
     os.mkfifo("pipe")
-    refused(["pipe", "no regular file"], "pipe")
-    refused(["Tube/outline", "no regular file"], _tube("pipe"))
-    refused(["Surface file pipe", "no regular file"], _imported("pipe"))
+    refused(["pipe", "not a regular file"], "pipe")
+    refused(["Tube/outline", "not a regular file"], _tube("pipe"))
+    refused(["Surface file pipe", "not a regular file"], _imported("pipe"))
     refused(["too long"], "x" * 300)
     for name in "x" * 300, "x/" * 3000:
         refused(["Tube/outline", "too long"], _tube(name))
@@ -311,10 +311,10 @@ def wrong_files_arerefused():
             refused([said, "too long"], deck(GOOD), deck(f"Tanktread: {{{section}: {{{inner}: {{{last}: {name}}}}}}}\n", "naming.yaml"))
     said = run(deck(GOOD), "--output", "x" * 300, code=2).stderr
     check(len(said.splitlines()) == 1 and "too long" in said and "filesystem" not in said, said)
-    refused(["deep.xml", "deep in each other"], deck('<ParameterList name="Tanktread">' * 20000 + "</ParameterList>" * 20000, "deep.xml"))
-    refused(["deep.yaml", "deep in each other"], deck("Tanktread: " + "{a: " * 100000, "deep.yaml"))
+    refused(["deep.xml", "nested more than"], deck('<ParameterList name="Tanktread">' * 20000 + "</ParameterList>" * 20000, "deep.xml"))
+    refused(["deep.yaml", "nested more than"], deck("Tanktread: " + "{a: " * 100000, "deep.yaml"))
     refused(["broken.xml", "not XML"], deck("<ParameterList", "broken.xml"))
-    refused(["overlay.yaml", "not YAML"], deck(GOOD), deck("What else\n", "overlay.yaml"))
+    refused(["overlay.yaml", "not valid YAML"], deck(GOOD), deck("What else\n", "overlay.yaml"))
     if os.geteuid() != 0:
         deck(GOOD, "locked.yaml").chmod(0)
         refused(["locked.yaml", "cannot be read"], "locked.yaml")

@@ -87,7 +87,7 @@ void sync(const fs::path& path) {
 
 void check_opens(const fs::path& path) {
   const Opened file(path);
-  if (!fs::is_regular_file(path)) throw RunFailure("cannot read " + path.string() + ": it is no regular file");
+  if (!fs::is_regular_file(path)) throw RunFailure("cannot read " + path.string() + ": it is not a regular file");
 }
 
 void check_readable(const fs::path& path) {

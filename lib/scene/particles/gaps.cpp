@@ -238,9 +238,9 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
   const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].spoken(); };
   if (found.first == found.second)
     throw UserError("Domain is smaller than " + name(found.first) +
-                    formatted(", which overlaps its own image about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
+                    formatted(", which overlaps its own image near [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
   throw UserError(name(found.first) + " and " + name(found.second) +
-                  formatted(" overlap at the start, about [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
+                  formatted(" overlap at the start, near [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
 }
 
 void Nearest::add_columns(Columns& to) const {

@@ -172,7 +172,7 @@ std::string Warnings::gap(const StepFindings& signs) const {
 
 std::string Warnings::volume(const StepFindings& signs) const {
   if (scene_.particle.rigid() || std::abs(signs.volume_error) < lost_volume) return {};
-  return formatted("%.2g of the volume is lost: set Volume/constraint to exact, or a lower Time/tolerance", signs.volume_error);
+  return formatted("a fraction %.2g of the volume is lost: set Volume/constraint to exact, or a lower Time/tolerance", signs.volume_error);
 }
 
 surface::Quality soundness(const surface::BezierMap& map, const Net& x, const coupling::Ranks& ranks) {

@@ -65,7 +65,7 @@ class File {
       const Row &one = rows_[i], &next = rows_[(i + 1) % rows_.size()];
       if ((next.x - one.x).norm() <= same_point * longest)
         throw UserError(at(std::max(one.line, next.line)) + "the point of line " + std::to_string(std::min(one.line, next.line)) +
-                        " stands here once more.");
+                        " is repeated here.");
     }
     const double gap = (rows_.front().x - rows_.back().x).norm();
     const bool straight = rows_.front().corner && rows_.back().corner;

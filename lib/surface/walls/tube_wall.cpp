@@ -192,7 +192,7 @@ void check_length(const TubeWall& wall, double first, double last) {
   const double margin = 1.7 * wall.radius(), needed = 2 * (std::max(-first, last) + margin);
   if (wall.length() >= needed) return;
   throw UserError(
-      formatted("Tube/length must be at least %.4g for this particle, which reaches from x1 = %.4g to %.4g seen from its centroid, but is "
+      formatted("Tube/length must be at least %.4g for this particle, which reaches from x1 = %.4g to %.4g relative to its centroid, but is "
                 "%.4g: 1.7 R_T = %.4g must be left at either end.",
                 needed, first, last, wall.length(), margin));
 }

@@ -50,7 +50,7 @@ bool solves(IterativeOptions options, const List& list) {
     const Eigen::SparseMatrix<double> a = system_matrix();
     int products = 0;
     const auto apply = [&](const double* in, double* out) {
-      if (++products > most_products) throw std::runtime_error("this method does not end");
+      if (++products > most_products) throw std::runtime_error("this method does not converge");
       Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
     };
     const auto precondition = [](const double* in, double* out) {

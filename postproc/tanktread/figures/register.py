@@ -35,7 +35,10 @@ def figure(*size, **layout):
         @functools.wraps(function)
         def drawn(given=first.default, axes=None, **options):
             expect(given is not first.empty, f"{function.__name__} needs {first.name}")
+            expect(not isinstance(given, (list, tuple)) or first.name == "runs",
+                   f"the figure `{function.__name__}` needs one {first.name}, but is given a list")
             given = convert(given)
+            expect(given != [], f"the figure `{function.__name__}` needs at least one run, but is given an empty list")
             for run in given if isinstance(given, list) else [given]:
                 expect(not isinstance(run, Run) or len(run.series["time"]), f"{run} holds no row of series yet")
             with style.plt.rc_context(style.STYLE):

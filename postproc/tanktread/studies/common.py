@@ -8,21 +8,23 @@ import numpy
 
 from ..files import parsed as content_of
 from ..mistakes import Mistake, expect, log
-from ..runs import PROGRAM, Study, quoted, shared, text_of
+from ..runs import PROGRAM, SOURCE, Study, quoted, shared, text_of
 
 
 def edge(holds, low, high, factor=1.05):
-    """Returns the largest value, up to a factor, for which holds(value) is true, and how the search ended: `edge`,
-    `holds to here` (true up to `high`) or `fails from here` (false from `low` on). The search bisects the logarithm of
-    the value. It assumes that holds(value) is true below the edge and false above it."""
+    """Returns the largest value for which holds(value) was found true, the smallest value for which it was found false,
+    and how the search ended: `edge`, `holds to here` (true up to `high`) or `fails from here` (false from `low` on). A
+    value that was not found is NaN. If the search ended with `edge`, the two values differ by at most a factor. The
+    search bisects the logarithm of the value. It assumes that holds(value) is true below the edge and false above
+    it."""
     if not holds(low):
-        return low, "fails from here"
+        return numpy.nan, low, "fails from here"
     if holds(high):
-        return high, "holds to here"
+        return high, numpy.nan, "holds to here"
     while high / low > factor:
         middle = (low * high) ** 0.5
         low, high = (middle, high) if holds(middle) else (low, middle)
-    return low, "edge"
+    return low, high, "edge"
 
 
 def arguments(parser, results, limit=300, jobs=None):
@@ -52,8 +54,8 @@ def write_table(path, head, rows):
 
 
 def command_of(script, *words):
-    """Returns the command line that reproduces a chart; it is printed below the chart."""
-    return " ".join([f"{pathlib.Path(script).parent.name}/{pathlib.Path(script).name}", *map(quoted, words)])
+    """Returns the command line, from the source directory, that reproduces a chart; it is printed below the chart."""
+    return " ".join([str(pathlib.Path(script).resolve().relative_to(SOURCE)), *map(quoted, words)])
 
 
 def number(given, name):
@@ -84,7 +86,7 @@ def whole(given, name):
 
 def keys_of(given, name):
     """Returns a section of a YAML file; {} if it is absent."""
-    expect(given is None or isinstance(given, dict), f"{name} must be a list of keys with values, but is {given}")
+    expect(given is None or isinstance(given, dict), f"{name} must be a section of keys with values, but is {given}")
     return given or {}
 
 
@@ -93,7 +95,7 @@ def study_of(path, sections, others):
     Absent sections are {}. `deck` is a list of paths; decks are searched for next to the file, in the current
     directory, and in the directories of shared()."""
     text, known = content_of(path), sorted({"deck"} | sections | others)
-    expect(isinstance(text, dict), f"{path} must be a list of keys: {', '.join(known)}")
+    expect(isinstance(text, dict), f"{path} must be a section of keys: {', '.join(known)}")
     for key in text:
         expect(key in known, f"{path}: {key} is not known; there are: {', '.join(known)}")
     expect(text.get("deck"), f"{path} names no deck")

@@ -83,7 +83,7 @@ def main():
     expect(0 < low < high, f"--between needs two positive values that ascend, but is given {low:g} and {high:g}")
     expect(parsed.within > 0, f"--within must be above 0, but is {parsed.within:g}")
     study = common.study(parsed)
-    found, how = common.edge(lambda value: stays_at(parsed, study, value), low, high, 1 + parsed.within)
-    expect(how == "edge",
-           f"{'it passes' if how == 'fails from here' else 'it stays'} at {found:g} already: --between other values")
-    log.info(f"critical {parsed.key}: {found:.5g} to {found * (1 + parsed.within):.5g}")
+    low, high, how = common.edge(lambda value: stays_at(parsed, study, value), low, high, 1 + parsed.within)
+    expect(how != "fails from here", f"the particle passes at {high:g}: give --between a smaller first value")
+    expect(how != "holds to here", f"the particle stays at {low:g}: give --between a larger second value")
+    log.info(f"critical {parsed.key}: {low:.5g} (stays) to {high:.5g} (passes)")

@@ -51,7 +51,7 @@ import yaml
 from ..figures import style
 from ..mistakes import command_line, expect, log, progress
 from ..runs import Study
-from .common import keys_of, number, optional, study_of
+from .common import keys_of, optional, positive, study_of
 from .fit_data import Experiment, Unknown
 from .fit_model import Fit, Runs
 from .fit_report import draw, further, told
@@ -59,7 +59,7 @@ from .fit_report import draw, further, told
 def load(path, study):
     """Returns the fits of all laws, not yet solved, and the content of the file."""
     text = study_of(path, {"set", "unknown", "laws", "experiments", "next"}, {"limit"})
-    study.limit = optional(number, text, "limit", path)
+    study.limit = optional(positive, text, "limit", path)
     expect(text["experiments"], f"{path} has no experiments")
     laws = {law: keys_of(settings, f"{path}: the law {law}") for law, settings in text["laws"].items()}
     experiments = [Experiment(name, given, pathlib.Path(path).parent) for name, given in text["experiments"].items()]
@@ -89,12 +89,23 @@ def check_errors(fit):
            "for all data")
 
 
+def recorded(fit):
+    """Returns {unknown: {value, error, unit, at bound}} for fit.yaml. `unit` is absent if the unknown is dimensionless
+    or the deck has no section Units, and `at bound` if the value does not lie at a bound."""
+    found = {}
+    for unknown, bound, (name, (value, error)) in zip(fit.unknowns, fit.at_bound, fit.values.items()):
+        unit = fit.runs.unit(unknown.key).removeprefix(", ")
+        found[name] = {"value": float(value), "error": float(error)} | ({"unit": unit} if unit else {})
+        found[name] |= {"at bound": bound} if bound else {}
+    return found
+
+
 def run(path, directory=None, jobs=None, laws=None):
     """Fits the laws of an experiment file, writes fit.txt, fit.yaml and fit.png, and returns the Fits, the best first.
     `directory`: of these and runs/ (default: results/<experiment>). `jobs`: runs at a time (default: the number of
     cores). `laws`: names of the laws that are fitted (default: all)."""
     directory = pathlib.Path(directory or f"results/{pathlib.Path(path).stem}")
-    fits, text = load(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count()))
+    fits, text = load(path, Study(directory=directory / "runs", jobs=os.cpu_count() if jobs is None else jobs))
     known = [fit.law for fit in fits]
     expect(set(laws or known) <= set(known), f"there is no such law; there are: {', '.join(known)}")
     fits = [fit for fit in fits if fit.law in (laws or known)]
@@ -110,10 +121,8 @@ def run(path, directory=None, jobs=None, laws=None):
     (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
     record = {fit.law: {
         "chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic), "runs": fit.runs.count,
-        "unknown": {name: dict(zip(("value", "error"), map(float, found))) | ({"at bound": bound} if bound else {})
-                    for (name, found), bound in zip(fit.values.items(), fit.at_bound)}}
-        for fit in fits}
-    (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False), encoding="utf-8")
+        "unknown": recorded(fit)} for fit in fits}
+    (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False, allow_unicode=True), encoding="utf-8")
     style.save(style.draw(draw, fits), directory / "fit.png")
     return fits
 

@@ -143,7 +143,7 @@ class Diagram:
         return motion != self.kind.above
 
     def border(self, name, row, last):
-        """Returns the largest known value of the key along below the border, and how the search ended (see
+        """Returns the values of the key along just below and just above the border, and how the search ended (see
         common.edge). `last`: border found for the previous row, near which the search starts; or None."""
         low, high, factor = self.range
         holds = functools.partial(self.holds, name, row)
@@ -157,14 +157,12 @@ class Diagram:
         for name, row in ((name, row) for name, rows in self.rows.items() for row in rows):
             at = row[self.across]
             try:
-                low, how = self.border(name, row, last)
+                low, high, how = self.border(name, row, last)
             except Mistake as mistake:
-                low, how = numpy.nan, str(mistake)
+                low, high, how = numpy.nan, numpy.nan, str(mistake)
             last = low if how == "edge" else last
-            above = [value for (*curve, value), run in self.made.items()
-                     if curve == [name, at] and value > low and run[0] == self.kind.above]
-            end = {"fails from here": (numpy.nan, low, self.from_here), "holds to here": (low, numpy.nan, self.to_here)}
-            self.borders[name].append((at, *end.get(how, (low, min(above, default=numpy.nan), how))))
+            end = {"fails from here": self.from_here, "holds to here": self.to_here}.get(how, how)
+            self.borders[name].append((at, low, high, end))
 
     def write(self, directory):
         borders = [(name, *row) for name, rows in self.borders.items() for row in rows]

@@ -45,7 +45,7 @@ from ..files import Named, opened
 from ..interpolation import interpolated, mean
 from ..mistakes import Mistake, command_line, expect, log, progress
 from ..runs import Study, text_of
-from .common import keys_of, number, optional, spaced, study_of, values_of, whole
+from .common import keys_of, number, optional, positive, spaced, study_of, values_of, whole
 
 TAKES = {"last": lambda time, values: values[-1], "smallest": lambda time, values: values.min(),
          "largest": lambda time, values: values.max(), "mean": mean, "all": None}
@@ -156,7 +156,7 @@ class Sweep:
         self.name, self.study, self.decks = pathlib.Path(path).stem, study, text["deck"]
         self.ranks = whole(text.get("ranks", 1), f"{path}: ranks")
         self.rows, self.columns = combinations(text), columns_of(text, path)
-        self.study.limit = optional(number, text, "limit", path)
+        self.study.limit = optional(positive, text, "limit", path)
         self.keys = [key for key in dict.fromkeys(key for row in self.rows for key in row)
                      if len({str(row.get(key)) for row in self.rows}) > 1]
 
@@ -191,17 +191,18 @@ class Sweep:
         single = [word for name in self.columns if name not in whole for word in (name, f"{name} error")
                   if word == name or any(word in values for values in found)]
         columns = {name: [values.get(name, numpy.nan) for values in found] for name in single}
+        messages = [own.get("message", "") if one.done else one.message for one, own in zip(self.outcomes, found)]
         with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
             out.writerow([*self.keys, *single, "status", "processor_seconds", "directory", "message"])
-            for one, own, *values in zip(self.outcomes, found, *shown.values(), *columns.values()):
-                out.writerow([*values, one.status, f"{one.processor_seconds:.3g}", one.directory.name,
-                              own.get("message", "") if one.done else one.message])
+            for one, message, *values in zip(self.outcomes, messages, *shown.values(), *columns.values()):
+                out.writerow([*values, one.status, f"{one.processor_seconds:.3g}", one.directory.name, message])
         for name in [*whole, "time"] if whole else []:
             padded = itertools.zip_longest(*(values.get(name, []) for values in found), fillvalue=numpy.nan)
             columns[name] = numpy.reshape(list(padded), (-1, len(found))).T
         with h5py.File(directory / "table.h5", "w") as file:
             file["status"] = [outcome.status for outcome in self.outcomes]
+            file["message"] = messages
             file["directory"] = [str(outcome.directory) for outcome in self.outcomes]
             file.attrs["keys"] = self.keys
             for key, values in keys.items():
@@ -269,7 +270,7 @@ def run(path, directory=None, jobs=None, fresh=False):
     table.h5 and runs/ (default: results/<study>). `jobs`: number of simultaneous runs (default: one per core). `fresh`:
     if true, existing results are not used."""
     directory = pathlib.Path(directory or f"results/{pathlib.Path(path).stem}")
-    sweep = Sweep(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count(), fresh=fresh))
+    sweep = Sweep(path, Study(directory=directory / "runs", jobs=os.cpu_count() if jobs is None else jobs, fresh=fresh))
     directory.mkdir(parents=True, exist_ok=True)
     sweep.make()
     sweep.write(directory)

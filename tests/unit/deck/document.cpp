@@ -87,7 +87,7 @@ TEST(Settings, GoOverAllDecksAndAreReadAsYaml) {
 TEST(Settings, ThatAreNoSettingsAreRefused) {
   for (const char* setting : {"Kinds/count", "Kinds/count=", "=3", "count=3", "/count=3", "Kinds//count=3"})
     EXPECT_EQ(refused({}, {setting}), std::string("--set '") + setting + "' must be of the form Section/key=value.");
-  EXPECT_EQ(refused({}, {"Kinds/count=[1, 2"}), "--set 'Kinds/count=[1, 2': the value is not YAML that can be read.");
+  EXPECT_EQ(refused({}, {"Kinds/count=[1, 2"}), "--set 'Kinds/count=[1, 2': the value is not valid YAML.");
   EXPECT_EQ(refused({}, {"Kinds/cuont=3"}), "Kinds/cuont is not a key of the deck; was Kinds/count meant?");
 }
 
@@ -142,7 +142,7 @@ TEST(Xml, IsReadByExtension) {
   std::string deep;
   for (int i = 0; i < 20000; ++i) deep += "<ParameterList name=\"Tanktread\">";
   EXPECT_EQ(refused({folder.file("deep.xml", deep)}),
-            (folder.path / "deep.xml").string() + ": its elements lie more than 100 deep in each other.");
+            (folder.path / "deep.xml").string() + ": its elements are nested more than 100 deep.");
 }
 
 TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
@@ -153,10 +153,10 @@ TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
   const auto empty = folder.file("empty.yaml", "# nothing\n\n");
   EXPECT_EQ(refused({empty}), empty + " is empty; a deck has one section named `Tanktread`.");
   const auto text = folder.file("text.yaml", "To whom it may concern\n");
-  EXPECT_EQ(refused({text}), text + ", line 1: this is not YAML that can be read (no key followed by a colon): `To whom it may concern`.");
+  EXPECT_EQ(refused({text}), text + ", line 1: this is not valid YAML (no key followed by a colon): `To whom it may concern`.");
   const auto pipe = (folder.path / "pipe.yaml").string();
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_EQ(refused({pipe}), "The deck " + pipe + " is no regular file, but a pipe or a device.");
+  EXPECT_EQ(refused({pipe}), "The deck " + pipe + " is not a regular file, but a pipe or a device.");
   EXPECT_EQ(refused({std::string(300, 'x')}), "The deck " + std::string(77, 'x') + "... cannot be read: File name too long.");
   EXPECT_EQ(refused({folder.file("long.yaml", std::string(1'000'001, '#'))}),
             "The deck " + (folder.path / "long.yaml").string() + " is larger than 1 MB.");

@@ -41,7 +41,7 @@ TEST(Expectations, AreReadByName) {
 TEST(Expectations, NeedValueAndTolerance) {
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 1}\n"),
             "Expect/volume/tolerance is missing; an expectation needs `value` and `tolerance`.");
-  EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: 1\n"), "Expect/volume must be a list of keys, but is 1.");
+  EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: 1\n"), "Expect/volume must be a section of keys, but is 1.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 1, tolerance: 1, tol: 2}\n"),
             "Expect/volume/tol is not a key of the deck; was Expect/volume/tolerance meant?");
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 0, tolerance: 1, kind: relative}\n"),

@@ -41,7 +41,7 @@ TEST(ForeignLists, WithOtherTypesAreRefused) {
   EXPECT_EQ(refusal_of_list("      Convergence Tolerance: 1\n"),
             "Solvers/Belos/Convergence Tolerance must be a number with a point, but is 1.");
   EXPECT_EQ(refusal_of_list("      Maximum Iterations: 5.5\n"), "Solvers/Belos/Maximum Iterations must be a whole number, but is 5.5.");
-  EXPECT_EQ(refusal_of_list("      Inner: 5\n"), "Solvers/Belos/Inner must be a list of keys, but is 5.");
+  EXPECT_EQ(refusal_of_list("      Inner: 5\n"), "Solvers/Belos/Inner must be a section of keys, but is 5.");
 }
 
 }  // namespace

@@ -61,8 +61,8 @@ TEST(Keys, RefuseWrongTypes) {
   EXPECT_EQ(refusal("    center: 1\n"), "Kinds/center must be three numbers in brackets (unit: length), but is 1.");
   EXPECT_EQ(refusal("    center: [1, 2]\n"), "Kinds/center must be three numbers in brackets (unit: length), but is [1, 2].");
   EXPECT_EQ(refusal("    gradient: [1, 2]\n"), "Kinds/gradient must be nine numbers in brackets (unit: 1/time), but is [1, 2].");
-  EXPECT_EQ(refusal("    shear rate: {a: 1}\n"), "Kinds/shear rate must be a number, positive (unit: 1/time), but is a list of keys.");
-  EXPECT_EQ(refusal("    Inner: 3\n"), "Kinds/Inner must be a list of keys, but is 3.");
+  EXPECT_EQ(refusal("    shear rate: {a: 1}\n"), "Kinds/shear rate must be a number, positive (unit: 1/time), but is a section of keys.");
+  EXPECT_EQ(refusal("    Inner: 3\n"), "Kinds/Inner must be a section of keys, but is 3.");
   EXPECT_EQ(refusal("    count: 99999999999\n"), "Kinds/count must be a whole number, between 1 and 9, but is 99999999999.");
   EXPECT_NE(refusal("    shear rate: 1e999\n"), "") << "no infinity";
   EXPECT_NE(refusal("    shear rate: nan\n"), "");
@@ -80,7 +80,7 @@ TEST(UnknownKeys, AreRefusedWithTheirPathAndAGuess) {
   EXPECT_EQ(refusal("    Inner: {detph: 1}\n"), "Kinds/Inner/detph is not a key of the deck; was Kinds/Inner/depth meant?");
   EXPECT_EQ(refusal("    depth: 1\n"), "Kinds/depth is not a key of the deck; was Kinds/Inner/depth meant?") << "the key of another list";
   EXPECT_EQ(refusal_of("Tanktread:\n  Kind: {count: 1}\n"), "Kind is not a key of the deck; was Kinds meant?");
-  EXPECT_EQ(refusal_of("Tanktread:\n  Zebra: 1\n"), "Zebra is not a key of the deck; its lists are Kinds or Expect.");
+  EXPECT_EQ(refusal_of("Tanktread:\n  Zebra: 1\n"), "Zebra is not a key of the deck; its sections are Kinds or Expect.");
   EXPECT_EQ(refusal("    Inner: {zebra: 1}\n"), "Kinds/Inner/zebra is not a key of the deck; Kinds/Inner has depth.");
 }
 

@@ -31,7 +31,7 @@ TEST(Texts, InDoubleQuotesKeepTheirEscapes) {
 
 TEST(Lines, ThatAreIndentedWronglyAreRefused) {
   EXPECT_EQ(refusal("    count: 1\n   law: soft\n"),
-            "deck.yaml, line 4: this is not YAML that can be read (the indentation fits none of the lines above): `law: soft`.");
+            "deck.yaml, line 4: this is not valid YAML (the indentation fits none of the lines above): `law: soft`.");
   EXPECT_EQ(refusal("\tcount: 1\n"), "deck.yaml, line 3: indent with spaces, not with tabs.");
 }
 
@@ -39,11 +39,11 @@ TEST(Lists, LieOnlySoDeepAndHoldOnlySoMuch) {
   std::string deep = "Tanktread: ", laughs = "Tanktread:\n  Kinds:\n    a: &a0 {x: 1}\n";
   for (int i = 0; i < 30; ++i) deep += "{a: ";
   EXPECT_EQ(refusal_of(deep + "1" + std::string(30, '}')),
-            "deck.yaml, line 1: lists lie more than 20 deep in each other, or hold more than 100,000 values.");
+            "deck.yaml, line 1: sections and sequences are nested more than 20 deep, or hold more than 100,000 values.");
   for (const char* open : {"{a: ", "[", "- "}) {
     std::string text = "Tanktread:\n  ";
     for (int i = 0; i < 20000; ++i) text += open;
-    EXPECT_EQ(refusal_of(text), "deck.yaml: lists lie more than 20 deep in each other.") << open;
+    EXPECT_EQ(refusal_of(text), "deck.yaml: sections are nested more than 20 deep.") << open;
   }
   for (int i = 1; i < 10; ++i) {
     laughs += "    a" + std::to_string(i) + ": &a" + std::to_string(i) + " {";
@@ -51,7 +51,7 @@ TEST(Lists, LieOnlySoDeepAndHoldOnlySoMuch) {
     laughs += "}\n";
   }
   EXPECT_NE(refusal_of(laughs).find("hold more than 100,000 values"), std::string::npos);
-  EXPECT_NE(refusal_of("Tanktread: &a {Kinds: *a}\n").find("deep in each other"), std::string::npos);
+  EXPECT_NE(refusal_of("Tanktread: &a {Kinds: *a}\n").find("nested more than"), std::string::npos);
   EXPECT_EQ(refusal("    " + std::string(1000, 'x') + ": 1\n"),
             "deck.yaml, line 3: a key is a word of at most 100 characters, followed by a colon.");
 }
@@ -74,21 +74,21 @@ TEST(Keys, WithoutAValueAreNothing) {
 
 TEST(DuplicateKeys, AreRefusedWithBothLines) {
   EXPECT_EQ(refusal("    count: 1\n    law: soft\n    count: 2\n"),
-            "deck.yaml, line 5: Kinds/count is given a second time; it already stands in line 3.");
+            "deck.yaml, line 5: Kinds/count is set twice; it was first set in line 3.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Kinds:\n    count: 1\n  Kinds:\n    law: soft\n"),
-            "deck.yaml, line 4: Kinds is given a second time; it already stands in line 2.");
+            "deck.yaml, line 4: Kinds is set twice; it was first set in line 2.");
   EXPECT_EQ(refusal("    \"count\": 1\n    count: 2\n"),
-            "deck.yaml, line 4: Kinds/count is given a second time; it already stands in line 3.");
+            "deck.yaml, line 4: Kinds/count is set twice; it was first set in line 3.");
   EXPECT_EQ(refusal("    Inner: {depth: 0.1, depth: 0.2}\n"),
-            "deck.yaml, line 3: Kinds/Inner/depth is given a second time; it already stands in line 3.");
+            "deck.yaml, line 3: Kinds/Inner/depth is set twice; it was first set in line 3.");
   EXPECT_EQ(refusal("    Inner:\n      depth: 0.1\n    Belos:\n      depth: 0.1\n"), "") << "the same name in two lists";
 }
 
 TEST(BrokenYaml, IsShownWithItsLine) {
   EXPECT_EQ(refusal("    center: [1, 2\n    count: 1\n"),
-            "deck.yaml, line 4: this is not YAML that can be read (end of sequence flow not found): `count: 1`.");
+            "deck.yaml, line 4: this is not valid YAML (end of sequence flow not found): `count: 1`.");
   EXPECT_EQ(refusal("    law: soft: hard\n"),
-            "deck.yaml, line 3: this is not YAML that can be read (illegal map value): `law: soft: hard`.");
+            "deck.yaml, line 3: this is not valid YAML (illegal map value): `law: soft: hard`.");
 }
 
 TEST(RootLists, AreNamedAndAlone) {
