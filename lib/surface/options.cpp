@@ -14,6 +14,7 @@
 #include "deck/section.hpp"
 #include "deck/words.hpp"
 #include "surface/geometry.hpp"
+#include "surface/shapes.hpp"
 
 namespace tanktread::surface {
 
@@ -219,8 +220,9 @@ double ParticleShape::circumscribed_radius() const {
 double ParticleShape::equivalent_radius() const {
   if (shape == "sphere" || shape == "cylinder") return radius.value();
   if (shape == "red cell") {
-    // Volume of a red cell divided by R^3: V = 2 pi R^3 int_0^1 r sqrt(1 - r^2) (0.21 + 2.0 r^2 - 1.12 r^4) dr
-    const double volume = 2.0 * std::numbers::pi * (0.21 / 3.0 + 2.0 * 2.0 / 15.0 - 1.12 * 8.0 / 105.0);
+    // Volume of a red cell divided by R^3: V = 2 pi R^3 int_0^1 r sqrt(1 - r^2) (c0 + c1 r^2 + c2 r^4) dr
+    const auto [c0, c1, c2] = red_cell_profile;
+    const double volume = 2.0 * std::numbers::pi * (c0 / 3.0 + c1 * 2.0 / 15.0 + c2 * 8.0 / 105.0);
     return radius.value() * std::cbrt(volume * 3.0 / (4.0 * std::numbers::pi));
   }
   if (imported) return std::cbrt(volume(imported->space, imported->net) * 3.0 / (4.0 * std::numbers::pi));
