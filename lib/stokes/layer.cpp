@@ -102,9 +102,9 @@ void Layer::add_near(const LayerTargets& targets, Net& u) {
     for (const Vec3& image : medium_->near_images()) {
       if (i >= targets.images_only && image.isZero(0)) continue;
       const Vec3 at = targets.at.row(i).transpose() - image;
-      const std::span<SelfPair> own = targets.sites && image.isZero(0) ? surface.own(i) : std::span<SelfPair>();
-      for (const int e : surface.near(at, own))
-        u.row(i) += sources_.beyond_far_sum(e, surface.near_field.rule(e, at, own), nullptr, at, f0, sources_.evaluations.near).transpose();
+      const std::span<SelfPair> self_pairs = targets.sites && image.isZero(0) ? surface.self_pairs(i) : std::span<SelfPair>();
+      for (const int e : surface.near(at, self_pairs))
+        u.row(i) += sources_.beyond_far_sum(e, surface.near_field.rule(e, at, self_pairs), nullptr, at, f0, sources_.evaluations.near).transpose();
     }
   }
 }
@@ -113,7 +113,7 @@ void Layer::add_self(const LayerTargets& targets, Net& u) {
   const auto clock = sources_.phases.time("self");
   LayerSurface& surface = sources_.surface;
   for (const int i : targets.rows)
-    for (SelfPair& pair : surface.own(i)) {
+    for (SelfPair& pair : surface.self_pairs(i)) {
       const PointTable& table = surface.self_field.rule(pair, surface.panels, surface.bezier);
       u.row(i) +=
           sources_.beyond_far_sum(pair.panel, table, &pair, targets.at.row(i), targets.f0.row(i), sources_.evaluations.self).transpose();

@@ -119,14 +119,14 @@ bool LayerSurface::set_shape(const Net& x) {
   return true;
 }
 
-std::span<SelfPair> LayerSurface::own(int i) {
+std::span<SelfPair> LayerSurface::self_pairs(int i) {
   if (options.rule == "desingularised") return {};
   return self_field[i];
 }
 
-const std::vector<int>& LayerSurface::near(const Vec3& target, std::span<const SelfPair> own) {
+const std::vector<int>& LayerSurface::near(const Vec3& target, std::span<const SelfPair> self_pairs) {
   near_.clear();
-  if (options.rule == "adaptive") near_field.list(target, own, near_);
+  if (options.rule == "adaptive") near_field.list(target, self_pairs, near_);
   return near_;
 }
 
