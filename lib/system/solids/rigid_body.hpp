@@ -52,7 +52,7 @@ class LoneRigidBody : public Dynamics {
   void linearise(const Net&) override {}
   Net solve(double, const Net& r, double, const Secants&) override { return r; }  ///< returns r: the Jacobian is taken as 0, because the motion is
                                                                                   ///< not stiff
-  Net missed(const Net& change, const Net& delta, double shift) override { return change + delta / shift; }
+  Net jacobian_error(const Net& change, const Net& delta, double shift) override { return change + delta / shift; }
   void restore_volume(Net& place) override;                       ///< normalises the quaternion; the volume of a rigid body needs no correction
   double norm(const Net& displacement) const override;            ///< combines the displacement of the centre, divided by R_C, and the angle of
                                                                   ///< rotation
