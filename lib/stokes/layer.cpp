@@ -40,7 +40,7 @@ void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
 }
 
 void Layer::set_medium(const Medium& medium) {
-  assert(!shared() && "the medium is set before far sums are shared");
+  if (shared()) throw std::logic_error("Layer::set_medium must be called before Layer::share, because the far sums of the medium are shared as well");
   use(medium.in_layer(sources_, by_clusters()));
 }
 
