@@ -69,19 +69,19 @@ void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
   for (const int i : in_tree) at.row(i) = surface.site(i).transpose();
   for (const int i : far_rows)
     if (!single()) f0.row(i) = surface.value(i, sources_.bezier_f).transpose();
-  integrate({sites, far_rows, at, f0, in_tree, true, images_only_}, nullptr, u);
+  integrate({sites, far_rows, at, f0, in_tree, true, no_row}, nullptr, u);
 }
 
-void Layer::apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept) {
-  apply(f, Net::Zero(at.rows(), 3), at, targets, u, kept);
+void Layer::apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept, int first_image_row) {
+  apply(f, Net::Zero(at.rows(), 3), at, targets, u, kept, first_image_row);
 }
 
-void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept) {
+void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept, int first_image_row) {
   assert(sources_.surface.n_sites == 0 && !shared() && "a layer is for sites or for points off its surfaces");
   assert(!kept || kept->first.size() == targets.size() + 1);
   sources_.set_density(f);
   const std::vector<int> all = indices(at.rows());
-  integrate({targets, targets, at, f0, all, false, images_only_}, kept, u);
+  integrate({targets, targets, at, f0, all, false, first_image_row}, kept, u);
 }
 
 /// Evaluates the potential at the targets: the far-field sum over all panels and the terms of the medium, corrected by near-singular and singular
@@ -100,7 +100,7 @@ void Layer::add_near(const LayerTargets& targets, Net& u) {
   for (const int i : targets.rows) {
     const Vec3 f0 = targets.f0.row(i);
     for (const Vec3& image : medium_->near_images()) {
-      if (i >= targets.images_only && image.isZero(0)) continue;
+      if (i >= targets.first_image_row && image.isZero(0)) continue;
       const Vec3 at = targets.at.row(i).transpose() - image;
       const std::span<SelfPair> self_pairs = targets.sites && image.isZero(0) ? surface.self_pairs(i) : std::span<SelfPair>();
       for (const int e : surface.near(at, self_pairs))
@@ -218,13 +218,13 @@ void Layer::add_stresslets_by_clusters(const LayerTargets& targets, Net& u) {
   }
 }
 
-Layer::Near Layer::near(const Net& at, std::span<const int> targets) {
+Layer::Near Layer::near(const Net& at, std::span<const int> targets, int first_image_row) {
   const auto clock = sources_.phases.time("near");
   LayerSurface& surface = sources_.surface;
   Near kept{{0}, {}, {}};
   for (const int i : targets) {
     for (const Vec3& image : medium_->near_images()) {
-      if (i >= images_only_ && image.isZero(0)) continue;
+      if (i >= first_image_row && image.isZero(0)) continue;
       const Vec3 y = at.row(i).transpose() - image;
       for (const int e : surface.near(y, {})) {
         const std::size_t first = kept.moments.size();

@@ -75,10 +75,6 @@ class Layer {
   /// requests them.
   void repeat(const PeriodicCell& cell, const Repetition& how = {});
 
-  /// In later evaluations at targets off the surfaces, restricts the sums in rows `first` and higher to the images of the surfaces on the lattice. In
-  /// these rows the surfaces themselves do not contribute.
-  void see_images_only(int first) { images_only_ = first; }
-
   /// If far sums use clusters, divides the far sums at the sites `everybody` among the ranks 0 .. parts - 1; `part` is the number of this rank. Then
   /// `apply` computes only the share of this rank in the rows `everybody`. The caller must sum these rows over all ranks. Near-singular and singular
   /// quadrature is included only by the rank that requests the row.
@@ -102,16 +98,20 @@ class Layer {
     std::vector<double> moments;
   };
 
-  /// Returns the corrections at points `at` for the current shape, to be reused for many densities with equal `at` and `targets`.
-  Near near(const Net& at, std::span<const int> targets);
+  static constexpr int no_row = std::numeric_limits<int>::max();  ///< value of `first_image_row` if the surfaces contribute to all targets
+
+  /// Returns the corrections at points `at` for the current shape, to be reused for many densities with equal `at`, `targets` and `first_image_row`.
+  Near near(const Net& at, std::span<const int> targets, int first_image_row = no_row);
 
   /// Computes the layer potential at points off the surfaces: row i of u at the point `at.row(i)`, for each i in `targets`. u has the shape of `at`.
-  /// `kept`: result of near(at, targets), or null.
-  void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
+  /// `kept`: result of near(at, targets, first_image_row), or null. To rows `first_image_row` and higher, only the images of the surfaces on the
+  /// lattice contribute, not the surfaces themselves.
+  void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr, int first_image_row = no_row);
 
   /// Computes the double layer after a constant, row k of `f0`, is subtracted from f for target k. Outside a closed surface the result does not
   /// change (2.3), but the integrand is smaller if f0 is the density nearby.
-  void apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
+  void apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr,
+             int first_image_row = no_row);
 
   /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3 x
   /// number of targets, 3 x number of control points).
@@ -179,13 +179,12 @@ class Layer {
 
   LayerSources sources_;
   std::unique_ptr<LayerMedium> medium_ = std::make_unique<LayerMedium>();
-  std::optional<TreeSum> tree_;                        // clusters for far sums; not set if direct sums are used
-  int images_only_ = std::numeric_limits<int>::max();  // first row to which only displaced images contribute, see see_images_only()
-  std::vector<int> fundamental_sites_;                 // targets in the tree
-  std::vector<int> everybody_;                         // rows whose far sums share() divides into parts
-  std::vector<Vec3> tree_at_;                          // targets of the tree
-  std::vector<int> tree_rows_;                         // rows that the tree computes; empty if the tree must be built anew
-  std::vector<double> stress_;                         // sum of T_ijk n_k over the far nodes at the targets, six components each
+  std::optional<TreeSum> tree_;         // clusters for far sums; not set if direct sums are used
+  std::vector<int> fundamental_sites_;  // targets in the tree
+  std::vector<int> everybody_;          // rows whose far sums share() divides into parts
+  std::vector<Vec3> tree_at_;           // targets of the tree
+  std::vector<int> tree_rows_;          // rows that the tree computes; empty if the tree must be built anew
+  std::vector<double> stress_;          // sum of T_ijk n_k over the far nodes at the targets, six components each
 };
 
 }  // namespace tanktread::stokes
