@@ -13,6 +13,7 @@
 #include "system/particle.hpp"
 #include "system/solids/solid_response.hpp"
 #include "system/solvers/options.hpp"
+#include "system/volume_options.hpp"
 
 namespace tanktread::coupling {
 
