@@ -185,7 +185,7 @@ struct ParticleScene : SharedOptions, ParticleKind {
   bool has_velocity_system() const { return particle.rigid() || particle.viscosity_ratio != 1 || kelvin_voigt_membrane(); }
   Vec3 body_force() const;           ///< density difference x gravity, units force/length^3
   double bending_modulus() const;    ///< E_b, units force x length
-  std::string interface_motion() const;  ///< motion of the control points along the interface: as set in the deck, or the default of the law
+  coupling::MeshMotion interface_motion() const;  ///< motion of the control points along the interface: as set in the deck, or the default of the law
 };
 
 /// Adds the choices that exclude the power balance (6.11) of all particles. `strong`: true for Membrane/load `strong`.

@@ -286,7 +286,7 @@ void Capsule::forget_recycled() const {
 
 void Capsule::restore_volume(Net& x) {
   bodies_.rigid.fit_to(x);
-  if (parameters_.volume.constraint != "exact") return;
+  if (parameters_.volume.constraint != VolumeConservation::exact) return;
   const auto clock = phases_.time("volume");
   volumes_.restore(x, [&](const Net& b) { return jacobian_.inflation(symmetric(membranes_.solved(b))); });
 }

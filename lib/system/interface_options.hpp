@@ -8,12 +8,16 @@
 
 namespace tanktread::coupling {
 
+/// Motion of the control points along an interface. `material`: with the fluid. `normal`: only normal to the surface. `relaxed`: with the fluid in
+/// the normal direction, and tangentially so that elements keep their shape.
+enum class MeshMotion { material, normal, relaxed };
+
+std::string word(MeshMotion motion);  ///< returns the value of the key `motion`
+
 /// Options `Interface/*` of the deck: tangential motion of the control points along an interface. Without a membrane this motion is arbitrary.
 struct InterfaceOptions {
-  /// Motion of the control points. material: with the fluid; normal: only normal to the surface; relaxed: with the fluid in the normal direction, and
-  /// tangentially so that elements keep their shape. If not set: relaxed for a surface tension, material otherwise.
-  std::optional<std::string> motion;
-  double relaxation = 1;  ///< relaxation speed of the mesh, which moves like an elastic surface at capillary number 1/relaxation
+  std::optional<MeshMotion> motion;  ///< if not set: `relaxed` for a surface tension, `material` otherwise
+  double relaxation = 1;             ///< relaxation speed of the mesh, which moves like an elastic surface at capillary number 1/relaxation
 
   void declare(deck::Section& section);
 };
