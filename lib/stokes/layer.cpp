@@ -13,7 +13,7 @@ namespace tanktread::stokes {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : sources_(kernel, space, sites, options, std::move(factor)) {
-  if (sums_by_tree(space, options)) tree_.emplace(tree_tolerance(), sources_.precision());
+  if (sums_by_tree(space, options)) make_tree();
   fundamental_sites_ = indices(sites.size());
 }
 
@@ -25,6 +25,11 @@ void Layer::set_symmetry(const surface::Symmetry& symmetry) {
 
 void Layer::set_reference(const Net& unstressed, std::vector<bool> present) { sources_.set_reference(unstressed, std::move(present)); }
 
+void Layer::make_tree() {
+  tree_.emplace(tree_tolerance(), sources_.precision());
+  tree_->share(part_, parts_);
+}
+
 void Layer::use(std::unique_ptr<LayerMedium> medium) {
   medium_ = std::move(medium);
   sources_.surface.repeat();
@@ -35,7 +40,7 @@ void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
   const auto* lattice = dynamic_cast<const Lattice*>(medium_.get());
   if (lattice && lattice->is(cell, how)) return;
   if (!lattice && typeid(*medium_) != typeid(LayerMedium)) throw std::logic_error("a layer has one medium, or is on a lattice");
-  if (!tree_ && sums_by_tree(lattice_images * n_nodes(), sources_.surface.options)) tree_.emplace(tree_tolerance(), sources_.precision());
+  if (!tree_ && sums_by_tree(lattice_images * n_nodes(), sources_.surface.options)) make_tree();
   use(std::make_unique<Lattice>(cell, how));
 }
 
@@ -45,8 +50,9 @@ void Layer::set_medium(const Medium& medium) {
 }
 
 void Layer::share(int part, int parts, std::vector<int> everybody) {
-  if (!tree_ || parts == 1) return;
+  part_ = part, parts_ = parts;
   everybody_ = std::move(everybody);
+  if (!shared()) return;
   tree_->share(part, parts);
   medium_->share(part, parts);
   tree_rows_.clear();

@@ -79,7 +79,7 @@ class Layer {
   /// `apply` computes only the share of this rank in the rows `everybody`. The caller must sum these rows over all ranks. Near-singular and singular
   /// quadrature is included only by the rank that requests the row.
   void share(int part, int parts, std::vector<int> everybody);
-  bool shared() const { return !everybody_.empty(); }
+  bool shared() const { return tree_ && parts_ > 1; }
 
   /// Returns whether far sums use clusters. If so, a few products are computed faster by `apply` than with assembled rows.
   bool by_clusters() const { return tree_.has_value(); }
@@ -155,6 +155,7 @@ class Layer {
   /// Returns the tolerance of the sum by clusters: for the single layer that of the deck, for the double layer half of it, with which the measured
   /// error of the double layer is a quarter of the deck's tolerance. In a double layer, the options hold an eighth of the deck's tolerance.
   double tree_tolerance() const { return (single() ? 1 : 4) * sources_.surface.options.tolerance; }
+  void make_tree();
   void use(std::unique_ptr<LayerMedium> medium);
   void integrate(const LayerTargets& targets, const Near* kept, Net& u);
   void add_far(const LayerTargets& targets, Net& u);
@@ -181,6 +182,7 @@ class Layer {
   std::unique_ptr<LayerMedium> medium_ = std::make_unique<LayerMedium>();
   std::optional<TreeSum> tree_;         // clusters for far sums; not set if direct sums are used
   std::vector<int> fundamental_sites_;  // targets in the tree
+  int part_ = 0, parts_ = 1;            // part of the far sums that this rank computes, and number of parts, see share()
   std::vector<int> everybody_;          // rows whose far sums share() divides into parts
   std::vector<Vec3> tree_at_;           // targets of the tree
   std::vector<int> tree_rows_;          // rows that the tree computes; empty if the tree must be built anew
