@@ -9,7 +9,6 @@
 #include "base/errors.hpp"
 #include "deck/words.hpp"
 #include "motion/adaptation.hpp"
-#include "surface/options.hpp"
 
 namespace tanktread::accuracy {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -58,6 +59,16 @@ class Section {
     std::string word = words[static_cast<std::size_t>(field)];
     key(name, word, words, meaning);
     field = static_cast<Field>(std::find(words.begin(), words.end(), word) - words.begin());
+  }
+
+  /// Declares a key whose value is an enumerator, or nothing if the key is not given.
+  template <class Field>
+    requires std::is_enum_v<Field>
+  void key(std::string_view name, std::optional<Field>& field, const Choice& words, std::string_view meaning) {
+    std::optional<std::string> word;
+    if (field) word = words[static_cast<std::size_t>(*field)];
+    key(name, word, words, meaning);
+    if (word) field = static_cast<Field>(std::find(words.begin(), words.end(), *word) - words.begin());
   }
 
   void key(std::string_view name, bool& field, std::string_view meaning);

@@ -181,7 +181,7 @@ std::optional<Branch::Solved> Branch::stepped() {
       if (!near(solved)) continue;
       asked = end_before(solved->place);
       if (!asked) {
-        missed_ = length(solved->place - next) / step_;
+        prediction_error_ = length(solved->place - next) / step_;
         return solved;
       }
       next = solved->place;
@@ -267,7 +267,7 @@ void Branch::advance() {
   // The step grows if the last solve took few iterations, or if the last prediction was close to the solution, which shows that the branch is nearly
   // straight. The second condition is needed because a small tolerance requires many iterations in any case.
   const int iterations = last_.back().iterations;
-  const double change = iterations < 25 || missed_ < 0.05 ? 1.5 : iterations < 45 || missed_ < 0.2 ? 1 : 0.7;
+  const double change = iterations < 25 || prediction_error_ < 0.05 ? 1.5 : iterations < 45 || prediction_error_ < 0.2 ? 1 : 0.7;
   step_ = std::min(step_ * change, options_.largest_change * std::numbers::sqrt2);
   auto solved = stepped();
   if (!solved)

@@ -72,8 +72,8 @@ Net GuardedDynamics::correction(double shift, const Net& defect, double toleranc
   return tried(defect, [&] { return motion_.correction(shift, defect, tolerance, secants); });
 }
 
-Net GuardedDynamics::missed(const Net& change, const Net& delta, double shift) {
-  return tried(change, [&] { return motion_.missed(change, delta, shift); });
+Net GuardedDynamics::jacobian_error(const Net& change, const Net& delta, double shift) {
+  return tried(change, [&] { return motion_.jacobian_error(change, delta, shift); });
 }
 
 Net GuardedDynamics::derivative(const Net& x, const Net& v, const Net& delta) {

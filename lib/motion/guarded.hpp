@@ -31,7 +31,7 @@ class GuardedDynamics : public coupling::Dynamics {
   Net solve(double shift, const Net& r, double tolerance, const coupling::Secants& secants) override;
   Net defect(const Net& x, const Net& u) override;
   Net correction(double shift, const Net& defect, double tolerance, const coupling::Secants& secants) override;
-  Net missed(const Net& change, const Net& delta, double shift) override;
+  Net jacobian_error(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   bool defect_spares_system() const override { return motion_.defect_spares_system(); }
   Net mesh_motion(const Net& delta) override { return motion_.mesh_motion(delta); }

@@ -20,9 +20,9 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     if (!defect.allFinite()) return;
     if (k == 1 && options.secants > 0) {  // only the first correction gives a secant, because later corrections are so small that quadrature errors
                                           // dominate them
-      const Net missed = dynamics.missed(defect - before, delta, shift);
-      if (!missed.allFinite()) return;
-      secants.add(delta, missed, options.secants);
+      const Net jacobian_error = dynamics.jacobian_error(defect - before, delta, shift);
+      if (!jacobian_error.allFinite()) return;
+      secants.add(delta, jacobian_error, options.secants);
     }
     dynamics.linearise(stage.y);
     delta = dynamics.correction(shift, defect, options.linear_tolerance, secants);

@@ -121,11 +121,11 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
   // Norm of the error for NOX. A single correction gives no error estimate, so the first correction ends the iteration only if it is 0.
-  const coupling::FixedPoint::Norm left = [&](const Net&) {
+  const coupling::FixedPoint::Norm error_norm = [&](const Net&) {
     return latest == 0 || error.known() ? latest : std::numeric_limits<double>::max();
   };
   const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), depth);
-  const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, left);
+  const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, error_norm);
   x = std::move(best);
   dynamics.restore_volume(x);
   return {found.iterations, found.converged, rest};

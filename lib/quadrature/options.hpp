@@ -6,12 +6,17 @@
 
 namespace tanktread::quadrature {
 
+/// Quadrature rule of layer integrals. `adaptive`: number of Gauss points chosen by Options::tolerance. `fixed`: Options::points x Options::points
+/// Gauss points, with the map of Lachat and Watson on panels that contain the target. `desingularised`: these Gauss points on all panels, with the
+/// singularity subtracted by identities.
+enum class LayerRule { adaptive, fixed, desingularised };
+
+std::string word(LayerRule rule);  ///< returns the value of the key `rule`
+
 /// Options of the quadrature of layer integrals: `Quadrature/*` of the deck.
 struct Options {
   double tolerance = 1e-4;        ///< relative accuracy of every layer integral: singular, near-singular and far
-  std::string rule = "adaptive";  ///< `adaptive`: number of Gauss points chosen by `tolerance`; `fixed`: `points` x `points` Gauss points, with the
-                                  ///< map of Lachat and Watson on panels that contain the target; `desingularised`: these Gauss points on all panels,
-                                  ///< with the singularity subtracted by identities
+  LayerRule rule = LayerRule::adaptive;
   int points = 8;                 ///< Gauss points per direction of the rules `fixed` and `desingularised`
   std::string far_sum = "auto";   ///< `dense`: sums over all far nodes; `tree`: sums over clusters of nodes; `auto`: the faster one
 

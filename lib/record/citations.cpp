@@ -40,7 +40,7 @@ constexpr std::array<Citation, 9> all{{
     {"lattice", "D. Lindbo, A.-K. Tornberg: J. Comput. Phys. 229, 8994-9010, 2010.", [](const Scene& scene) { return scene.domain.present; }},
     {"clusters of far sums", "L. Wang, R. Krasny, S. Vaughn: A kernel-independent treecode based on barycentric Lagrange interpolation. Commun. "
      "Comput. Phys. 28, 2020.",
-     [](const Scene& scene) { return scene.quadrature.rule == "adaptive" && scene.quadrature.far_sum != "dense"; }},
+     [](const Scene& scene) { return scene.quadrature.rule == quadrature::LayerRule::adaptive && scene.quadrature.far_sum != "dense"; }},
 }};
 
 }  // namespace

@@ -217,7 +217,8 @@ void add_steady(Lines& lines, const Scene& scene, const Body& body) {
   if (const auto& second = scene.continuation.second_parameter)
     lines.emplace_back("folds", formatted("the first one at %zu values of %s", scene.continuation.second_values->size(), second->c_str()));
   if (!scene.spectrum.present) return;
-  const auto unknowns = static_cast<int>(body.symmetry.fundamental().size()) * (scene.first().interface_motion() == "material" ? 3 : 1);
+  const bool material = scene.first().interface_motion() == coupling::MeshMotion::material;
+  const auto unknowns = static_cast<int>(body.symmetry.fundamental().size()) * (material ? 3 : 1);
   const bool dense = scene.spectrum.method == "dense";
   lines.emplace_back("spectrum", dense ? formatted("%d unknowns at most: as many pairs of velocities for the Jacobian, all its eigenvalues", unknowns)
                                        : formatted("%d unknowns at most: block Krylov-Schur on the shift-inverted motion", unknowns));
@@ -357,7 +358,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                        formatted(scene.contact.limiter ? "gaps between particles are kept at %g R_C or above by repulsive forces (4.23)"
                                                        : "a gap between particles below %g R_C ends the run; no contact forces",
                                  scene.contact.limit));
-  lines.emplace_back("volume", scene.volume.constraint + (several ? ", of each" : ""));
+  lines.emplace_back("volume", word(scene.volume.constraint) + (several ? ", of each" : ""));
   if (scene.runs_in_time())
     lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
   else

@@ -305,7 +305,7 @@ output::Entries<std::string> Results::known_errors() const {
         if (error > 0) steps += error;
   if (steps > 0)
     errors.emplace_back("time integration", formatted("%.2g R_C: sum of the errors of all steps, root mean square over the points", steps));
-  if (scene_.quadrature.rule == "adaptive")
+  if (scene_.quadrature.rule == quadrature::LayerRule::adaptive)
     errors.emplace_back("quadrature", formatted("%.2g of the velocities: a fifth of Quadrature/tolerance", scene_.quadrature.tolerance / 5));
   errors.emplace_back("mesh", "unknown: --accuracy estimates it from several meshes");
   return errors;

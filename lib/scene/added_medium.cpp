@@ -27,7 +27,7 @@ void DomainOptions::reject_medium(const ParticleScene& scene, Rejections& to) co
   const Chosen added("Domain/kind `" + kind + "`", "Domain/kind of an added medium");
   to.pair(scene.tube.present, added, scene.duct_choice(), "a duct encloses all of its fluid");
   to.pair(scene.wall.present, added, "Wall", "a plane wall is a medium itself");
-  to.pair(scene.quadrature.rule == "desingularised", added, "Quadrature/rule `desingularised`",
+  to.pair(scene.quadrature.rule == quadrature::LayerRule::desingularised, added, "Quadrature/rule `desingularised`",
           "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
   to.pair(!scene.runs_in_time(), scene.sought(), added,
           "a deformable particle next to a boundary moves away from it or towards it, so that no shape is steady");

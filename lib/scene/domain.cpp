@@ -115,7 +115,7 @@ void DomainOptions::reject(const ParticleScene& scene, Rejections& to) const {
   const bool pushed = !scene.particle.rigid() && !scene.membrane.forces.total().isZero(0);
   to.pair(!to.every() && !scene.runs_in_time() && deforms(scene.flow), scene.sought(), scene.flow_choice(),
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
-  to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`",
+  to.pair(scene.quadrature.rule == quadrature::LayerRule::desingularised, "Domain", "Quadrature/rule `desingularised`",
           "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
   to.pair(scene.flow.history && scene.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
           "nothing moves, so that one steady problem is solved");

@@ -39,7 +39,8 @@ double bytes_a_pair(const ParticleScene& scene) {
   if (scene.particle.rigid()) return doubles * coupling::Ranks().size() * (scene.tube.present ? 2 : 1);  // LU factors; in a tube, also the matrix
   const bool viscous = scene.particle.viscosity_ratio != 1;
   const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
-  return doubles * ((viscous + scene.viscous_membrane()) * (scene.solvers.double_layer == "assembled") + (scene.interface_motion() == "relaxed")) +
+  const bool relaxed = scene.interface_motion() == coupling::MeshMotion::relaxed;
+  return doubles * ((viscous + scene.viscous_membrane()) * (scene.solvers.double_layer == "assembled") + relaxed) +
          coupling::FrozenOperator::bytes_a_pair * frozen;
 }
 

@@ -149,20 +149,21 @@ void ParticleKind::declare_lists(deck::Section& section, const Registry& registr
 
 void ParticleKind::reject(const ParticleScene& scene, Rejections& to) const {
   const bool drop = membrane.law == "surface tension", strong = scene.load_is_strong(), rigid = particle.rigid();
-  const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = surface.polar() && surface.poles == "plain";
+  const bool desingularised = scene.quadrature.rule == quadrature::LayerRule::desingularised;
+  const bool degenerate = surface.polar() && surface.poles == "plain", constrained = scene.volume.constraint != coupling::VolumeConservation::none;
   const std::string plain = "Surface/poles `plain`";
   const Chosen law("Membrane/law `" + membrane.law + "`", "Membrane/law of an elastic membrane");
   to.pair(adaptation.enabled && particle.shape.imported, "Adaptation/enabled", "Particle/shape `file`",
           "a spline space from a file has no mesh to refine");
   to.pair(scene.accuracy.present && particle.shape.imported, "Accuracy", "Particle/shape `file`",
           "the mesh of a file is not refined, so that its error cannot be estimated");
-  to.pair(scene.volume.constraint == "none" && !strong && membrane.load_measure == "reference", "Volume/constraint `none`",
+  to.pair(!constrained && !strong && membrane.load_measure == "reference", "Volume/constraint `none`",
           "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
   to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "the load is not defined at the pole of a degenerate element");
   to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain,
           "the normal is not defined at the pole of a degenerate element");
-  to.pair(!drop && scene.interface_motion() != "material",
-          {"Interface/motion `" + scene.interface_motion() + "`", "Interface/motion other than `material`"}, law,
+  to.pair(!drop && scene.interface_motion() != coupling::MeshMotion::material,
+          {"Interface/motion `" + word(scene.interface_motion()) + "`", "Interface/motion other than `material`"}, law,
           "an elastic membrane moves with the fluid, `material`");
   to.pair(surfactant && (rigid || !drop), "Interface/surfactant",
           {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"},

@@ -275,8 +275,8 @@ motion::TimeOptions ParticleScene::time_options() const {
   return in_its_unit;
 }
 
-std::string ParticleScene::interface_motion() const {
-  return interface.motion.value_or(membrane.law == "surface tension" ? "relaxed" : "material");
+coupling::MeshMotion ParticleScene::interface_motion() const {
+  return interface.motion.value_or(membrane.law == "surface tension" ? coupling::MeshMotion::relaxed : coupling::MeshMotion::material);
 }
 
 double ParticleScene::speed() const { return flow.speed(radius()); }
@@ -294,7 +294,9 @@ double ParticleScene::modulus() const {
 Vec3 ParticleScene::body_force() const { return particle.density_difference.value_or(0.) * flow.gravity.value_or(Vec3::Zero()); }
 double ParticleScene::bending_modulus() const { return membrane.bending(modulus(), radius()); }
 
-bool ParticleScene::reciprocal_forces() const { return particle.forces ? *particle.forces == "reciprocal" : quadrature.rule == "adaptive"; }
+bool ParticleScene::reciprocal_forces() const {
+  return particle.forces ? *particle.forces == "reciprocal" : quadrature.rule == quadrature::LayerRule::adaptive;
+}
 
 std::shared_ptr<const stokes::Medium> SharedOptions::medium() const {
   const auto plane = wall.plane();

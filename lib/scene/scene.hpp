@@ -25,8 +25,10 @@
 #include "scene/posts.hpp"
 #include "scene/registry.hpp"
 #include "scene/wall_options.hpp"
+#include "system/interface_options.hpp"
 #include "system/solvers/options.hpp"
 #include "system/symmetry.hpp"
+#include "system/volume_options.hpp"
 #include "deck/expectation.hpp"
 #include "membrane/options.hpp"
 #include "membrane/surfactant_options.hpp"
@@ -40,6 +42,7 @@
 #include "quadrature/options.hpp"
 #include "stokes/flow/flow_options.hpp"
 #include "surface/options.hpp"
+#include "surface/walls/duct_options.hpp"
 
 namespace tanktread {
 
@@ -183,7 +186,7 @@ struct ParticleScene : SharedOptions, ParticleKind {
   bool has_velocity_system() const { return particle.rigid() || particle.viscosity_ratio != 1 || kelvin_voigt_membrane(); }
   Vec3 body_force() const;           ///< density difference x gravity, units force/length^3
   double bending_modulus() const;    ///< E_b, units force x length
-  std::string interface_motion() const;  ///< motion of the control points along the interface: as set in the deck, or the default of the law
+  coupling::MeshMotion interface_motion() const;  ///< motion of the control points along the interface: as set in the deck, or the default of the law
 };
 
 /// Adds the choices that exclude the power balance (6.11) of all particles. `strong`: true for Membrane/load `strong`.

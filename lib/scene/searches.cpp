@@ -59,10 +59,10 @@ void reject_searches(const ParticleScene& scene, Rejections& to) {
           "Flow/history/type `sine`", "no shape is steady in a flow that oscillates");
   to.pair(search && !scene.posts.empty(), scene.sought(), "Particle/shape `cylinder`",
           "a particle among posts drifts past them, so that no shape is steady");
-  to.pair(search && scene.volume.constraint != "exact", scene.sought(),
-          {"Volume/constraint `" + scene.volume.constraint + "`", "Volume/constraint other than `exact`"},
+  to.pair(search && scene.volume.constraint != coupling::VolumeConservation::exact, scene.sought(),
+          {"Volume/constraint `" + word(scene.volume.constraint) + "`", "Volume/constraint other than `exact`"},
           "the volume must be conserved exactly, because it distinguishes between steady shapes");
-  to.pair(search && drop && scene.interface_motion() == "material", scene.sought(), "Interface/motion `material`",
+  to.pair(search && drop && scene.interface_motion() == coupling::MeshMotion::material, scene.sought(), "Interface/motion `material`",
           "mesh points that move along the interface with the fluid do not become steady; give `normal` or `relaxed`");
   to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), scene.sought(), scene.flow_choice(),
           "the flow rotates, and a membrane whose unstressed shape is not a sphere swings or tumbles while it tank-treads; use Periodic");

@@ -91,7 +91,7 @@ void reject_with_tube(const ParticleScene& scene, Rejections& to) {
           "that flow is for unbounded fluid; in a tube Flow/type is `duct`, `quiescent` or, in a straight tube and without Flow/history, "
           "`simple shear`, with which the wall moves");
   to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the length of a periodic tube is its period");
-  to.pair(tube && scene.quadrature.rule == "desingularised", "Quadrature/rule `desingularised`", confined,
+  to.pair(tube && scene.quadrature.rule == quadrature::LayerRule::desingularised, "Quadrature/rule `desingularised`", confined,
           "its identities hold for closed surfaces, and the wall is not closed");
   to.pair(solvers.wall == "iterative" && straight, "Solvers/wall `iterative`", "Tube", "the wall of a straight tube is always factored");
   to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,

@@ -13,7 +13,7 @@ namespace tanktread::stokes {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : sources_(kernel, space, sites, options, std::move(factor)) {
-  if (sums_by_tree(space, options)) tree_.emplace(tree_tolerance(), sources_.precision());
+  if (sums_by_tree(space, options)) make_tree();
   fundamental_sites_ = indices(sites.size());
 }
 
@@ -25,6 +25,11 @@ void Layer::set_symmetry(const surface::Symmetry& symmetry) {
 
 void Layer::set_reference(const Net& unstressed, std::vector<bool> present) { sources_.set_reference(unstressed, std::move(present)); }
 
+void Layer::make_tree() {
+  tree_.emplace(tree_tolerance(), sources_.precision());
+  tree_->share(part_, parts_);
+}
+
 void Layer::use(std::unique_ptr<LayerMedium> medium) {
   medium_ = std::move(medium);
   sources_.surface.repeat();
@@ -35,18 +40,19 @@ void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
   const auto* lattice = dynamic_cast<const Lattice*>(medium_.get());
   if (lattice && lattice->is(cell, how)) return;
   if (!lattice && typeid(*medium_) != typeid(LayerMedium)) throw std::logic_error("a layer has one medium, or is on a lattice");
-  if (!tree_ && sums_by_tree(lattice_images * n_nodes(), sources_.surface.options)) tree_.emplace(tree_tolerance(), sources_.precision());
+  if (!tree_ && sums_by_tree(lattice_images * n_nodes(), sources_.surface.options)) make_tree();
   use(std::make_unique<Lattice>(cell, how));
 }
 
 void Layer::set_medium(const Medium& medium) {
-  assert(!shared() && "the medium is set before far sums are shared");
+  if (shared()) throw std::logic_error("Layer::set_medium must be called before Layer::share, because the far sums of the medium are shared as well");
   use(medium.in_layer(sources_, by_clusters()));
 }
 
 void Layer::share(int part, int parts, std::vector<int> everybody) {
-  if (!tree_ || parts == 1) return;
+  part_ = part, parts_ = parts;
   everybody_ = std::move(everybody);
+  if (!shared()) return;
   tree_->share(part, parts);
   medium_->share(part, parts);
   tree_rows_.clear();
@@ -69,19 +75,19 @@ void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
   for (const int i : in_tree) at.row(i) = surface.site(i).transpose();
   for (const int i : far_rows)
     if (!single()) f0.row(i) = surface.value(i, sources_.bezier_f).transpose();
-  integrate({sites, far_rows, at, f0, in_tree, true, images_only_}, nullptr, u);
+  integrate({sites, far_rows, at, f0, in_tree, true, no_row}, nullptr, u);
 }
 
-void Layer::apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept) {
-  apply(f, Net::Zero(at.rows(), 3), at, targets, u, kept);
+void Layer::apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept, int first_image_row) {
+  apply(f, Net::Zero(at.rows(), 3), at, targets, u, kept, first_image_row);
 }
 
-void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept) {
+void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept, int first_image_row) {
   assert(sources_.surface.n_sites == 0 && !shared() && "a layer is for sites or for points off its surfaces");
   assert(!kept || kept->first.size() == targets.size() + 1);
   sources_.set_density(f);
   const std::vector<int> all = indices(at.rows());
-  integrate({targets, targets, at, f0, all, false, images_only_}, kept, u);
+  integrate({targets, targets, at, f0, all, false, first_image_row}, kept, u);
 }
 
 /// Evaluates the potential at the targets: the far-field sum over all panels and the terms of the medium, corrected by near-singular and singular
@@ -100,11 +106,11 @@ void Layer::add_near(const LayerTargets& targets, Net& u) {
   for (const int i : targets.rows) {
     const Vec3 f0 = targets.f0.row(i);
     for (const Vec3& image : medium_->near_images()) {
-      if (i >= targets.images_only && image.isZero(0)) continue;
+      if (i >= targets.first_image_row && image.isZero(0)) continue;
       const Vec3 at = targets.at.row(i).transpose() - image;
-      const std::span<SelfPair> own = targets.sites && image.isZero(0) ? surface.own(i) : std::span<SelfPair>();
-      for (const int e : surface.near(at, own))
-        u.row(i) += sources_.beyond_far_sum(e, surface.near_field.rule(e, at, own), nullptr, at, f0, sources_.evaluations.near).transpose();
+      const std::span<SelfPair> self_pairs = targets.sites && image.isZero(0) ? surface.self_pairs(i) : std::span<SelfPair>();
+      for (const int e : surface.near(at, self_pairs))
+        u.row(i) += sources_.beyond_far_sum(e, surface.near_field.rule(e, at, self_pairs), nullptr, at, f0, sources_.evaluations.near).transpose();
     }
   }
 }
@@ -113,7 +119,7 @@ void Layer::add_self(const LayerTargets& targets, Net& u) {
   const auto clock = sources_.phases.time("self");
   LayerSurface& surface = sources_.surface;
   for (const int i : targets.rows)
-    for (SelfPair& pair : surface.own(i)) {
+    for (SelfPair& pair : surface.self_pairs(i)) {
       const PointTable& table = surface.self_field.rule(pair, surface.panels, surface.bezier);
       u.row(i) +=
           sources_.beyond_far_sum(pair.panel, table, &pair, targets.at.row(i), targets.f0.row(i), sources_.evaluations.self).transpose();
@@ -218,13 +224,13 @@ void Layer::add_stresslets_by_clusters(const LayerTargets& targets, Net& u) {
   }
 }
 
-Layer::Near Layer::near(const Net& at, std::span<const int> targets) {
+Layer::Near Layer::near(const Net& at, std::span<const int> targets, int first_image_row) {
   const auto clock = sources_.phases.time("near");
   LayerSurface& surface = sources_.surface;
   Near kept{{0}, {}, {}};
   for (const int i : targets) {
     for (const Vec3& image : medium_->near_images()) {
-      if (i >= images_only_ && image.isZero(0)) continue;
+      if (i >= first_image_row && image.isZero(0)) continue;
       const Vec3 y = at.row(i).transpose() - image;
       for (const int e : surface.near(y, {})) {
         const std::size_t first = kept.moments.size();

@@ -61,8 +61,8 @@ class Layer {
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(+-1)                                                         (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
 
-  /// Sets the medium, by default unbounded fluid. All later shapes must be in it. Must be called before share(). Blocks that are assembled for near
-  /// control points do not include what the medium adds.
+  /// Sets the medium, by default unbounded fluid. All later shapes must be in it. Throws std::logic_error if called after share(), unless share() has
+  /// no effect. Blocks that are assembled for near control points do not include what the medium adds.
   void set_medium(const Medium& medium);
 
   /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again when the cell
@@ -75,15 +75,11 @@ class Layer {
   /// requests them.
   void repeat(const PeriodicCell& cell, const Repetition& how = {});
 
-  /// In later evaluations at targets off the surfaces, restricts the sums in rows `first` and higher to the images of the surfaces on the lattice. In
-  /// these rows the surfaces themselves do not contribute.
-  void see_images_only(int first) { images_only_ = first; }
-
   /// If far sums use clusters, divides the far sums at the sites `everybody` among the ranks 0 .. parts - 1; `part` is the number of this rank. Then
   /// `apply` computes only the share of this rank in the rows `everybody`. The caller must sum these rows over all ranks. Near-singular and singular
   /// quadrature is included only by the rank that requests the row.
   void share(int part, int parts, std::vector<int> everybody);
-  bool shared() const { return !everybody_.empty(); }
+  bool shared() const { return tree_ && parts_ > 1; }
 
   /// Returns whether far sums use clusters. If so, a few products are computed faster by `apply` than with assembled rows.
   bool by_clusters() const { return tree_.has_value(); }
@@ -102,16 +98,20 @@ class Layer {
     std::vector<double> moments;
   };
 
-  /// Returns the corrections at points `at` for the current shape, to be reused for many densities with equal `at` and `targets`.
-  Near near(const Net& at, std::span<const int> targets);
+  static constexpr int no_row = std::numeric_limits<int>::max();  ///< value of `first_image_row` if the surfaces contribute to all targets
+
+  /// Returns the corrections at points `at` for the current shape, to be reused for many densities with equal `at`, `targets` and `first_image_row`.
+  Near near(const Net& at, std::span<const int> targets, int first_image_row = no_row);
 
   /// Computes the layer potential at points off the surfaces: row i of u at the point `at.row(i)`, for each i in `targets`. u has the shape of `at`.
-  /// `kept`: result of near(at, targets), or null.
-  void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
+  /// `kept`: result of near(at, targets, first_image_row), or null. To rows `first_image_row` and higher, only the images of the surfaces on the
+  /// lattice contribute, not the surfaces themselves.
+  void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr, int first_image_row = no_row);
 
   /// Computes the double layer after a constant, row k of `f0`, is subtracted from f for target k. Outside a closed surface the result does not
   /// change (2.3), but the integrand is smaller if f0 is the density nearby.
-  void apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
+  void apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr,
+             int first_image_row = no_row);
 
   /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3 x
   /// number of targets, 3 x number of control points).
@@ -155,6 +155,7 @@ class Layer {
   /// Returns the tolerance of the sum by clusters: for the single layer that of the deck, for the double layer half of it, with which the measured
   /// error of the double layer is a quarter of the deck's tolerance. In a double layer, the options hold an eighth of the deck's tolerance.
   double tree_tolerance() const { return (single() ? 1 : 4) * sources_.surface.options.tolerance; }
+  void make_tree();
   void use(std::unique_ptr<LayerMedium> medium);
   void integrate(const LayerTargets& targets, const Near* kept, Net& u);
   void add_far(const LayerTargets& targets, Net& u);
@@ -179,13 +180,13 @@ class Layer {
 
   LayerSources sources_;
   std::unique_ptr<LayerMedium> medium_ = std::make_unique<LayerMedium>();
-  std::optional<TreeSum> tree_;                        // clusters for far sums; not set if direct sums are used
-  int images_only_ = std::numeric_limits<int>::max();  // first row to which only displaced images contribute, see see_images_only()
-  std::vector<int> fundamental_sites_;                 // targets in the tree
-  std::vector<int> everybody_;                         // rows whose far sums share() divides into parts
-  std::vector<Vec3> tree_at_;                          // targets of the tree
-  std::vector<int> tree_rows_;                         // rows that the tree computes; empty if the tree must be built anew
-  std::vector<double> stress_;                         // sum of T_ijk n_k over the far nodes at the targets, six components each
+  std::optional<TreeSum> tree_;         // clusters for far sums; not set if direct sums are used
+  std::vector<int> fundamental_sites_;  // targets in the tree
+  int part_ = 0, parts_ = 1;            // part of the far sums that this rank computes, and number of parts, see share()
+  std::vector<int> everybody_;          // rows whose far sums share() divides into parts
+  std::vector<Vec3> tree_at_;           // targets of the tree
+  std::vector<int> tree_rows_;          // rows that the tree computes; empty if the tree must be built anew
+  std::vector<double> stress_;          // sum of T_ijk n_k over the far nodes at the targets, six components each
 };
 
 }  // namespace tanktread::stokes

@@ -133,10 +133,10 @@ class Layer::RowSums {
     LayerSurface& surface = sources_.surface;
     for (const Vec3& image : images) {
       const Vec3 x0 = place_of(target) - image;
-      const std::span<SelfPair> own = !at_ && image.isZero(0) ? surface.own(target) : std::span<SelfPair>();
-      for (const int e : surface.near(x0, own))
-        if (basis.index[e] >= 0) add_panel(e, surface.near_field.rule(e, x0, own), nullptr, x0, l);
-      for (SelfPair& pair : own)
+      const std::span<SelfPair> self_pairs = !at_ && image.isZero(0) ? surface.self_pairs(target) : std::span<SelfPair>();
+      for (const int e : surface.near(x0, self_pairs))
+        if (basis.index[e] >= 0) add_panel(e, surface.near_field.rule(e, x0, self_pairs), nullptr, x0, l);
+      for (SelfPair& pair : self_pairs)
         if (basis.index[pair.panel] >= 0) add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
     }
   }

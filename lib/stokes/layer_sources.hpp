@@ -42,7 +42,7 @@ class LayerSources {
     return measure_ == Measure::reference || (measure_ == Measure::by_element && !reference_.present[static_cast<std::size_t>(e)]);
   }
   Precision precision() const { return surface.options.far_in_single() ? Precision::single : Precision::full; }
-  bool desingularised() const { return single() && surface.options.rule == "desingularised"; }
+  bool desingularised() const { return single() && surface.options.rule == quadrature::LayerRule::desingularised; }
 
   /// See Layer::set_reference.
   void set_reference(const Net& unstressed, std::vector<bool> present);

@@ -50,10 +50,10 @@ class LayerSurface {
 
   /// Returns the pairs of site i and a panel that contains it, one pair per panel. These pairs need singular rules. The list is empty for the rule
   /// `desingularised`.
-  std::span<SelfPair> own(int i);
+  std::span<SelfPair> self_pairs(int i);
 
-  /// Returns the panels that need near-singular quadrature for a target, without the panels of `own`, which contain the target.
-  const std::vector<int>& near(const Vec3& target, std::span<const SelfPair> own);
+  /// Returns the panels that need near-singular quadrature for a target, without the panels of `self_pairs`, which contain the target.
+  const std::vector<int>& near(const Vec3& target, std::span<const SelfPair> self_pairs);
 
   /// Sets the sources of `tree` to the far nodes of the fundamental panels, and its targets to all targets and their symmetry images. All ranks that
   /// share the sums must pass equal targets, so that clusters do not depend on which rank computes which rows.

@@ -52,7 +52,7 @@ Meridian red_cell_meridian(double radius) {
 
 /// Returns the index of the body-fixed axis of revolution of the particle, 2 for x3.
 int axis_of(const ParticleShape& shape) {
-  if (shape.shape == "sphere" || shape.shape == "red cell") return 2;
+  if (shape.round()) return 2;
   if (shape.semi_axes) {
     const Vec3& a = *shape.semi_axes;
     for (const int k : {2, 1, 0})

@@ -244,7 +244,7 @@ void Capsule::linearise(const Net& x) {
 
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
   const auto clock = phases_.time("implicit solve");
-  return jacobian_.solve(shift, jacobian_.left(r), tolerance, secants);
+  return jacobian_.solve(shift, jacobian_.velocity_product(r), tolerance, secants);
 }
 
 Net Capsule::correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
@@ -253,9 +253,9 @@ Net Capsule::correction(double shift, const Net& defect, double tolerance, const
   return jacobian_.solve(shift, shift * defect, tolerance, secants);
 }
 
-Net Capsule::missed(const Net& change, const Net& delta, double shift) {
+Net Capsule::jacobian_error(const Net& change, const Net& delta, double shift) {
   const auto clock = phases_.time("implicit solve");
-  return (defect_spares_system() ? change : jacobian_.left(change)) + jacobian_.step_change(delta, shift, {}).rate / shift;
+  return (defect_spares_system() ? change : jacobian_.velocity_product(change)) + jacobian_.step_change(delta, shift, {}).rate / shift;
 }
 
 void Capsule::improve_start(Net& y, const Net& before, double shift) {
@@ -286,7 +286,7 @@ void Capsule::forget_recycled() const {
 
 void Capsule::restore_volume(Net& x) {
   bodies_.rigid.fit_to(x);
-  if (parameters_.volume.constraint != "exact") return;
+  if (parameters_.volume.constraint != VolumeConservation::exact) return;
   const auto clock = phases_.time("volume");
   volumes_.restore(x, [&](const Net& b) { return jacobian_.inflation(symmetric(membranes_.solved(b))); });
 }

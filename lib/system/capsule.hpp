@@ -96,7 +96,7 @@ class Capsule : public Dynamics {
   Net defect(const Net& x, const Net& u) override;
   bool defect_spares_system() const override;
   Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
-  Net missed(const Net& change, const Net& delta, double shift) override;
+  Net jacobian_error(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   Net mesh_motion(const Net& delta) override;
   void restore_volume(Net& x) override;

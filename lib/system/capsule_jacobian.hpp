@@ -41,7 +41,7 @@ class CapsuleJacobian {
   bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }
 
   /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.
-  Net left(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
+  Net velocity_product(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
   RateChange velocity_change(const Net& dx, const Net& work);  ///< returns J dx as `rate`
   /// Returns the left-hand side B (dx - shift J dx) of an implicit step as `rate`, or dx - shift J dx if control points slide. The
   /// member `slip` of the result is not multiplied by `shift`. Applies each layer once if no control points slide.

@@ -13,6 +13,7 @@
 #include "system/particle.hpp"
 #include "system/solids/solid_response.hpp"
 #include "system/solvers/options.hpp"
+#include "system/volume_options.hpp"
 
 namespace tanktread::coupling {
 
@@ -50,7 +51,7 @@ struct CapsuleParameters {
   std::optional<SolidScene> solids;          ///< plates and posts in the cell
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; Symmetry() if there is none
 
-  bool constrained() const { return volume.constraint != "none"; }  ///< true if velocities conserve the volumes (2.8)
+  bool constrained() const { return volume.constraint != VolumeConservation::none; }  ///< true if velocities conserve the volumes (2.8)
   bool any_rigid() const { return std::ranges::any_of(particles, [](const Particle& one) { return one.rigid.has_value(); }); }
 };
 

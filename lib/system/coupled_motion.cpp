@@ -128,7 +128,7 @@ void CoupledMotion::linearise(const Net& y) {
 }
 
 /// Multiplies the change of shape in delta by the operator B of (4.2). Does not modify the changes of the fields.
-Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.jacobian().left(shape(delta))); }
+Net CoupledMotion::velocity_product(const Net& delta) { return with_shape(delta, capsule_.jacobian().velocity_product(shape(delta))); }
 
 /// Returns the left-hand side of an implicit step, delta - shift J delta with the Jacobian J (4.33). If no control points slide along an interface,
 /// the rows of the shape are multiplied by B (4.2), so that no linear system with B needs to be solved, and each layer is applied once.
@@ -190,15 +190,15 @@ Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const 
 }
 
 Net CoupledMotion::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
-  return system(shift, left(r), tolerance, secants);
+  return system(shift, velocity_product(r), tolerance, secants);
 }
 
 Net CoupledMotion::correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
   return defect_spares_system() ? system(shift, shift * defect, tolerance, secants) : Dynamics::correction(shift, defect, tolerance, secants);
 }
 
-Net CoupledMotion::missed(const Net& change, const Net& delta, double shift) {
-  return (defect_spares_system() ? change : left(change)) + step(delta, shift) / shift;
+Net CoupledMotion::jacobian_error(const Net& change, const Net& delta, double shift) {
+  return (defect_spares_system() ? change : velocity_product(change)) + step(delta, shift) / shift;
 }
 
 Net CoupledMotion::derivative(const Net& y, const Net& v, const Net& delta) {

@@ -68,7 +68,7 @@ class CoupledMotion : public Dynamics {
   Net defect(const Net& y, const Net& u) override;
   bool defect_spares_system() const override { return capsule_.defect_spares_system(); }
   Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
-  Net missed(const Net& change, const Net& delta, double shift) override;
+  Net jacobian_error(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& y, const Net& v, const Net& delta) override;
   Net mesh_motion(const Net& delta) override;
   void restore_volume(Net& y) override;
@@ -96,7 +96,7 @@ class CoupledMotion : public Dynamics {
   };
   FieldChange field_change(const Net& delta) const;
   Eigen::VectorXd field_rate(std::size_t k, const Net& delta, const FieldChange& fields, const Net& slip) const;
-  Net left(const Net& delta);
+  Net velocity_product(const Net& delta);
   Net step(const Net& delta, double shift);
   Net system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   Net slip_at(const Net& x);

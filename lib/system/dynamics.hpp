@@ -47,7 +47,7 @@ class Dynamics {
 
   /// Returns the defect B (v - u) of a velocity u, where v is the velocity at x and B an operator that may depend on x. B is the identity by default.
   /// If v is the solution of a linear system B v = w, the defect is w - B u, which takes one sum over the surface and no linear solve. `correction`
-  /// and `missed` expect defects with the same B.
+  /// and `jacobian_error` expect defects with the same B.
   virtual Net defect(const Net& x, const Net& u) { return velocity(x) - u; }
 
   /// Returns true if velocity() requires a linear solve but defect() does not.
@@ -62,7 +62,7 @@ class Dynamics {
   /// Returns B (dv - J delta), the error of the Jacobian J of the last linearisation. Here dv is the change of the velocity due to the displacement
   /// delta, and B is the operator of `defect`. Used by Secants. `change`: change of the defect B (v - u) due to delta, where u = (x - c)/shift with a
   /// constant net c. If B is the identity, `change` is dv - delta/shift.
-  virtual Net missed(const Net& change, const Net& delta, double shift) = 0;
+  virtual Net jacobian_error(const Net& change, const Net& delta, double shift) = 0;
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
   /// there are any, and otherwise a finite difference of velocities, which takes one evaluation.

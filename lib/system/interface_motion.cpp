@@ -26,9 +26,9 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
     if (!particle.slides()) continue;
     const spline::Block& block = particle.block;
     radius_ = std::min(radius_, particle.radius);
-    drops_.push_back({block, particle.interface_motion == "relaxed", particle.interface_turns, particle.interface_speed, {}, {}, {}});
+    drops_.push_back({block, particle.interface_motion == MeshMotion::relaxed, particle.interface_turns, particle.interface_speed, {}, {}, {}});
     Drop& drop = drops_.back();
-    const auto holds = [&](int e) { return e >= block.first_element && e < block.first_element + block.n_elements; };
+    const auto holds = [&](int e) { return block.holds_element(e); };
     std::ranges::copy_if(layout.points(), std::back_inserter(drop.points), [&](int i) { return block.holds(i); });
     if (projection_)
       for (int i = 0; i < static_cast<int>(projection_->sites().size()); ++i)

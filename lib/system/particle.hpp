@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "base/types.hpp"
@@ -12,6 +11,7 @@
 #include "membrane/load.hpp"
 #include "spline/space.hpp"
 #include "stokes/layer.hpp"
+#include "system/interface_options.hpp"
 #include "system/solids/rigid_motion.hpp"
 #include "system/solvers/krylov.hpp"
 
@@ -35,7 +35,7 @@ struct Particle {
                                                          ///< (3.6); not used for rigid bodies
   bool by_traction = false;  ///< whether the unknown on a rigid body is its traction (2.40) rather than the density w of a double layer (2.23). Equal
                              ///< for all rigid bodies, and false for other particles
-  std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface: "material", "normal" or "relaxed"
+  MeshMotion interface_motion = MeshMotion::material;  ///< motion of the control points of a drop along its interface
   double interface_speed = 0;                 ///< speed of the mesh relaxation of a drop, length/time
   bool interface_turns = true;                ///< true if the mesh of an elongated drop turns with its shape; false: it never turns as a whole
   std::optional<double> kept_volume;  ///< volume V0 to be conserved, for example after a change of mesh; if not set, the volume of the initial net
@@ -44,7 +44,7 @@ struct Particle {
   std::vector<std::shared_ptr<membrane::Load>> loads;
   std::optional<RigidDrive> rigid;            ///< set for a body that does not deform; it has no inner fluid, no membrane and no interface
 
-  bool slides() const { return interface_motion != "material"; }
+  bool slides() const { return interface_motion != MeshMotion::material; }
 };
 
 /// Difference between a particle on a lattice and its image in the cell.

@@ -35,7 +35,7 @@ ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const P
     normals_ = projection_->normals(x);
     for (std::size_t i = 0; i < projection_->sites().size(); ++i) {
       const int e = projection_->sites()[i].front().element;
-      const auto holds = [e](const Particle& one) { return e >= one.block.first_element && e < one.block.first_element + one.block.n_elements; };
+      const auto holds = [e](const Particle& one) { return one.block.holds_element(e); };
       if (!std::ranges::find_if(particles, holds)->slides()) normals_.row(static_cast<Eigen::Index>(i)).setZero();
     }
   }

@@ -48,7 +48,7 @@ class Free : public ParticleSystem {
     coupling::OperationCounts sum = before_;
     sum.evaluations += free_->evaluations();
     sum.assemblies += 1;
-    sum.solves += tube_ || scene_.medium() ? free_->evaluations() : body_.flow.affine() ? 11 : 29;
+    sum.solves += free_->linear_solves();
     sum.solver_iterations += free_->solver_iterations();
     return sum;
   }

@@ -108,7 +108,7 @@ std::string Warnings::choice() const {
   if (scene_.elastic() && scene_.membrane.load == "strong")
     return "the load is computed in the strong form, which amplifies errors of the shape until the time step vanishes: set Membrane/load "
            "to weak";
-  if (scene_.surface.polar() && scene_.surface.poles == "plain" && scene_.quadrature.rule == "fixed")
+  if (scene_.surface.polar() && scene_.surface.poles == "plain" && scene_.quadrature.rule == quadrature::LayerRule::fixed)
     return "a fixed Gauss rule does not converge on elements of plain poles: set Surface/poles to bezier transform, or Quadrature/rule to "
            "adaptive";
   if (const double k = scene_.membrane.global_area_dilatation;
@@ -151,7 +151,7 @@ std::string Warnings::stiffness(const StepFindings& signs) {
 std::string Warnings::fold(const StepFindings& signs) const {
   if (signs.jacobian_ratio > folding) return {};
   const std::string cure = scene_.membrane.load == "strong" && scene_.elastic()           ? "set Membrane/load to weak"
-                           : scene_.interface_motion() == "material" && !scene_.elastic() ? "set Interface/motion to relaxed"
+                           : scene_.interface_motion() == coupling::MeshMotion::material && !scene_.elastic() ? "set Interface/motion to relaxed"
                                                                                          : finer_mesh(scene_);
   const bool drawn = !scene_.elastic() && strains(scene_);
   return formatted("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure +
@@ -161,7 +161,8 @@ std::string Warnings::fold(const StepFindings& signs) const {
 std::string Warnings::stretch(const StepFindings& signs) const {
   if (signs.aspect_ratio < slenderness) return {};
   return formatted("an element is %.0f times as long as wide: ", signs.aspect_ratio) +
-         (scene_.elastic() || scene_.interface_motion() == "relaxed" ? "" : "set Interface/motion to relaxed, or ") + finer_mesh(scene_);
+         (scene_.elastic() || scene_.interface_motion() == coupling::MeshMotion::relaxed ? "" : "set Interface/motion to relaxed, or ") +
+         finer_mesh(scene_);
 }
 
 std::string Warnings::gap(const StepFindings& signs) const {

@@ -10,7 +10,7 @@ namespace {
 template <int Degree>
 struct Sums {
   static void area_weights(const PointTable& table, const double* bezier, Register* weight) {
-    const int n_b = (table.degree + 1) * (table.degree + 1);
+    const int n_b = n_bernstein<Degree>(table);
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
       Register a[3], b[3];
@@ -21,7 +21,7 @@ struct Sums {
   }
 
   static void single_sum(const PointTable& table, const double* x, const double* f, const Register* weight, const double* x0, double* u) {
-    const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
+    const int n_b = n_bernstein<Degree>(table);
     Register ux{}, uy{}, uz{};
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
@@ -37,7 +37,7 @@ struct Sums {
   }
 
   static void single_moments(const PointTable& table, const double* x, const Register* weight, const double* x0, Register* g, double* moment) {
-    const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
+    const int n_b = n_bernstein<Degree>(table);
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
       const Register rx = points.value(x) - x0[0], ry = points.value(x + n_b) - x0[1], rz = points.value(x + 2 * n_b) - x0[2];
@@ -50,7 +50,7 @@ struct Sums {
   }
 
   static void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
-    const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
+    const int n_b = n_bernstein<Degree>(table);
     Register ux{}, uy{}, uz{};
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
@@ -68,7 +68,7 @@ struct Sums {
   }
 
   static void double_moments(const PointTable& table, const double* x, const double* x0, Register* g, double* moment) {
-    const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
+    const int n_b = n_bernstein<Degree>(table);
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
       Register r[3], n[3];

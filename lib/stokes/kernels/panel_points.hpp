@@ -50,6 +50,13 @@ struct Points {
   }
 };
 
+/// Returns the number of Bernstein polynomials of a panel. `Degree`: as in Points.
+template <int Degree>
+int n_bernstein(const PointTable& table) {
+  const int n = Degree ? Degree + 1 : table.degree + 1;
+  return n * n;
+}
+
 /// Computes moment[n_c b + c], the sum of g[n_c k + c] B_b(k) over all points k of a table, for its Bernstein polynomials B_b. g: n_c values per
 /// point.
 template <int Degree, int n_c>

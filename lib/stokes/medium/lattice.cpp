@@ -45,7 +45,7 @@ void Lattice::add(LayerSources& sources, const LayerTargets& targets, Net& u) {
 void Lattice::subtract_surfaces(LayerSources& sources, const LayerTargets& targets, Net& u) const {
   const auto clock = sources.phases.time("far");
   std::vector<int> rows;
-  std::ranges::copy_if(targets.far_rows, std::back_inserter(rows), [&](int i) { return i >= targets.images_only; });
+  std::ranges::copy_if(targets.far_rows, std::back_inserter(rows), [&](int i) { return i >= targets.first_image_row; });
   if (rows.empty()) return;
   const Net sums = sources.direct_sum(sources.surface.node, rows_of(targets.at, rows), rows_of(targets.f0, rows));
   for (std::size_t k = 0; k < rows.size(); ++k) u.row(rows[k]) -= sums.row(static_cast<Eigen::Index>(k));

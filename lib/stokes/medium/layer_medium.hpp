@@ -28,7 +28,7 @@ struct LayerTargets {
   const Net& f0;                        ///< for each target, the constant subtracted from the density of a double layer
   std::span<const int> in_tree;         ///< ascending indices of the targets that are in the tree of clusters
   bool sites;                           ///< true if the targets are sites of the surfaces, false if they are off the surfaces
-  int images_only;                      ///< first row to which only displaced images contribute, see Layer::see_images_only
+  int first_image_row;                  ///< first row to which only displaced images contribute, see Layer::apply
 };
 
 /// Medium of a layer: the fluid and the boundaries that the kernels of the layer take into account. This class is unbounded fluid. A derived class

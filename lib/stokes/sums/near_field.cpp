@@ -92,11 +92,11 @@ void NearField::view(int e) {
 void NearField::update(const std::vector<double>& bezier, const PanelImages& images) {
   bezier_ = &bezier;
   for (int e = 0; e < panels_.size(); ++e)
-    if (images.own(e)) view(e);
+    if (!images.is_image(e)) view(e);
   std::vector<double> total(static_cast<std::size_t>(n_surfaces_), 0.);
   for (int e = 0; e < panels_.size(); ++e) total[static_cast<std::size_t>(surface_[e])] += views_[images.source[e]].area;
   for (int e = 0; e < panels_.size(); ++e) {
-    if (!images.own(e)) continue;
+    if (images.is_image(e)) continue;
     View& view = views_[e];
     const double area = total[static_cast<std::size_t>(surface_[e])];
     view.demand = demand_;
@@ -109,7 +109,7 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
     reach_[e] = reach * reach;
   }
   for (int e = 0; e < panels_.size(); ++e) {
-    if (!images.own(e)) {
+    if (images.is_image(e)) {
       const surface::Reflection& image = images.reflections[images.image[e]];
       const int source = images.source[e];
       views_[e] = views_[source];
@@ -123,8 +123,8 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
   vicinity_.set_points(panels_.size(), centre_[0].data(), centre_[1].data(), centre_[2].data(), reach_.data());
 }
 
-bool NearField::on_same_surface(int e, std::span<const SelfPair> own) const {
-  return !own.empty() && surface_[own.front().panel] == surface_[e];
+bool NearField::on_same_surface(int e, std::span<const SelfPair> self_pairs) const {
+  return !self_pairs.empty() && surface_[self_pairs.front().panel] == surface_[e];
 }
 
 /// Returns the distance of a target from the planar approximation of a panel, and the parameters of the Bernstein ellipses. If `across` is true
@@ -136,9 +136,9 @@ quadrature::Sight NearField::sight(const View& view, const Vec3& target, bool ac
   return quadrature::sight(view.flat, target - std::clamp(height, -view.bulge, view.bulge) * view.normal);
 }
 
-bool NearField::far_enough(int e, const Vec3& target, std::span<const SelfPair> own) const {
+bool NearField::far_enough(int e, const Vec3& target, std::span<const SelfPair> self_pairs) const {
   const View& view = views_[e];
-  const bool across = !on_same_surface(e, own);
+  const bool across = !on_same_surface(e, self_pairs);
   const quadrature::Sight seen = sight(view, target, across);
   const double rho = std::min(seen.rho_u, seen.rho_v);
   double power = (across ? view.across : view.demand).error(view.area, seen.distance);
@@ -146,21 +146,21 @@ bool NearField::far_enough(int e, const Vec3& target, std::span<const SelfPair> 
   return power >= 1;
 }
 
-void NearField::list(const Vec3& target, std::span<const SelfPair> own, std::vector<int>& near) {
+void NearField::list(const Vec3& target, std::span<const SelfPair> self_pairs, std::vector<int>& near) {
   near.clear();
   suspects_.clear();
   vicinity_.list(target.data(), suspects_);
   for (const int e : suspects_) {
-    const bool on_it = std::any_of(own.begin(), own.end(), [&](const SelfPair& pair) { return pair.panel == e; });
-    if (!on_it && !far_enough(e, target, own)) near.push_back(e);
+    const bool on_it = std::any_of(self_pairs.begin(), self_pairs.end(), [&](const SelfPair& pair) { return pair.panel == e; });
+    if (!on_it && !far_enough(e, target, self_pairs)) near.push_back(e);
   }
   std::sort(near.begin(), near.end());
 }
 
-const PointTable& NearField::rule(int panel, const Vec3& target, std::span<const SelfPair> own) {
+const PointTable& NearField::rule(int panel, const Vec3& target, std::span<const SelfPair> self_pairs) {
   const NodeTable& t = *panels_[panel].table;
   const View& view = views_[panel];
-  const bool across = !on_same_surface(panel, own);
+  const bool across = !on_same_surface(panel, self_pairs);
   const quadrature::Demand& demand = across ? view.across : view.demand;
   const quadrature::Sight seen = sight(view, target, across);
   const int needed = quadrature::order_for(demand.error(view.area, seen.distance), std::min(seen.rho_u, seen.rho_v));

@@ -38,12 +38,12 @@ class NearField {
   int surface(int panel) const { return surface_[static_cast<std::size_t>(panel)]; }
   int n_surfaces() const { return n_surfaces_; }  ///< number of closed surfaces
 
-  /// Lists the panels whose far rule does not reach the tolerance at the target, in ascending order, except the panels of `own`, which contain the
-  /// target.
-  void list(const Vec3& target, std::span<const SelfPair> own, std::vector<int>& near);
+  /// Lists the panels whose far rule does not reach the tolerance at the target, in ascending order, except the panels of `self_pairs`, which contain
+  /// the target.
+  void list(const Vec3& target, std::span<const SelfPair> self_pairs, std::vector<int>& near);
 
-  /// Returns the rule for a panel that list() found for this target with the same `own`. The table is valid until the next call.
-  const PointTable& rule(int panel, const Vec3& target, std::span<const SelfPair> own);
+  /// Returns the rule for a panel that list() found for this target with the same `self_pairs`. The table is valid until the next call.
+  const PointTable& rule(int panel, const Vec3& target, std::span<const SelfPair> self_pairs);
 
  private:
   struct View {
@@ -54,9 +54,9 @@ class NearField {
                                         ///< all other targets
   };
   void view(int e);
-  bool on_same_surface(int e, std::span<const SelfPair> own) const;
+  bool on_same_surface(int e, std::span<const SelfPair> self_pairs) const;
   static quadrature::Sight sight(const View& view, const Vec3& target, bool across);
-  bool far_enough(int e, const Vec3& target, std::span<const SelfPair> own) const;
+  bool far_enough(int e, const Vec3& target, std::span<const SelfPair> self_pairs) const;
 
   const Panels& panels_;
   quadrature::Demand demand_;  ///< required accuracy. The members that depend on the surface area are 0 here; update() sets them in each View

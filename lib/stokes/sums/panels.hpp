@@ -58,7 +58,7 @@ struct PanelImages {
   std::vector<int> source, image;
   std::vector<surface::Reflection> reflections;
 
-  bool own(int e) const { return image[e] < 0; }
+  bool is_image(int e) const { return image[e] >= 0; }
 };
 
 /// Computes the values of a field at all far nodes from the field's Bezier points, one array per component.

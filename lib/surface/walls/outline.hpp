@@ -7,7 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "surface/options.hpp"
+#include "base/types.hpp"
+#include "surface/walls/duct_options.hpp"
 
 namespace tanktread::surface {
 

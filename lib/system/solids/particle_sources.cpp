@@ -48,8 +48,7 @@ void ParticleSources::set_shape(const Net& x) {
 SourceTargets ParticleSources::prepared(const Net& at, std::span<const int> rows, int first_image_row) {
   SourceTargets targets{.first_image_row = first_image_row};
   if (!double_layer) return targets;
-  double_layer->see_images_only(first_image_row);
-  targets.corrections = double_layer->near(at, rows);
+  targets.corrections = double_layer->near(at, rows, first_image_row);
   targets.nearest.resize(static_cast<std::size_t>(std::min<Eigen::Index>(first_image_row, at.rows())));
   for (const int i : rows) {
     if (i >= first_image_row) continue;
@@ -65,16 +64,14 @@ SourceTargets ParticleSources::prepared(const Net& at, std::span<const int> rows
 void ParticleSources::add_velocity(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& sum, const SourceTargets& targets) {
   Net part(at.rows(), 3);
   if (f.size() > 0) {
-    single_layer.see_images_only(targets.first_image_row);
-    single_layer.apply(f, at, rows, part);
+    single_layer.apply(f, at, rows, part, nullptr, targets.first_image_row);
     for (const int i : rows) sum.row(i) -= part.row(i) / viscosity_;
   }
   if (v.size() == 0 || !double_layer) return;
   const Net q = strength(v);
   Net nearby = Net::Zero(at.rows(), 3);  // subtracted from q. u does not change (2.3), but the integrand is smaller
   nearby.topRows(static_cast<Eigen::Index>(targets.nearest.size())) = Net(collocation_ * q)(targets.nearest, Eigen::all);
-  double_layer->see_images_only(targets.first_image_row);
-  double_layer->apply(q, nearby, at, rows, part, targets.corrections ? &*targets.corrections : nullptr);
+  double_layer->apply(q, nearby, at, rows, part, targets.corrections ? &*targets.corrections : nullptr, targets.first_image_row);
   for (const int i : rows) sum.row(i) += part.row(i);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 // Velocity that the particles cause at points off their surfaces: on the wall of a tube, on plates and posts, or in the fluid.
 
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,7 +16,7 @@ namespace tanktread::coupling {
 /// Properties of targets of ParticleSources. At targets `first_image_row` and higher, only the images of the particles on the lattice contribute.
 /// ParticleSources::prepared sets the other members, with which the double layer is evaluated faster.
 struct SourceTargets {
-  int first_image_row = std::numeric_limits<int>::max();
+  int first_image_row = stokes::Layer::no_row;
   std::vector<int> nearest{};                        ///< for each target below `first_image_row`, the nearest collocation point of the particles
   std::optional<stokes::Layer::Near> corrections{};  ///< corrections of the double layer by near-singular quadrature
 };
@@ -50,7 +49,7 @@ class ParticleSources {
   void set_shape(const Net& x);
 
   /// Prepares `rows` of the targets at the points `at`, for the current shape.
-  SourceTargets prepared(const Net& at, std::span<const int> rows, int first_image_row = std::numeric_limits<int>::max());
+  SourceTargets prepared(const Net& at, std::span<const int> rows, int first_image_row = stokes::Layer::no_row);
 
   /// Adds u to `rows` of `sum`, at the points `at`. An empty f or v counts as zero. `targets`: result of prepared() for these points, or only the
   /// member `first_image_row`.

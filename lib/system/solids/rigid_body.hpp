@@ -52,7 +52,7 @@ class LoneRigidBody : public Dynamics {
   void linearise(const Net&) override {}
   Net solve(double, const Net& r, double, const Secants&) override { return r; }  ///< returns r: the Jacobian is taken as 0, because the motion is
                                                                                   ///< not stiff
-  Net missed(const Net& change, const Net& delta, double shift) override { return change + delta / shift; }
+  Net jacobian_error(const Net& change, const Net& delta, double shift) override { return change + delta / shift; }
   void restore_volume(Net& place) override;                       ///< normalises the quaternion; the volume of a rigid body needs no correction
   double norm(const Net& displacement) const override;            ///< combines the displacement of the centre, divided by R_C, and the angle of
                                                                   ///< rotation
@@ -67,7 +67,8 @@ class LoneRigidBody : public Dynamics {
   virtual Eigen::VectorXd unknowns() const { return {}; }
   virtual void start_from(const Eigen::VectorXd&) {}
 
-  virtual long solver_iterations() const { return 0; }          ///< number of iterations of the linear solver since construction
+  virtual long linear_solves() const = 0;               ///< number of linear systems solved for the motion, including the construction
+  virtual long solver_iterations() const { return 0; }  ///< number of iterations of the linear solver since construction
 
   Net surface(const Net& place) const { return moved(surface_, place); }  ///< control net of the surface in the laboratory frame
   const Vec3& centre() const { return centre_; }  ///< centre at the initial position
@@ -97,6 +98,7 @@ class FreeBody : public LoneRigidBody {
   RigidMotion motion(const Net& place) const override;
   Net force_density(const Net& place) const override;
   Mat3 stresslet(const Net& place) const override;
+  long linear_solves() const override { return modes_.response.cols(); }
 
  private:
   Eigen::VectorXd amplitudes(const Net& place) const;
@@ -130,6 +132,7 @@ class BoundedFreeBody : public LoneRigidBody {
   double pressure_drop(const Net& place) const override;
   Eigen::VectorXd unknowns() const override { return unknowns_; }
   void start_from(const Eigen::VectorXd& unknowns) override { unknowns_ = unknowns; }
+  long linear_solves() const override { return evaluations(); }
   long solver_iterations() const override { return iterations_; }
 
  private:

@@ -168,6 +168,8 @@ class Tube {
   struct BetweenSitesOfWall;
   double viscosity() const;
   double cap_velocity(const Net& f, const Net& v, const Response& response);
+  double gap_to_straight_wall() const;
+  double gap_to_channel_wall() const;
   double empty_pressure_drop() const;
   double slowed(double pressure_drop) const;
   Net driven(const Net& at) const;

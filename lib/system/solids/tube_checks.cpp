@@ -147,19 +147,23 @@ bool Tube::inside(const Net& x, std::span<const int> rows) const {
   });
 }
 
-double Tube::gap() const {
-  const surface::Patches patches(particle_->geometry.bezier(), particle_->shape);
-  if (fixed()) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may extend beyond the end of the period
-      const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
-      if (beyond == 0 || wall().period > 0)
-        nearest =
-            std::min(nearest, surface::closest_points(surface::ElementBoxes(seen), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
-    }
-    return inside(particle_->sites(), indices(particle_->sites().rows())) ? nearest : -nearest;
+double Tube::gap() const { return fixed() ? gap_to_channel_wall() : gap_to_straight_wall(); }
+
+/// Returns the gap to the wall of a straight tube, from the clearance between the particle and the outline of the cross-section.
+double Tube::gap_to_straight_wall() const {
+  return surface::clearance(surface::Patches(particle_->geometry.bezier(), particle_->shape), wall().outline).gap;
+}
+
+/// Returns the gap to the wall of a channel, from the closest points of the two surfaces.
+double Tube::gap_to_channel_wall() const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may extend beyond the end of the period
+    const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
+    if (beyond == 0 || wall().period > 0)
+      nearest =
+          std::min(nearest, surface::closest_points(surface::ElementBoxes(seen), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
   }
-  return surface::clearance(patches, wall_->surface().outline).gap;
+  return inside(particle_->sites(), indices(particle_->sites().rows())) ? nearest : -nearest;
 }
 
 }  // namespace tanktread::coupling

@@ -6,23 +6,6 @@
 
 namespace tanktread::coupling {
 
-void VolumeOptions::declare(deck::Section& section) {
-  section.key("constraint", constraint, deck::Choice{"exact", "flux", "none"},
-              "conservation of the particle's volume. `flux`: every computed velocity has zero net flux through the surface (2.8). "
-              "`exact`: zero net flux, and the volume is also restored after every step. `none`: no constraint");
-}
-
-void InterfaceOptions::declare(deck::Section& section) {
-  section.key("motion", motion, deck::Choice{"material", "normal", "relaxed"},
-              "motion of the control points of a drop's interface. `material`: with the fluid. `normal`: only normal to the interface. "
-              "`relaxed`: with the fluid in the normal direction, and tangentially so that elements keep their shape. If not "
-              "given, `relaxed` for Membrane/law `surface tension`, and `material` for all other laws");
-  section.key("relaxation", relaxation, deck::not_negative(), "1",
-              "dimensionless speed at which the mesh of a drop slides along the interface to keep its elements well shaped, with "
-              "Interface/motion `relaxed`: it slides like an elastic membrane of capillary number 1/relaxation. Increase it if elements "
-              "become distorted");
-}
-
 void IterativeOptions::declare(deck::Section& section) {
   path = section.path();
   section.key("iterative solver", solver, deck::Choice{},

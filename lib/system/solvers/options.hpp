@@ -9,25 +9,6 @@
 
 namespace tanktread::coupling {
 
-/// Options `Volume/*` of the deck: how the volume of the particle is conserved.
-struct VolumeOptions {
-  /// Volume constraint. flux: zero net flux in every evaluation (2.8). exact: in addition, the volume is restored after every step. none: no
-  /// constraint.
-  std::string constraint = "exact";
-
-  void declare(deck::Section& section);
-};
-
-/// Options `Interface/*` of the deck: tangential motion of the control points along an interface. Without a membrane this motion is arbitrary.
-struct InterfaceOptions {
-  /// Motion of the control points. material: with the fluid; normal: only normal to the surface; relaxed: with the fluid in the normal direction, and
-  /// tangentially so that elements keep their shape. If not set: relaxed for a surface tension, material otherwise.
-  std::optional<std::string> motion;
-  double relaxation = 1;  ///< relaxation speed of the mesh, which moves like an elastic surface at capillary number 1/relaxation
-
-  void declare(deck::Section& section);
-};
-
 /// Options `Solvers/<system>` of the deck: the iterative solver of one kind of system.
 struct IterativeOptions {
   std::optional<std::string> solver{};            ///< Belos' name of the solver; if not set, SolverOptions::krylov

@@ -13,11 +13,11 @@ constexpr double regularisation = 1e-2;  // regularisation of the normal equatio
 
 Secants::Secants(std::vector<Net> pairs) : pairs_(std::move(pairs)) { factor(); }
 
-void Secants::add(const Net& correction, const Net& missed, int most) {
+void Secants::add(const Net& correction, const Net& jacobian_error, int most) {
   const double size = correction.norm();
-  if (most == 0 || size == 0 || !missed.allFinite()) return;
+  if (most == 0 || size == 0 || !jacobian_error.allFinite()) return;
   pairs_.push_back(correction / size);
-  pairs_.push_back(missed / size);
+  pairs_.push_back(jacobian_error / size);
   while (pairs_.size() > 2 * static_cast<std::size_t>(most)) pairs_.erase(pairs_.begin(), pairs_.begin() + 2);
   factor();
 }

@@ -22,8 +22,8 @@ class Secants {
   explicit Secants(std::vector<Net> pairs);
   Secants() = default;
 
-  /// Adds the correction d_i = `correction` with its error e_i = `missed`. Only the last `most` pairs (d_i, e_i) are kept.
-  void add(const Net& correction, const Net& missed, int most);
+  /// Adds the correction d_i = `correction` with its error e_i = `jacobian_error`. Only the last `most` pairs (d_i, e_i) are kept.
+  void add(const Net& correction, const Net& jacobian_error, int most);
 
   /// Returns E w.
   Net operator()(const Net& w) const;

@@ -11,7 +11,7 @@ class ExplicitMotion : public coupling::Dynamics {
   void freeze(const Net&) override {}
   void linearise(const Net&) override {}
   Net solve(double, const Net& r, double, const coupling::Secants&) override { return r; }
-  Net missed(const Net& change, const Net&, double) override { return 0 * change; }
+  Net jacobian_error(const Net& change, const Net&, double) override { return 0 * change; }
   void restore_volume(Net&) override {}
 };
 

@@ -39,7 +39,7 @@ class Model : public coupling::Dynamics {
     const Mat3 w = Mat3::Identity() - shift * j;
     return (w.inverse() * r.transpose()).transpose();
   }
-  Net missed(const Net& change, const Net&, double) override { return 0 * change; }
+  Net jacobian_error(const Net& change, const Net&, double) override { return 0 * change; }
   void restore_volume(Net&) override {}
   double norm(const Net& d) const override { return d.norm() / std::sqrt(3.0); }
 
@@ -63,7 +63,7 @@ class Incomplete : public Model {
     for (int c = 0; c < 3; ++c) w.col(c) -= shift * secants(Net(Vec3::Unit(c).transpose())).transpose();
     return (w.inverse() * r.transpose()).transpose();
   }
-  Net missed(const Net& change, const Net& delta, double shift) override {
+  Net jacobian_error(const Net& change, const Net& delta, double shift) override {
     return change + delta / shift - delta * jacobian().transpose();
   }
 

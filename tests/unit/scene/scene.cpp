@@ -41,7 +41,7 @@ TEST(Scenes, WithoutAnyKeyAreASphereInShear) {
   EXPECT_EQ(s.radius(), 1.0);
   EXPECT_NEAR(s.modulus(), 1 / 0.3, 1e-15);
   EXPECT_EQ(s.membrane.law, "neo-Hookean");
-  EXPECT_EQ(s.volume.constraint, "exact");
+  EXPECT_EQ(s.volume.constraint, coupling::VolumeConservation::exact);
   EXPECT_EQ(s.time.scheme, "tr-bdf2");
   EXPECT_EQ(s.snapshot_interval(), s.time.final_time / 20);
 }

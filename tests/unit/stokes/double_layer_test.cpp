@@ -45,14 +45,15 @@ const Scene& scene() {
 double largest(const Net& u) { return u.rowwise().norm().maxCoeff(); }
 
 TEST(DoubleLayer, AssembledRowsTimesAVelocityAreTheSum) {
-  for (const char* rule : {"adaptive", "fixed", "desingularised"}) {
+  using enum quadrature::LayerRule;
+  for (const auto rule : {adaptive, fixed, desingularised}) {
     DoubleLayer layer(scene().space, {.tolerance = 1e-6, .rule = rule, .points = 4});
     Net u = Net::Zero(scene().space.n_points, 3), rows = u;
     layer.apply(scene().x, scene().v, scene().all, u);
     Rows<double> a;
     layer.assemble(scene().x, scene().all, a);
     rows.reshaped<Eigen::RowMajor>() = a * scene().v.reshaped<Eigen::RowMajor>();
-    EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << rule;  // round-off of sums in another order
+    EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << word(rule);  // round-off of sums in another order
   }
 }
 
@@ -117,8 +118,8 @@ TEST(DoubleLayer, AssembledRowsOfTwoSurfacesTimesAVelocityAreTheSum) {
 
 TEST(DoubleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
   const Net exact = scene().apply(scene().v, {.tolerance = 1e-10});
-  const double at_6 = largest(scene().apply(scene().v, {.rule = "desingularised", .points = 6}) - exact) / largest(exact);
-  const double at_12 = largest(scene().apply(scene().v, {.rule = "desingularised", .points = 12}) - exact) / largest(exact);
+  const double at_6 = largest(scene().apply(scene().v, {.rule = quadrature::LayerRule::desingularised, .points = 6}) - exact) / largest(exact);
+  const double at_12 = largest(scene().apply(scene().v, {.rule = quadrature::LayerRule::desingularised, .points = 12}) - exact) / largest(exact);
   EXPECT_LT(at_12, 1e-3);
   EXPECT_GT(at_6 / at_12, 3.5);  // the integrand is bounded but not smooth: the order is at least two in the spacing of the points
 }
@@ -131,8 +132,8 @@ TEST(SingleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
     return u;
   };
   const Net exact = apply({.tolerance = 1e-10});
-  const double at_6 = largest(apply({.rule = "desingularised", .points = 6}) - exact) / largest(exact);
-  const double at_12 = largest(apply({.rule = "desingularised", .points = 12}) - exact) / largest(exact);
+  const double at_6 = largest(apply({.rule = quadrature::LayerRule::desingularised, .points = 6}) - exact) / largest(exact);
+  const double at_12 = largest(apply({.rule = quadrature::LayerRule::desingularised, .points = 12}) - exact) / largest(exact);
   EXPECT_LT(at_12, 1e-3);
   EXPECT_GT(at_6 / at_12, 3.5);  // the order is at least two, as for the double layer
 }

@@ -83,7 +83,7 @@ TEST(PeriodicLayer, AssembledRowsOfTargetsAtFarNodesAreTheSum) {
   for (int e = 0; e < 16; ++e) sites.push_back({{e, node(e), node(e / 2)}});
   std::vector<int> all(sites.size());
   std::iota(all.begin(), all.end(), 0);
-  Layer layer(Layer::Kernel::single_layer, space, sites, {.rule = "fixed", .points = points, .far_sum = "dense"});
+  Layer layer(Layer::Kernel::single_layer, space, sites, {.rule = quadrature::LayerRule::fixed, .points = points, .far_sum = "dense"});
   layer.repeat(cell(), {.assembled = true});
   layer.set_shape(x);
   Net u(static_cast<Eigen::Index>(sites.size()), 3);

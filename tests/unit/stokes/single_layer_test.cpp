@@ -68,7 +68,8 @@ TEST(SingleLayer, RulesOfASurfaceDoNotDependOnHowManyThereAre) {
 }
 
 TEST(SingleLayer, AssembledRowsTimesADensityAreTheSum) {
-  for (const char* rule : {"adaptive", "fixed", "desingularised"}) {
+  using enum quadrature::LayerRule;
+  for (const auto rule : {adaptive, fixed, desingularised}) {
     for (const Measure measure : {Measure::reference, Measure::current}) {
       SingleLayer layer(scene().space, {.tolerance = 1e-6, .rule = rule, .points = 4});
       layer.set_reference(scene().unstressed);
@@ -77,16 +78,17 @@ TEST(SingleLayer, AssembledRowsTimesADensityAreTheSum) {
       Rows<double> a;
       layer.assemble(scene().x, measure, scene().all, a);
       rows.reshaped<Eigen::RowMajor>() = a * scene().f.reshaped<Eigen::RowMajor>();
-      EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << rule;  // round-off of sums in another order
+      EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << word(rule);  // round-off of sums in another order
       Rows<float> single;
       layer.assemble(scene().x, measure, scene().all, single);
-      EXPECT_LT((single.cast<double>() - a).cwiseAbs().maxCoeff(), 1e-5 * a.cwiseAbs().maxCoeff()) << rule;  // single precision
+      EXPECT_LT((single.cast<double>() - a).cwiseAbs().maxCoeff(), 1e-5 * a.cwiseAbs().maxCoeff()) << word(rule);  // single precision
     }
   }
 }
 
 TEST(SingleLayer, BlocksOfNearControlPointsAreThoseOfTheRows) {
-  for (const char* rule : {"adaptive", "fixed", "desingularised"}) {
+  using enum quadrature::LayerRule;
+  for (const auto rule : {adaptive, fixed, desingularised}) {
     SingleLayer layer(scene().space, {.tolerance = 1e-6, .rule = rule, .points = 4});
     layer.set_reference(scene().unstressed);
     Rows<double> a;
@@ -104,7 +106,7 @@ TEST(SingleLayer, BlocksOfNearControlPointsAreThoseOfTheRows) {
       for (std::size_t j = near.first[i]; j < near.first[i + 1]; ++j) {
         const Mat3 block = a.block<3, 3>(3 * i, 3 * near.point[j]);
         const double upper[6] = {block(0, 0), block(0, 1), block(0, 2), block(1, 1), block(1, 2), block(2, 2)};
-        for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(entries[6 * j + c], upper[c], allowed) << rule;
+        for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(entries[6 * j + c], upper[c], allowed) << word(rule);
       }
   }
 }
@@ -165,7 +167,7 @@ TEST(SingleLayer, KeepsItsToleranceAtTipsThatAreAsSharpAsTheirElements) {
 
 TEST(SingleLayer, FixedRuleOfThePaperIsGoodToSevenDigitsAtVertices) {
   const Net exact = scene().apply(scene().x, scene().f, {.tolerance = 1e-10});
-  const Net fixed = scene().apply(scene().x, scene().f, {.rule = "fixed", .points = 8});
+  const Net fixed = scene().apply(scene().x, scene().f, {.rule = quadrature::LayerRule::fixed, .points = 8});
   EXPECT_LT(largest(fixed - exact), 1e-6 * largest(exact));
   EXPECT_GT(largest(fixed - exact), 1e-9 * largest(exact));  // the rules differ
 }

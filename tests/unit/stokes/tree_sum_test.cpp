@@ -270,7 +270,7 @@ TEST(TreeSum, IsChosenForLargeSurfacesOnly) {
   EXPECT_TRUE(chosen(24, {}));
   EXPECT_TRUE(chosen(6, {.far_sum = "tree"}));
   EXPECT_FALSE(chosen(24, {.far_sum = "dense"}));
-  EXPECT_FALSE(chosen(24, {.rule = "desingularised"}));  // its identities sum over every node
+  EXPECT_FALSE(chosen(24, {.rule = quadrature::LayerRule::desingularised}));  // its identities sum over every node
 }
 
 }  // namespace tree_sum_test

@@ -57,7 +57,7 @@ TEST(Capsule, NoFluxThroughTheSurface) {
   Fixture f;
   for (const auto measure : {stokes::Measure::reference, stokes::Measure::current}) {
     f.parameters.particles.front().measure = measure;
-    f.parameters.volume.constraint = "flux";
+    f.parameters.volume.constraint = VolumeConservation::flux;
     Capsule capsule = f.capsule();
     const Net x = f.deformed(), b = capsule.geometry().volume_gradient(x), v = capsule.velocity(x);
     EXPECT_NEAR(dot(b, v), 0, 1e-13 * b.norm() * v.norm());
@@ -157,7 +157,8 @@ TEST_P(JacobianOf, CapsuleIsTheDerivativeOfTheVelocityAtRest) {
   f.parameters.solvers.frozen_operator = GetParam().frozen_operator;
   f.flow.type = GetParam().flow;
   f.flow.profile = "round", f.flow.maximum_velocity = 4, f.flow.half_width = 2;
-  f.parameters.volume.constraint = "flux";  // the Jacobian omits the derivative of this constraint, so that only directions without flux are tested
+  // The Jacobian omits the derivative of this constraint, so that only directions without flux are tested.
+  f.parameters.volume.constraint = VolumeConservation::flux;
   Capsule capsule = f.capsule();
   Net delta(f.sphere.rows(), 3);
   for (Eigen::Index i = 0; i < delta.rows(); ++i) {
@@ -169,7 +170,7 @@ TEST_P(JacobianOf, CapsuleIsTheDerivativeOfTheVelocityAtRest) {
   capsule.freeze(f.sphere);
   capsule.linearise(f.sphere);
   const double h = 1e-5, shift = 0.7;
-  f.parameters.volume.constraint = "none";
+  f.parameters.volume.constraint = VolumeConservation::none;
   Capsule free = f.capsule();
   const Net jd = (free.velocity(f.sphere + h * delta) - free.velocity(f.sphere - h * delta)) / (2 * h);
   const Net solved = capsule.solve(shift, delta - shift * jd, 1e-7, {});
@@ -184,7 +185,7 @@ INSTANTIATE_TEST_SUITE_P(FrozenOperators, JacobianOf,
 TEST(Capsule, ViscosityRatioChangesTheVelocityAsTheBoundaryIntegralEquationSays) {
   Fixture f;
   const Net x = f.deformed();
-  f.parameters.volume.constraint = "none";
+  f.parameters.volume.constraint = VolumeConservation::none;
   f.parameters.quadrature.tolerance = 1e-7;
   f.parameters.solvers.tolerance = 1e-10;
   const Net w = f.capsule().velocity(x);  // v_inf minus the single layer of the load: the right-hand side of (2.4)

@@ -27,7 +27,7 @@ struct Confined {
   std::optional<surface::TubeWall> wall;
   std::unique_ptr<Capsule> capsule;
 
-  Confined(double viscosity_ratio, const std::string& form, const std::string& interface = {}) {
+  Confined(double viscosity_ratio, const std::string& form, std::optional<MeshMotion> interface = {}) {
     const spline::TMesh mesh = spline::cube(3);
     space = spline::space(mesh, spline::ExtraordinaryRule::g1);
     const surface::LeastSquaresFit fit(space);
@@ -55,10 +55,10 @@ struct Confined {
     parameters.solvers.tolerance = 1e-11;
     parameters.quadrature.tolerance = 1e-7;  // because differences of velocities are compared
     TubeParameters in_tube;
-    if (!interface.empty()) {
+    if (interface) {
       parameters.particles.front().material.law = membrane::SurfaceTension{10};
       parameters.particles.front().measure = stokes::Measure::current;
-      parameters.particles.front().interface_motion = interface;
+      parameters.particles.front().interface_motion = *interface;
       parameters.particles.front().interface_speed = 1;
     }
     in_tube.viscosity = 1.3;
@@ -82,12 +82,12 @@ TEST(CapsuleInTube, EveryFormOfTheBlockSystemGivesTheVelocityOfTheSchurComplemen
 // The wall responds to the fluid velocity on the interface. The tangential motion of the mesh has no influence.
 TEST(CapsuleInTube, PressureDropOfADropIsThatOfTheFluidHoweverControlPointsMove) {
   for (const double ratio : {0.2, 4.0}) {
-    Confined material(ratio, "schur", "material");
+    Confined material(ratio, "schur", MeshMotion::material);
     const double drop = material.capsule->evaluate(material.x)->response().pressure_drop;
-    for (const char* motion : {"normal", "relaxed"}) {
+    for (const MeshMotion motion : {MeshMotion::normal, MeshMotion::relaxed}) {
       Confined sliding(ratio, "schur", motion);
       EXPECT_NEAR(sliding.capsule->evaluate(sliding.x)->response().pressure_drop, drop, 1e-8 * std::abs(drop))
-          << ratio << " " << motion;  // residuals of 1e-11, condition numbers of 1e3
+          << ratio << " " << word(motion);  // residuals of 1e-11, condition numbers of 1e3
       EXPECT_GT((sliding.capsule->velocity(sliding.x) - material.capsule->velocity(material.x)).norm(), 1e-2);
     }
   }

@@ -17,7 +17,7 @@ struct Drop : SphereInFlow {
     parameters.particles.front().measure = stokes::Measure::current;
     parameters.particles.front().interface_speed = 1;
   }
-  Net velocity(const std::string& motion, const Net& x) {
+  Net velocity(MeshMotion motion, const Net& x) {
     parameters.particles.front().interface_motion = motion;
     return capsule().velocity(x);
   }
@@ -35,22 +35,22 @@ struct Drop : SphereInFlow {
 
 TEST(InterfaceMotion, AllMotionsCrossTheInterfaceAlike) {
   Drop drop;
-  drop.parameters.volume.constraint = "none";
+  drop.parameters.volume.constraint = VolumeConservation::none;
   Net x = drop.sphere;
   x.col(0) *= 1.2, x.col(2) *= 0.9;
-  const Net material = drop.velocity("material", x);
-  for (const char* motion : {"normal", "relaxed"}) {
+  const Net material = drop.velocity(MeshMotion::material, x);
+  for (const MeshMotion motion : {MeshMotion::normal, MeshMotion::relaxed}) {
     const Net difference = drop.velocity(motion, x) - material;
     const auto [across, along] = drop.components(x, difference);
-    EXPECT_LT(across, 1e-13) << motion;  // projected and interpolated at the sites that are compared
-    EXPECT_GT(along, 1e-2) << motion;
+    EXPECT_LT(across, 1e-13) << word(motion);  // projected and interpolated at the sites that are compared
+    EXPECT_GT(along, 1e-2) << word(motion);
   }
 }
 
 TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
   Drop drop;
-  drop.parameters.volume.constraint = "none";
-  const Net v = drop.velocity("normal", drop.sphere);
+  drop.parameters.volume.constraint = VolumeConservation::none;
+  const Net v = drop.velocity(MeshMotion::normal, drop.sphere);
   const auto [across, along] = drop.components(drop.sphere, v);
   EXPECT_GT(across, 0.1);
   EXPECT_LT(along, 1e-10);  // round-off of the interpolation
@@ -65,14 +65,14 @@ TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
   drop.parameters.particles.front().interface_speed = 1;
   drop.parameters.quadrature.tolerance = 1e-6;
   for (const double ratio : {0.1, 10.0})
-    for (const char* motion : {"material", "normal", "relaxed"}) {
+    for (const MeshMotion motion : {MeshMotion::material, MeshMotion::normal, MeshMotion::relaxed}) {
       drop.parameters.particles.front().viscosity_ratio = ratio;
       drop.parameters.particles.front().interface_motion = motion;
       Capsule capsule = drop.capsule();
       const Mat3 s = capsule.evaluate(drop.sphere)->stresslet();
       const double exact = 2 * 4 * std::numbers::pi / 3 * 5 * (ratio - 1) / (2 * ratio + 3);
-      EXPECT_NEAR(s(0, 0) / exact, 1, 1e-4) << ratio << " " << motion;  // error of the sphere's mesh
-      EXPECT_NEAR(s(2, 2) / exact, -1, 1e-4) << ratio << " " << motion;
+      EXPECT_NEAR(s(0, 0) / exact, 1, 1e-4) << ratio << " " << word(motion);  // error of the sphere's mesh
+      EXPECT_NEAR(s(2, 2) / exact, -1, 1e-4) << ratio << " " << word(motion);
     }
 }
 
@@ -81,15 +81,15 @@ TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
   const spline::PolarMesh polar{8, 6, spline::PoleRule::plain};
   drop.space = spline::space(polar);
   drop.sphere = surface::resting_shape(drop.space, polar, 2, {});
-  drop.parameters.volume.constraint = "none";
-  for (const char* motion : {"normal", "relaxed"}) {
+  drop.parameters.volume.constraint = VolumeConservation::none;
+  for (const MeshMotion motion : {MeshMotion::normal, MeshMotion::relaxed}) {
     const Net v = drop.velocity(motion, drop.sphere);
-    ASSERT_TRUE(v.allFinite()) << motion;
+    ASSERT_TRUE(v.allFinite()) << word(motion);
     for (const auto& sites : drop.space.collocation)
       if (sites.size() > 4) {  // a pole, near which the flow is (x1, 0, -x3)
         const Vec3 x = surface::value(drop.space, drop.sphere, sites.front()), u = surface::value(drop.space, v, sites.front());
-        EXPECT_LT(u.head<2>().norm(), 1e-10 * std::abs(u[2])) << motion;  // round-off
-        EXPECT_LT(u[2] * x[2], -0.1) << motion;
+        EXPECT_LT(u.head<2>().norm(), 1e-10 * std::abs(u[2])) << word(motion);  // round-off
+        EXPECT_LT(u[2] * x[2], -0.1) << word(motion);
       }
   }
 }
@@ -103,9 +103,9 @@ TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
   Net x = drop.sphere;
   x.col(0) *= 1.2, x.col(2) *= 0.9;
   const Eigen::RowVector3d away(2, -3, 10), carried = away * drop.flow.gradient->transpose();
-  for (const char* motion : {"material", "normal", "relaxed"}) {
+  for (const MeshMotion motion : {MeshMotion::material, MeshMotion::normal, MeshMotion::relaxed}) {
     const Net here = drop.velocity(motion, x), there = drop.velocity(motion, x.rowwise() + away);
-    EXPECT_LT(((there.rowwise() - carried) - here).norm(), 1e-12 * there.norm()) << motion;  // round-off
+    EXPECT_LT(((there.rowwise() - carried) - here).norm(), 1e-12 * there.norm()) << word(motion);  // round-off
   }
 }
 
@@ -119,15 +119,15 @@ TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
   Net x = drop.sphere;
   x.col(0) *= 2, x.col(2) *= 0.5;
   x = x.rowwise() + Eigen::RowVector3d(0.4, -1, 2);
-  const auto velocity = [&](const char* motion, const Net& shape, const Mat3& gradient) {
+  const auto velocity = [&](MeshMotion motion, const Net& shape, const Mat3& gradient) {
     drop.flow.gradient = gradient;
     return drop.velocity(motion, shape);
   };
-  for (const char* motion : {"material", "normal", "relaxed"}) {
+  for (const MeshMotion motion : {MeshMotion::material, MeshMotion::normal, MeshMotion::relaxed}) {
     const Net held = velocity(motion, x, strain), turned = velocity(motion, x, strain + turns);
-    EXPECT_LT((turned - x * turns.transpose() - held).norm(), 1e-12 * turned.norm()) << motion;  // round-off
+    EXPECT_LT((turned - x * turns.transpose() - held).norm(), 1e-12 * turned.norm()) << word(motion);  // round-off
   }
-  const Net carried = velocity("material", drop.sphere, strain + turns) - velocity("material", drop.sphere, strain);
+  const Net carried = velocity(MeshMotion::material, drop.sphere, strain + turns) - velocity(MeshMotion::material, drop.sphere, strain);
   EXPECT_LT((carried - drop.sphere * turns.transpose()).norm(), 1e-12 * carried.norm());  // round-off
 }
 
@@ -135,11 +135,11 @@ TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
 TEST(InterfaceMotion, AFlowThatTurnsASphereDoesNotTurnItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
-  drop.parameters.volume.constraint = "none";
+  drop.parameters.volume.constraint = VolumeConservation::none;
   const Mat3 turns = (Mat3() << 0, -0.7, 2, 0.7, 0, 0.4, -2, -0.4, 0).finished();
   drop.flow.gradient = turns;
-  for (const char* motion : {"normal", "relaxed"})
-    EXPECT_LT(drop.velocity(motion, drop.sphere).norm(), 1e-2 * (drop.sphere * turns.transpose()).norm()) << motion;  // error of this coarse mesh
+  for (const MeshMotion motion : {MeshMotion::normal, MeshMotion::relaxed})
+    EXPECT_LT(drop.velocity(motion, drop.sphere).norm(), 1e-2 * (drop.sphere * turns.transpose()).norm()) << word(motion);  // mesh error
   // A mesh whose points crowd on one side: their mean is not the centre.
   Net crowded = drop.sphere;
   for (auto point : crowded.rowwise()) {
@@ -148,7 +148,7 @@ TEST(InterfaceMotion, AFlowThatTurnsASphereDoesNotTurnItsMesh) {
     point *= radius / point.norm();
   }
   ASSERT_GT(crowded.colwise().mean()[0], 0.15);
-  EXPECT_LT(drop.velocity("normal", crowded).norm(), 0.1 * (crowded * turns.transpose()).norm());  // the surface is a sphere but for a few hundredths
+  EXPECT_LT(drop.velocity(MeshMotion::normal, crowded).norm(), 0.1 * (crowded * turns.transpose()).norm());  // a sphere to a few hundredths
 }
 
 // A purely tangential velocity belongs to a steady shape.
@@ -159,9 +159,9 @@ TEST(InterfaceMotion, TheMeshOfASteadyShapeStaysWhereItIs) {
   drop.flow.type = "linear";
   const Mat3 shear = (Mat3() << 0, 0, 2.25, 0, 0, 0, -1, 0, 0).finished();  // tank-treads along the surface of this ellipsoid
   drop.flow.gradient = shear;
-  drop.parameters.volume.constraint = "none";
+  drop.parameters.volume.constraint = VolumeConservation::none;
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
-  EXPECT_LT(drop.velocity("normal", x).norm(), 5e-3 * (x * shear.transpose()).norm());  // discretisation error of this coarse mesh, 4e-3
+  EXPECT_LT(drop.velocity(MeshMotion::normal, x).norm(), 5e-3 * (x * shear.transpose()).norm());  // discretisation error of this coarse mesh, 4e-3
 }
 
 TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
@@ -169,13 +169,13 @@ TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
   drop.flow.type = "linear";
   drop.flow.gradient = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
   const Net moved = Eigen::RowVector3d(0.3, -0.1, 0.2).replicate(drop.sphere.rows(), 1);
-  for (const char* motion : {"normal", "relaxed"}) {
+  for (const MeshMotion motion : {MeshMotion::normal, MeshMotion::relaxed}) {
     drop.parameters.particles.front().interface_motion = motion;
     Capsule capsule = drop.capsule();
     capsule.freeze(drop.sphere);
     const Net change = capsule.derivative(drop.sphere, Net::Zero(moved.rows(), 3), moved);
     // The normals do not turn, but round-off in their difference is divided by a step of about 1e-6.
-    EXPECT_LT((change - moved * drop.flow.gradient->transpose()).norm(), 1e-7 * change.norm()) << motion;
+    EXPECT_LT((change - moved * drop.flow.gradient->transpose()).norm(), 1e-7 * change.norm()) << word(motion);
   }
 }
 
@@ -184,22 +184,22 @@ TEST(InterfaceMotion, TheJacobianKnowsHowNormalsTurn) {
   Drop drop;
   drop.flow.type = "linear";
   drop.flow.gradient = Vec3(1, 0.5, -1.5).asDiagonal();
-  drop.parameters.volume.constraint = "none";
+  drop.parameters.volume.constraint = VolumeConservation::none;
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
   Net x = drop.sphere, delta = x;
   x.col(0) *= 1.5, x.col(2) *= 0.8;
   for (Eigen::Index i = 0; i < x.rows(); ++i) delta.row(i) *= std::pow(drop.sphere(i, 0), 2);
-  for (const char* motion : {"normal", "relaxed"}) {
+  for (const MeshMotion motion : {MeshMotion::normal, MeshMotion::relaxed}) {
     drop.parameters.particles.front().interface_motion = motion;
     Capsule capsule = drop.capsule();
     capsule.freeze(x);
     constexpr double aside = 1e-4;
     const Net change = (capsule.velocity(x + aside * delta) - capsule.velocity(x - aside * delta)) / (2 * aside);
     const Net v = capsule.velocity(x), known = capsule.derivative(x, v, delta);
-    EXPECT_LT((known - change).norm(), 1e-5 * change.norm()) << motion;  // error of the finite differences
+    EXPECT_LT((known - change).norm(), 1e-5 * change.norm()) << word(motion);  // error of the finite differences
     Capsule resumed = drop.capsule();  // has not evaluated the velocity yet
     resumed.freeze(x);
-    EXPECT_LT((resumed.derivative(x, v, delta) - known).norm(), 1e-12 * known.norm()) << motion;
+    EXPECT_LT((resumed.derivative(x, v, delta) - known).norm(), 1e-12 * known.norm()) << word(motion);
   }
 }
 
@@ -207,12 +207,12 @@ TEST(InterfaceMotion, TheJacobianKnowsHowNormalsTurn) {
 TEST(InterfaceMotion, OnlyWhatPullsAlongTheInterfaceMovesTheMesh) {
   Drop drop;
   drop.flow.type = "quiescent";
-  drop.parameters.volume.constraint = "none";
+  drop.parameters.volume.constraint = VolumeConservation::none;
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
   drop.sphere.col(0) *= 2;
-  const Net drawn = drop.velocity("relaxed", drop.sphere * Vec3(1.25, 1, 1).asDiagonal());
+  const Net drawn = drop.velocity(MeshMotion::relaxed, drop.sphere * Vec3(1.25, 1, 1).asDiagonal());
   for (const double size : {0.8, 1.25})
-    EXPECT_LT(drop.velocity("relaxed", size * drop.sphere).norm(), 0.25 * drawn.norm()) << size;  // discretisation error of this coarse mesh
+    EXPECT_LT(drop.velocity(MeshMotion::relaxed, size * drop.sphere).norm(), 0.25 * drawn.norm()) << size;  // error of this coarse mesh
 }
 
 TEST(InterfaceMotion, RelaxedMeshGoesBackToItsShape) {
@@ -226,7 +226,7 @@ TEST(InterfaceMotion, RelaxedMeshGoesBackToItsShape) {
         std::sin(turn) * drop.sphere(i, 0) + std::cos(turn) * drop.sphere(i, 1), drop.sphere(i, 2);
   }
   const membrane::Membrane mesh(drop.space, drop.sphere, membrane::NeoHookean{1});
-  EXPECT_LT(mesh.load(x).cwiseProduct(drop.velocity("relaxed", x)).sum(), 0);  // the energy of the mesh decreases
+  EXPECT_LT(mesh.load(x).cwiseProduct(drop.velocity(MeshMotion::relaxed, x)).sum(), 0);  // the energy of the mesh decreases
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct Kind {
   Vec3 centre;
   double viscosity_ratio;
   membrane::Law law;
-  std::string motion = "material";
+  MeshMotion motion = MeshMotion::material;
 };
 
 /// Particles of the given kinds, in the given order.
@@ -69,7 +69,7 @@ struct Several {
 const membrane::Law soft = membrane::NeoHookean{2}, hard = membrane::Skalak{3, 1}, tension = membrane::SurfaceTension{4};
 
 TEST(SeveralParticles, FarAwayEachMovesAsAlone) {
-  const Kind capsule{3, Vec3(0, 0, 0), 5, hard}, drop{4, Vec3(0, 1e4, 0), 0.2, tension, "relaxed"};
+  const Kind capsule{3, Vec3(0, 0, 0), 5, hard}, drop{4, Vec3(0, 1e4, 0), 0.2, tension, MeshMotion::relaxed};
   Several both({capsule, drop});
   const Net v = both.system().velocity(both.x);
   for (size_t p = 0; p < 2; ++p) {
@@ -80,7 +80,8 @@ TEST(SeveralParticles, FarAwayEachMovesAsAlone) {
 }
 
 TEST(SeveralParticles, OrderIsOfNoConsequence) {
-  const std::vector<Kind> kinds{{3, Vec3(0, 0, 0), 5, hard}, {4, Vec3(0.2, 2.3, 0.1), 0.5, tension, "relaxed"}, {3, Vec3(-2.5, 0, 0.3), 1, soft}};
+  const Kind drop{4, Vec3(0.2, 2.3, 0.1), 0.5, tension, MeshMotion::relaxed};
+  const std::vector<Kind> kinds{{3, Vec3(0, 0, 0), 5, hard}, drop, {3, Vec3(-2.5, 0, 0.3), 1, soft}};
   Several one(kinds), other({kinds[2], kinds[0], kinds[1]});
   const Net v = one.system().velocity(one.x), w = other.system().velocity(other.x);
   const size_t place[3] = {1, 2, 0};

@@ -1,0 +1,24 @@
+#include "system/interface_options.hpp"
+
+#include "deck/section.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+const deck::Choice motions{"material", "normal", "relaxed"};  // words for MeshMotion, in the order of its enumerators
+}  // namespace
+
+std::string word(MeshMotion motion) { return motions[static_cast<std::size_t>(motion)]; }
+
+void InterfaceOptions::declare(deck::Section& section) {
+  section.key("motion", motion, motions,
+              "motion of the control points of a drop's interface. `material`: with the fluid. `normal`: only normal to the interface. "
+              "`relaxed`: with the fluid in the normal direction, and tangentially so that elements keep their shape. If not "
+              "given, `relaxed` for Membrane/law `surface tension`, and `material` for all other laws");
+  section.key("relaxation", relaxation, deck::not_negative(), "1",
+              "dimensionless speed at which the mesh of a drop slides along the interface to keep its elements well shaped, with "
+              "Interface/motion `relaxed`: it slides like an elastic membrane of capillary number 1/relaxation. Increase it if elements "
+              "become distorted");
+}
+
+}  // namespace tanktread::coupling

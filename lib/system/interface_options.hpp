@@ -1,0 +1,25 @@
+#pragma once
+// Options of the motion of control points along an interface.
+
+#include <optional>
+#include <string>
+
+#include "deck/forward.hpp"
+
+namespace tanktread::coupling {
+
+/// Motion of the control points along an interface. `material`: with the fluid. `normal`: only normal to the surface. `relaxed`: with the fluid in
+/// the normal direction, and tangentially so that elements keep their shape.
+enum class MeshMotion { material, normal, relaxed };
+
+std::string word(MeshMotion motion);  ///< returns the value of the key `motion`
+
+/// Options `Interface/*` of the deck: tangential motion of the control points along an interface. Without a membrane this motion is arbitrary.
+struct InterfaceOptions {
+  std::optional<MeshMotion> motion;  ///< if not set: `relaxed` for a surface tension, `material` otherwise
+  double relaxation = 1;             ///< relaxation speed of the mesh, which moves like an elastic surface at capillary number 1/relaxation
+
+  void declare(deck::Section& section);
+};
+
+}  // namespace tanktread::coupling
