@@ -72,7 +72,7 @@ def files_of_another_run_or_changed_ones_are_refused():
     _refused("out", "run.h5", "different runs")
     newest = sorted(pathlib.Path("flipped").glob("snapshot_*.hdf"))[-1]
     shutil.copy(newest, newest.with_name("snapshot_000099.hdf"))
-    _refused("flipped", "snapshot_000099.hdf", "different step")
+    _refused("flipped", "snapshot_000099.hdf", "states another step")
     newest.with_name("snapshot_000099.hdf").unlink()
     with h5py.File("flipped/run.h5", "r+") as file:
         file["series/energy"][1] *= 1 + 1e-15

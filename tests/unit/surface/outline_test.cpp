@@ -236,7 +236,7 @@ TEST_F(OutlineFile, IsRefusedWithTheReason) {
   EXPECT_EQ(refusal("0,0\n1,2,3\n"), ", line 2: the third entry must be `corner` or nothing, but is \"3\".");
   EXPECT_EQ(refusal("0,0\n1,nan\n"), ", line 2: \"nan\" is not a number below 1e75 in size.");
   EXPECT_EQ(refusal("0,0\n1,2 m\n"), ", line 2: \"2 m\" is not a number below 1e75 in size.");
-  EXPECT_EQ(refusal("# one\n0,0,corner\n1,0\n1,0\n1,1\n0,1\n"), ", line 4: the point of line 3 stands here once more.");
+  EXPECT_EQ(refusal("# one\n0,0,corner\n1,0\n1,0\n1,1\n0,1\n"), ", line 4: the point of line 3 is repeated here.");
   EXPECT_EQ(refusal(ring(40, 0.6)).substr(0, 50), " is open: its last point is 1.945 from its first, ");
   EXPECT_EQ(refusal("0,0,corner\n1,1,corner\n1,0,corner\n0,1,corner\n"), " crosses itself near (x2, x3) = (0.5, 0.5).");
   EXPECT_EQ(refusal("0,0,corner\n0,1,corner\n1,0,corner\n"), " must run counter-clockwise, from x2 towards x3, but runs clockwise.");
