@@ -346,6 +346,12 @@ def a_limit_is_not_rounded_to_seconds():
         ended = tanktread.Study(limit=limit).run(path, {})
         check(ended.status == "stopped" and ended.message == f"stopped after {limit} s of processor time", ended.message)
         check(ended.processor_seconds > limit - 0.1, ended.processor_seconds)  # the kernel counts processor time in ticks
+        try:
+            tanktread.Study(limit=limit)._start_timer()
+            left, _ = signal.setitimer(signal.ITIMER_PROF, 0)
+        finally:
+            signal.setitimer(signal.ITIMER_PROF, 0)
+        check(abs(left - limit) < 0.1, left)  # a limit in whole seconds would be 0.6 or 0.8 larger
     for limit, words in ((-1, "but is -1"), (0, "but is 0"), (float("inf"), "but is inf")):
         deck(f"deck: deck.yaml\nrecord: [area]\nlimit: {str(limit).replace('inf', '.inf')}\n", "study.yaml")
         said = _sweep("study.yaml", code=2)
