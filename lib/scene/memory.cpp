@@ -28,8 +28,7 @@ double points(const ParticleScene& scene) {
 }
 
 double wall_points(const SharedOptions& scene) {
-  const double of_tube = scene.tube.axial_elements ? *scene.tube.axial_elements : std::ceil(scene.tube.default_axial_elements());
-  const double along = scene.tube.channel ? surface::Channel(scene.tube).elements() : of_tube;
+  const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : scene.tube.elements_along();
   return scene.tube.azimuthal_elements * (along + 3.0);
 }
 

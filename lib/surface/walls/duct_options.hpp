@@ -1,6 +1,7 @@
 #pragma once
 // Options of tubes and channels.
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -55,6 +56,8 @@ struct TubeOptions {
   std::optional<int> axial_elements;
   /// Returns the number of elements along a wall with ends if `axial_elements` is not set: 25 if there are 24 around, otherwise in proportion.
   double default_axial_elements() const { return azimuthal_elements * 25. / 24; }
+  /// Returns the number of elements along a straight wall with ends.
+  int elements_along() const { return axial_elements.value_or(static_cast<int>(std::ceil(default_axial_elements()))); }
   double grading = 4;            ///< density of elements along the tube near the particle, divided by the density far from it
 
   /// smallest allowed gap between particle and wall, divided by the particle radius R_C; a run stops if the gap is smaller

@@ -103,9 +103,8 @@ TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std
 }  // namespace
 
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length) {
-  const int elements = options.axial_elements.value_or(static_cast<int>(std::ceil(options.default_axial_elements())));
   const double width = std::max(section.radius(), half_length);
-  return straight_wall(section, options.azimuthal_elements, graded_knots(length, elements, options.grading, width), {});
+  return straight_wall(section, options.azimuthal_elements, graded_knots(length, options.elements_along(), options.grading, width), {});
 }
 
 TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, double period, int elements, double half_length) {

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/SparseCore>
+
 #include "base/timing.hpp"
 #include "base/types.hpp"
 #include "membrane/options.hpp"

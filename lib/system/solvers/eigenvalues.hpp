@@ -24,8 +24,7 @@ Eigen::Index krylov_vectors(int number, int block);
 
 /// Returns the `number` eigenpairs of largest |value| of the linear map A on n unknowns. Block Krylov-Schur iterates until the residuals |A v - value
 /// v| are below `tolerance` |value|. `block`: block size; eigenvalues up to this multiplicity are found reliably. Collective. Throws RunFailure if
-/// the iteration does not converge.
-/// Needs n to exceed krylov_vectors(number, block).
+/// the iteration does not converge. n must exceed krylov_vectors(number, block).
 std::vector<Eigenpair> largest_eigenpairs(const Apply& a, Eigen::Index n, int number, int block, double tolerance);
 
 }  // namespace tanktread::coupling
