@@ -112,7 +112,9 @@ class SteadyRun {
 
   /// Computes a shape that repeats after a period.
   void shoot() {
-    const motion::PeriodicOptions& options = scene_.periodic;
+    const Body& body = system_->particle->body();
+    motion::PeriodicOptions options = scene_.periodic;
+    options.drifts = free_motions(scene_, body.flow, body.radius, system_->particle->capsule()->particles(), 3);
     state_.x = motion::after_periods(*system_->motion, time_, scene_.solvers.nox, options, state_.x);
     motion::PeriodicReport found;
     do {
@@ -120,7 +122,7 @@ class SteadyRun {
       found = motion::find_periodic(*returns_, scene_.solvers.nox, state_.x);
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
-    found_.period = returns_->period();
+    found_.period = returns_->period(), found_.mean_velocity = returns_->mean_velocity();
     write();
     if (!found.converged)
       throw RunFailure(formatted("no periodic motion was found: after %d periods the residual is %.2g", found.iterations, found.rest));
@@ -259,14 +261,15 @@ class SteadyRun {
                                       options.parity.value_or(Vec3::Ones()));
     coupling::CoupledMotion* fields = system->particle->fields();
     if (fields) shapes.add_fields(*fields, state_.x);
-    const std::vector<motion::Conserved> kept = conserved_quantities(capsule, fields, x);
+    std::vector<motion::Conserved> kept = conserved_quantities(capsule, fields, x);
     if (const int n = static_cast<int>(shapes.size()); options.number > n)
       results_.warn_once("modes", formatted("Spectrum/number is %d, but the shape has only %d unknowns and modes", options.number, n));
     if (returns_) {
       std::optional<motion::ReturnMap> of_parity;
-      if (system != system_) of_parity.emplace(*system->motion, time_, scene_.solvers.nox, scene_.periodic, state_.x);
+      if (system != system_) of_parity.emplace(*system->motion, time_, scene_.solvers.nox, returns_->options(), state_.x);
       motion::ReturnMap& returns = of_parity ? *of_parity : *returns_;
-      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // {}: time steps restore the volume
+      std::erase_if(kept, [](const motion::Conserved& one) { return one.kind == motion::ModeKind::volume; });  // time steps restore the volume
+      found_.modes = motion::recognised(*system->motion, shapes, state_.x, kept, exponents(returns, shapes));
     } else {
       shapes.follow(*system->motion, state_.x);
       if (!options.shift) options.shift = system_->scene.rate();
@@ -276,17 +279,15 @@ class SteadyRun {
     system_->motion->velocity(state_.x);
   }
 
-  /// Returns the Floquet exponents: the logarithms of the multipliers of the return map, divided by the period.
+  /// Returns the Floquet exponents of the shape: the logarithms of the multipliers of the return map, divided by the period.
   std::vector<coupling::Eigenpair> exponents(motion::ReturnMap& returns, const coupling::ShapeCoordinates& shapes) {
-    Eigen::VectorXd start(shapes.size());
-    for (Eigen::Index k = 0; k < start.size(); ++k) start[k] = std::sin(1.0 + static_cast<double>(k * k % 7919));  // irregular but reproducible
-    std::vector<coupling::Eigenpair> pairs;
-    const auto admitted = [&](const Net& field) { return shapes.admitted(field); };
-    for (const motion::Multiplier& one : motion::multipliers(returns, state_.x, shapes.displacement(start), admitted, scene_.spectrum.number)) {
-      Eigen::VectorXcd y = shapes.coordinates(one.real).cast<std::complex<double>>();
-      y += std::complex<double>(0, 1) * shapes.coordinates(one.imaginary);
-      pairs.push_back({std::log(one.value) / found_.period, y.normalized()});
-    }
+    const auto derivative = [&](const Eigen::VectorXd& y) { return shapes.coordinates(returns.derivative(state_.x, shapes.displacement(y))); };
+    std::vector<coupling::Eigenpair> pairs = motion::multipliers(derivative, shapes.size(), scene_.spectrum.number);
+    const auto lost = [&](const coupling::Eigenpair& pair) { return std::abs(pair.value) < returns.resolution(); };
+    if (std::erase_if(pairs, lost) > 0)
+      results_.warn_once("multipliers", formatted("modes that decay within a period to less than %.2g (Time/tolerance divided by Periodic/difference) "
+                                                  "are not reported, because errors of time steps hide them", returns.resolution()));
+    for (coupling::Eigenpair& pair : pairs) pair.value = std::log(pair.value) / found_.period;
     return pairs;
   }
 

@@ -41,13 +41,31 @@ void PeriodicOptions::declare(deck::Section& section) {
   section.key("difference", difference, deck::between(1e-6, 1e-1), "R_C",
               "step of the finite differences from which the Floquet multipliers are computed, if Spectrum is given: largest "
               "displacement of a control point in a perturbed initial shape, divided by R_C, the radius of the sphere with the "
-              "particle's volume");
+              "particle's volume. Modes whose multiplier is below Time/tolerance divided by this value are not reported, because errors of "
+              "time steps hide them");
 }
 
 namespace {
 
-Net turned_back(const coupling::Dynamics& dynamics, const Net& x, double degrees) {
-  return dynamics.turned(x, Eigen::AngleAxisd(-degrees * std::numbers::pi / 180, Vec3::UnitY()).toRotationMatrix());
+/// Returns the translation along `drifts` that is contained in the displacement d.
+Vec3 drift(const coupling::Dynamics& dynamics, const std::vector<coupling::RigidMotion>& drifts, const Net& d) {
+  Vec3 all = Vec3::Zero();
+  for (const coupling::RigidMotion& one : drifts) {
+    const Net field = dynamics.moved(d, one);
+    all += field.cwiseProduct(d).sum() / field.squaredNorm() * one.velocity;
+  }
+  return all;
+}
+
+/// Returns the displacement d without its translation along `drifts`.
+Net without(const coupling::Dynamics& dynamics, const std::vector<coupling::RigidMotion>& drifts, const Net& d) {
+  return d - dynamics.moved(d, {.velocity = drift(dynamics, drifts, d)});
+}
+
+/// Returns the shape x after a period, rotated back and moved back along free translations to the shape `start` before the period.
+Net returned(const coupling::Dynamics& dynamics, const PeriodicOptions& options, const Net& x, const Net& start) {
+  const Net turned = dynamics.turned(x, Eigen::AngleAxisd(-options.turn * std::numbers::pi / 180, Vec3::UnitY()).toRotationMatrix());
+  return start + without(dynamics, options.drifts, turned - start);
 }
 
 /// Integrates from x until `done` returns true after a step, or the time `most` has passed.
@@ -77,20 +95,28 @@ ReturnMap::ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std:
                      const PeriodicOptions& options, Net c)
     : dynamics_(dynamics), time_(time), nox_(std::move(nox)), options_(options), origin_(std::move(c)) {
   if (options_.driven) return;
-  normal_ = dynamics.velocity(origin_);
+  normal_ = without(dynamics, options.drifts, dynamics.velocity(origin_));
   if (!normal_.allFinite() || normal_.isZero(0))
     throw RunFailure("the shape is at rest, or its velocity is not finite, so that no periodic motion can be found");
   normal_ /= normal_.norm();
+}
+
+Net ReturnMap::back(const Net& x) const { return returned(dynamics_, options_, x, origin_); }
+
+Net ReturnMap::arrived(double period, const Net& start, const Net& end) {
+  period_ = period;
+  mean_velocity_ = drift(dynamics_, options_.drifts, end - start) / period;
+  if (options_.turn != 0) mean_velocity_[0] = mean_velocity_[2] = 0;
+  return back(end);
 }
 
 Net ReturnMap::operator()(const Net& x) {
   if (options_.driven) {
     const State after = run(dynamics_, time_, nox_, x, options_.period, [](const State&, const State&) { return false; });
     dynamics_.at(0, 0);
-    period_ = options_.period;
-    return turned_back(dynamics_, after.x, options_.turn);
+    return arrived(options_.period, x, after.x);
   }
-  const auto ahead = [&](const Net& y) { return beyond(turned_back(dynamics_, y, options_.turn)); };
+  const auto ahead = [&](const Net& y) { return normal_.cwiseProduct(back(y) - origin_).sum(); };
   Net found;
   const double most = 1.5 * options_.period;
   run(dynamics_, time_, nox_, x, most, [&](const State& before, const State& after) {
@@ -102,8 +128,7 @@ Net ReturnMap::operator()(const Net& x) {
       if (middle <= early || middle >= late) break;
       (ahead(within.shape(middle)) < 0 ? early : late) = middle;
     }
-    period_ = late;
-    found = turned_back(dynamics_, within.shape(late), options_.turn);
+    found = arrived(late, x, within.shape(late));
     return true;
   });
   if (found.size() == 0)
@@ -115,7 +140,7 @@ Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const s
                   const PeriodicOptions& options, Net x) {
   constexpr int settling = 3;
   for (int k = 0; k < settling; ++k)
-    x = turned_back(dynamics, run(dynamics, time, nox, x, options.period, [](const State&, const State&) { return false; }).x, options.turn);
+    x = returned(dynamics, options, run(dynamics, time, nox, x, options.period, [](const State&, const State&) { return false; }).x, x);
   return x;
 }
 
@@ -132,47 +157,35 @@ PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::Para
   return {found.iterations, found.converged, rest};
 }
 
-std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, const std::function<Net(const Net&)>& admitted, int number) {
+Net ReturnMap::derivative(const Net& x, const Net& d) {
+  const double radius = 1 / dynamics_.norm(dynamics_.moved(x, coupling::unit_motion(1)));  // R_C
+  const double e = options_.difference * radius / d.rowwise().norm().maxCoeff();
+  return ((*this)(x + e * d) - (*this)(x - e * d)) / (2 * e);
+}
+
+std::vector<coupling::Eigenpair> multipliers(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& derivative, Eigen::Index n, int number) {
   constexpr double exhausted = 1e-8;
-  const double largest = map.options().difference / map.dynamics().norm(map.dynamics().moved(x, coupling::unit_motion(1)));  // a length
-  const auto product = [&](const Net& d) -> Net {
-    const double e = largest / d.rowwise().norm().maxCoeff();
-    // `admitted` removes errors that break the symmetry; they would appear as an eigenvalue 1 of the return map
-    return admitted((map(x + e * d) - map(x - e * d)) / (2 * e));
-  };
-  const int most = static_cast<int>(std::min<Eigen::Index>(2 * number + 4, x.size()));
-  std::vector<Net> basis{admitted(start / start.norm())};
-  Eigen::MatrixXd h = Eigen::MatrixXd::Zero(most + 1, most);
-  int m = 0;
-  while (m < most) {
-    Net w = product(basis.back());
-    for (int pass = 0; pass < 2; ++pass)
-      for (int k = 0; k <= m; ++k) {
-        const double part = basis[static_cast<std::size_t>(k)].cwiseProduct(w).sum();
-        h(k, m) += part;
-        w -= part * basis[static_cast<std::size_t>(k)];
-      }
-    h(m + 1, m) = w.norm();
-    if (h(m + 1, m) < exhausted || m + 1 == most) {
-      ++m;
-      break;
+  const Eigen::Index most = std::min<Eigen::Index>(2 * number + 4, n);
+  Eigen::MatrixXd basis(n, most + 1), h = Eigen::MatrixXd::Zero(most + 1, most);
+  for (Eigen::Index k = 0; k < n; ++k) basis(k, 0) = std::sin(1.0 + static_cast<double>(k * k % 7919));  // irregular but reproducible
+  basis.col(0).normalize();
+  Eigen::Index m = 0;
+  do {
+    Eigen::VectorXd w = derivative(basis.col(m));
+    for (int pass = 0; pass < 2; ++pass) {
+      const Eigen::VectorXd parts = basis.leftCols(m + 1).transpose() * w;
+      h.col(m).head(m + 1) += parts;
+      w -= basis.leftCols(m + 1) * parts;
     }
-    basis.push_back(w / h(m + 1, m));
-    ++m;
-  }
+    h(m + 1, m) = w.norm();
+    basis.col(m + 1) = w / h(m + 1, m);
+  } while (h(m + 1, m) >= exhausted && ++m < most);
+  m = std::min(m + 1, most);
   std::vector<coupling::Eigenpair> pairs = coupling::eigenpairs(h.topLeftCorner(m, m));
   std::ranges::stable_sort(pairs, {}, [](const coupling::Eigenpair& pair) { return -std::abs(pair.value); });
   pairs.resize(std::min<std::size_t>(pairs.size(), static_cast<std::size_t>(number)));
-  std::vector<Multiplier> found;
-  for (const coupling::Eigenpair& pair : pairs) {
-    Multiplier one{pair.value, Net::Zero(x.rows(), 3), Net::Zero(x.rows(), 3)};
-    for (int k = 0; k < m; ++k) {
-      one.real += pair.vector[k].real() * basis[static_cast<std::size_t>(k)];
-      one.imaginary += pair.vector[k].imag() * basis[static_cast<std::size_t>(k)];
-    }
-    found.push_back(std::move(one));
-  }
-  return found;
+  for (coupling::Eigenpair& pair : pairs) pair.vector = (basis.leftCols(m) * pair.vector).eval();
+  return pairs;
 }
 
 }  // namespace tanktread::motion

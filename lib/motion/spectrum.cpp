@@ -50,7 +50,7 @@ const char* name(ModeKind kind) {
 }
 
 void add_columns(const std::complex<double>& rate, const std::string& number, Columns& to) {
-  constexpr const char* fewer = "the shape has fewer modes than Spectrum/number";
+  constexpr const char* fewer = "fewer modes than Spectrum/number are found";
   to.add(rate.real(), {"rate_" + number, "1/time",
                        "growth rate of eigenmode k of the steady shape, k from 1: real part of the eigenvalue. Spectrum/number and "
                        "Spectrum/near determine the order of the modes",

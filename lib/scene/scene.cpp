@@ -215,7 +215,9 @@ void Scene::declare(deck::Section& root) {
                             "continuation of the steady shape along a parameter of the deck; every point of the branch gives one row of the series "
                             "and one snapshot");
   periodic.present = root.optional_section(
-      "Periodic", periodic, "search for a periodic motion that the initial shape leads to, instead of a run in time");
+      "Periodic", periodic,
+      "search for a periodic motion that the initial shape leads to, instead of a run in time. The particle may be elsewhere after a period if "
+      "flow and walls are the same there, for example further along a periodic tube");
   spectrum.present = root.optional_section(
       "Spectrum", spectrum,
       "growth rates of small perturbations of a steady shape, instead of a run in time. The shape is the result of Steady, or, without Steady, the "

@@ -73,7 +73,7 @@ void reject_searches(const ParticleScene& scene, Rejections& to) {
 }
 
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
-                                                std::span<const coupling::Particle> particles) {
+                                                std::span<const coupling::Particle> particles, int kinds) {
   const membrane::RigidConditions of_loads = conditions(particles);
   if (scene.tube.channel) return {};
   if (scene.tube.present) return of_loads.col(0).isZero(0) ? std::vector{coupling::unit_motion(0)} : std::vector<coupling::RigidMotion>();
@@ -99,11 +99,12 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
     for (std::size_t d = 0; d < lattice.size(); ++d)
       change.block<3, 1>(13 + 3 * static_cast<Eigen::Index>(d), k) = scene.rate() / size * motion.angular_velocity.cross(lattice[d]);
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(change, Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(change.leftCols(kinds), Eigen::ComputeFullV);
   std::vector<coupling::RigidMotion> free;
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < kinds; ++k) {
     if (svd.singularValues()[k] > 1e-9 * std::max(scene.rate(), svd.singularValues()[0])) continue;
-    const Eigen::VectorXd motion = svd.matrixV().col(k);
+    Eigen::Vector<double, 6> motion = Eigen::Vector<double, 6>::Zero();
+    motion.head(kinds) = svd.matrixV().col(k);
     free.push_back({motion.head<3>(), motion.tail<3>() / size});
   }
   return free;

@@ -19,9 +19,10 @@
 namespace tanktread {
 
 /// Returns the rigid motions about the origin that leave the problem invariant: the Lie derivative of the flow along them is 0, the walls do not
-/// change, and every load moves with its particle. In (4.17), Q projects onto these motions. `size`: length scale of the particles, R_C.
+/// change, and every load moves with its particle. In (4.17), Q projects onto these motions. `size`: length scale of the particles, R_C. `kinds`: 6,
+/// or 3 for translations only.
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
-                                                std::span<const coupling::Particle> particles);
+                                                std::span<const coupling::Particle> particles, int kinds = 6);
 
 /// Adds to `to` the combinations of keys that are not allowed in a search for steady shapes, periodic motions or spectra.
 void reject_searches(const ParticleScene& scene, Rejections& to);

@@ -185,15 +185,6 @@ bool ShapeCoordinates::admits(const Net& field) const {
   return (completed - own).norm() <= nearly * own.norm();
 }
 
-Net ShapeCoordinates::admitted(Net field) const {
-  Net own = field.topRows(n_points());
-  parity_.complete(own);
-  field.topRows(n_points()) = own;
-  Eigen::Map<Eigen::VectorXd> rest(field.data() + own.size(), field.size() - own.size());
-  if (rest.size() > 0) rest = fields_ * (fields_.transpose() * rest).eval();
-  return field;
-}
-
 Eigen::VectorXd ShapeCoordinates::coordinates(const Net& field) const {
   const Net own = field.topRows(n_points());
   Eigen::VectorXd y(size());

@@ -63,7 +63,6 @@ class ShapeCoordinates {
   Net displacement(const Eigen::VectorXd& y) const;     ///< change of the state (control points and fields) with the coordinates y
   Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates y of a change of the state (control points and fields)
   bool admits(const Net& field) const;                  ///< true if `field` has the symmetry and parity that y represents, up to 1e-3
-  Net admitted(Net field) const;                        ///< part of a change that y represents: `field` at fundamental points, completed by symmetry
 
  private:
   struct Coordinate {

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # Tests of periodic motions: in a flow that is periodic in time, on adaptive meshes, and their Floquet exponents for
 # disturbances of another parity.
+import math
+
 from harness import check, close, deck, main, refused, run, series
 
 DRIVEN = """Tanktread:
@@ -59,6 +61,49 @@ def a_mesh_is_adapted_to_the_shape_that_comes_back():
     run(deck(DRIVEN % ("simple shear", "", SEARCH)), "--set", "Surface/elements per side=8", "--output", "fine", "--quiet")
     check(series("found", "n_control_points")[-1] > 56, "nothing is refined")
     close(series("found", "taylor_inertia")[-1], series("fine", "taylor_inertia")[-1], 5e-4, "D")
+
+
+PULSATING = """Tanktread:
+  Flow: {type: %s, history: {type: sine, frequency: 1.0, amplitude: %s, mean: 1.0}}
+  %s
+  Membrane: {law: surface tension, surface tension: %s}
+  %s
+  Surface: {elements per side: %d}
+  Quadrature: {tolerance: %s}
+  Time: {tolerance: 1.0e-6%s}
+  %s
+"""
+
+
+def its_exponents_are_growth_rates_of_a_drop_where_the_flow_hardly_pulsates():
+    """The tangential motion of mesh points along the interface is not a change of the shape."""
+    surfactant = "Interface: {%s, surfactant: {equation of state: Langmuir, elasticity number: 0.2, coverage: 0.5, Peclet number: 10}}"
+    for relaxation in "relaxation: 0.5", "relaxation: 2":
+        for interface in "Interface: {%s}" % relaxation, surfactant % relaxation:
+            text = PULSATING % ("uniaxial extension", "1.0e-6", "Particle: {shape: sphere}", "14.0", interface, 4, "1.0e-6", "", "Spectrum: {number: 12}")
+            steady = text.replace(", history: {type: sine, frequency: 1.0, amplitude: 1.0e-6, mean: 1.0}", "") + "  Steady: {}\n"
+            text += "  Periodic: {period: 1.0, tolerance: 1.0e-7}\n"
+            run(deck(text), "--output", "periodic", "--quiet", "--overwrite")
+            run(deck(steady), "--output", "steady", "--quiet", "--overwrite")
+            rate = series("steady", "leading_rate")[-1]
+            # errors of the time steps change the multiplier exp(rate) by some Time/tolerance divided by Periodic/difference, 1e-4
+            close(series("periodic", "leading_rate")[-1], rate, 5e-4 * math.exp(-rate), f"leading rate, {interface}")
+            rates = [series("periodic", f"rate_{k}")[-1] for k in range(1, 13)]
+            check(not any(rate < math.log(1e-4) for rate in rates), "hidden modes are not reported", rates)
+            check("surfactant" in interface or math.isnan(rates[-1]), "all modes of a drop are above the errors of the steps")
+
+
+def a_drop_in_a_pulsating_tube_returns_further_along_it():
+    """The search finds the shape and the mean velocity to which a run settles."""
+    text = PULSATING % ("duct", "0.5", "Tube: {section: circle, periodic length: 6.0}", "3.0", "Particle: {shape: sphere, radius: 0.6}", 3, "1.0e-4",
+                        "%s", "%s")
+    run(deck(text % ("", "Periodic: {period: 1.0, tolerance: 1.0e-5}")), "--output", "found", "--quiet")
+    run(deck(text % (", final time: 14", "Output: {interval: 1.0}")), "--output", "run", "--quiet")
+    for name in "taylor_inertia", "area":
+        close(series("found", name)[-1], series("run", name)[-1], 1e-4, name)  # ten times Periodic/tolerance
+    at = series("run", "time")
+    places = [x for t, x in zip(at, series("run", "centroid_x1")) if abs(t - round(t)) < 1e-9 and t > 12.5]
+    close(series("found", "mean_velocity_x1")[-1], places[-1] - places[-2], 1e-4, "mean velocity")
 
 
 main()
