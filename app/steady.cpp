@@ -281,12 +281,12 @@ class SteadyRun {
 
   /// Returns the Floquet exponents of the shape: the logarithms of the multipliers of the return map, divided by the period.
   std::vector<coupling::Eigenpair> exponents(motion::ReturnMap& returns, const coupling::ShapeCoordinates& shapes) {
-    const auto derivative = [&](const Eigen::VectorXd& y) { return shapes.coordinates(returns.derivative(state_.x, shapes.displacement(y))); };
+    const auto derivative = [&](const auto& y) { return shapes.coordinates(returns.derivative(state_.x, shapes.displacement(y))); };
     std::vector<coupling::Eigenpair> pairs = motion::multipliers(derivative, shapes.size(), scene_.spectrum.number);
     const auto lost = [&](const coupling::Eigenpair& pair) { return std::abs(pair.value) < returns.resolution(); };
     if (std::erase_if(pairs, lost) > 0)
-      results_.warn_once("multipliers", formatted("modes that decay within a period to less than %.2g (Time/tolerance divided by Periodic/difference) "
-                                                  "are not reported, because errors of time steps hide them", returns.resolution()));
+      results_.warn_once("multipliers", formatted("modes that decay within a period to less than %.2g (Time/tolerance / Periodic/difference) are not "
+                                                  "reported, because errors of time steps hide them", returns.resolution()));
     for (coupling::Eigenpair& pair : pairs) pair.value = std::log(pair.value) / found_.period;
     return pairs;
   }
