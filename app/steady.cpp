@@ -112,14 +112,14 @@ class SteadyRun {
 
   /// Computes a shape that repeats after a period.
   void shoot() {
-    const Body& body = system_->particle->body();
     motion::PeriodicOptions options = scene_.periodic;
+    const Body& body = system_->particle->body();
     options.drifts = free_motions(scene_, body.flow, body.radius, system_->particle->capsule()->particles(), 3);
     state_.x = motion::after_periods(*system_->motion, time_, scene_.solvers.nox, options, state_.x);
     motion::PeriodicReport found;
     do {
       returns_.emplace(*system_->motion, time_, scene_.solvers.nox, options, state_.x);
-      found = motion::find_periodic(*returns_, scene_.solvers.nox, state_.x);
+      found = motion::find_periodic(*returns_, scene_.solvers.nox, std::bind_front(&System::without_sliding, system_.get()), state_.x);
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     found_.period = returns_->period(), found_.mean_velocity = returns_->mean_velocity();

@@ -144,11 +144,12 @@ Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const s
   return x;
 }
 
-PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::ParameterList>& nox, Net& x) {
+PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::ParameterList>& nox,
+                             const std::function<Net(const Net& x, const Net& p)>& without_sliding, Net& x) {
   const auto norm = [&](const Net& d) { return map.dynamics().norm(d); };
   double rest = std::numeric_limits<double>::infinity();
   const auto back = [&](const Net& y) {
-    Net p = map(y);
+    Net p = without_sliding(y, map(y));
     rest = norm(p - y);
     return p;
   };

@@ -92,8 +92,10 @@ struct PeriodicReport {
 Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox,
                   const PeriodicOptions& options, Net x);
 
-/// Finds the fixed point of the return map P (4.27), starting from x, by NOX (`anderson`). Collective. Throws RunFailure if a shape does not return.
-PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::ParameterList>& nox, Net& x);
+/// Finds the shape x that the return map P (4.27) maps to itself, starting from x, by NOX (`anderson`). `without_sliding`: function of x and P(x)
+/// that returns P(x) without the motion of points along interfaces since x. Collective. Throws RunFailure if a shape does not return.
+PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::ParameterList>& nox,
+                             const std::function<Net(const Net& x, const Net& p)>& without_sliding, Net& x);
 
 /// Returns the `number` eigenpairs of largest magnitude of a linear map on n unknowns, by Arnoldi's method with 2 `number` + 4 products. The
 /// eigenvalues of the derivative of a return map are the Floquet multipliers, except the multiplier 1 of a shift in time. Collective.

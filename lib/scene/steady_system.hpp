@@ -30,6 +30,14 @@ struct System {
     equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particle->capsule()->particles()), steady_step(scene), x);
   }
 
+  /// Returns the state `after` without the motion of control points along interfaces since the state `before`. If both are the same shape, the result
+  /// differs from `before` by the cube of this motion:
+  ///
+  ///   before + D y(after - before),   with y and its displacement D y of (4.15) and (4.34) at the mean of both states
+  ///
+  /// because a point that slides along a circle moves at right angles to the normal at the middle of its way. Collective.
+  Net without_sliding(const Net& before, const Net& after);
+
   Scene scene;
   std::unique_ptr<ParticleSystem> particle;
   std::function<bool()> is_to_stop;

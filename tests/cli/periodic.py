@@ -93,6 +93,23 @@ def its_exponents_are_growth_rates_of_a_drop_where_the_flow_hardly_pulsates():
             check("surfactant" in interface or math.isnan(rates[-1]), "all modes of a drop are above the errors of the steps")
 
 
+def a_drop_in_a_shear_flow_that_pulsates_returns():
+    """Its mesh points slide along the interface, so that they do not return. Shape, surfactant and growth rates do."""
+    surfactant = "Interface: {surfactant: {equation of state: Langmuir, elasticity number: 0.2, coverage: 0.5, Peclet number: 10}}"
+    for interface, names in ("", ["taylor_inertia", "area"]), (surfactant, ["taylor_inertia", "area", "largest_concentration"]):
+        text = PULSATING % ("simple shear", "0.5", "Particle: {shape: sphere}", "5.0", interface, 6, "1.0e-4", "%s", "%s")
+        run(deck(text % ("", "Periodic: {period: 1.0, tolerance: 1.0e-5}")), "--output", "found", "--quiet", "--overwrite")
+        run(deck(text % (", final time: 8", "Output: {interval: 8.0}")), "--output", "run", "--quiet", "--overwrite")
+        for name in names:
+            close(series("found", name)[-1], series("run", name)[-1], 1e-3, name)  # error of the mesh, which lies otherwise
+    slow = PULSATING % ("simple shear", "1.0e-3", "Particle: {shape: sphere}", "5.0", "", 4, "1.0e-6", "", "Spectrum: {number: 3}\n  %s")
+    run(deck(slow % "Periodic: {period: 1.0, tolerance: 1.0e-5}"), "--output", "slow", "--quiet")
+    run(deck((slow % "Steady: {}").replace(", history: {type: sine, frequency: 1.0, amplitude: 1.0e-3, mean: 1.0}", "")), "--output", "steady",
+        "--quiet")
+    # a mesh point slides by 1 % of R_C in a period
+    close(series("slow", "leading_rate")[-1], series("steady", "leading_rate")[-1], 0.02, "leading rate")
+
+
 def a_drop_in_a_pulsating_tube_returns_further_along_it():
     """The search finds the shape and the mean velocity to which a run settles."""
     text = PULSATING % ("duct", "0.5", "Tube: {section: circle, periodic length: 6.0}", "3.0", "Particle: {shape: sphere, radius: 0.6}", 3, "1.0e-4",

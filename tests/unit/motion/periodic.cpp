@@ -47,7 +47,7 @@ TEST_P(Periodic, ACycleIsFoundWithItsPeriodAndItsMultipliers) {
   x << 0.5, 0.4, 0.1;
   x = after_periods(motion, time, nullptr, options, x);
   ReturnMap map(motion, time, nullptr, options, x);
-  const PeriodicReport report = find_periodic(map, nullptr, x);
+  const PeriodicReport report = find_periodic(map, nullptr, [](const Net&, const Net& p) { return p; }, x);
   ASSERT_TRUE(report.converged);
   EXPECT_NEAR(std::hypot(x(0, 0), x(0, 2)), 1, 1e-7);
   EXPECT_NEAR(x(0, 1), 0, 1e-7);
