@@ -78,19 +78,18 @@ PULSATING = """Tanktread:
 def its_exponents_are_growth_rates_of_a_drop_where_the_flow_hardly_pulsates():
     """The tangential motion of mesh points along the interface is not a change of the shape."""
     surfactant = "Interface: {%s, surfactant: {equation of state: Langmuir, elasticity number: 0.2, coverage: 0.5, Peclet number: 10}}"
-    for relaxation in "relaxation: 0.5", "relaxation: 2":
-        for interface in "Interface: {%s}" % relaxation, surfactant % relaxation:
-            text = PULSATING % ("uniaxial extension", "1.0e-6", "Particle: {shape: sphere}", "14.0", interface, 4, "1.0e-6", "", "Spectrum: {number: 12}")
-            steady = text.replace(", history: {type: sine, frequency: 1.0, amplitude: 1.0e-6, mean: 1.0}", "") + "  Steady: {}\n"
-            text += "  Periodic: {period: 1.0, tolerance: 1.0e-7}\n"
-            run(deck(text), "--output", "periodic", "--quiet", "--overwrite")
-            run(deck(steady), "--output", "steady", "--quiet", "--overwrite")
-            rate = series("steady", "leading_rate")[-1]
-            # errors of the time steps change the multiplier exp(rate) by some Time/tolerance divided by Periodic/difference, 1e-4
-            close(series("periodic", "leading_rate")[-1], rate, 5e-4 * math.exp(-rate), f"leading rate, {interface}")
-            rates = [series("periodic", f"rate_{k}")[-1] for k in range(1, 13)]
-            check(not any(rate < math.log(1e-4) for rate in rates), "hidden modes are not reported", rates)
-            check("surfactant" in interface or math.isnan(rates[-1]), "all modes of a drop are above the errors of the steps")
+    for interface in "Interface: {relaxation: 0.5}", "Interface: {relaxation: 2}", surfactant % "relaxation: 0.5":
+        text = PULSATING % ("uniaxial extension", "1.0e-6", "Particle: {shape: sphere}", "14.0", interface, 4, "1.0e-6", "", "Spectrum: {number: 8}")
+        steady = text.replace(", history: {type: sine, frequency: 1.0, amplitude: 1.0e-6, mean: 1.0}", "") + "  Steady: {}\n"
+        text += "  Periodic: {period: 1.0, tolerance: 1.0e-7}\n"
+        run(deck(text), "--output", "periodic", "--quiet", "--overwrite")
+        run(deck(steady), "--output", "steady", "--quiet", "--overwrite")
+        rate = series("steady", "leading_rate")[-1]
+        # errors of the time steps change the multiplier exp(rate) by some Time/tolerance divided by Periodic/difference, 1e-4
+        close(series("periodic", "leading_rate")[-1], rate, 5e-4 * math.exp(-rate), f"leading rate, {interface}")
+        rates = [series("periodic", f"rate_{k}")[-1] for k in range(1, 9)]
+        check(not any(rate < math.log(1e-4) for rate in rates), "hidden modes are not reported", rates)
+        check("surfactant" in interface or math.isnan(rates[-1]), "all modes of a drop are above the errors of the steps")
 
 
 def a_drop_in_a_shear_flow_that_pulsates_returns():
@@ -112,14 +111,14 @@ def a_drop_in_a_shear_flow_that_pulsates_returns():
 
 def a_drop_in_a_pulsating_tube_returns_further_along_it():
     """The search finds the shape and the mean velocity to which a run settles."""
-    text = PULSATING % ("duct", "0.5", "Tube: {section: circle, periodic length: 6.0}", "3.0", "Particle: {shape: sphere, radius: 0.6}", 3, "1.0e-4",
+    text = PULSATING % ("duct", "0.5", "Tube: {section: circle, periodic length: 6.0}", "6.0", "Particle: {shape: sphere, radius: 0.6}", 3, "1.0e-3",
                         "%s", "%s")
     run(deck(text % ("", "Periodic: {period: 1.0, tolerance: 1.0e-5}")), "--output", "found", "--quiet")
-    run(deck(text % (", final time: 14", "Output: {interval: 1.0}")), "--output", "run", "--quiet")
+    run(deck(text % (", final time: 8", "Output: {interval: 1.0}")), "--output", "run", "--quiet")
     for name in "taylor_inertia", "area":
         close(series("found", name)[-1], series("run", name)[-1], 1e-4, name)  # ten times Periodic/tolerance
     at = series("run", "time")
-    places = [x for t, x in zip(at, series("run", "centroid_x1")) if abs(t - round(t)) < 1e-9 and t > 12.5]
+    places = [x for t, x in zip(at, series("run", "centroid_x1")) if abs(t - round(t)) < 1e-9 and t > 6.5]
     close(series("found", "mean_velocity_x1")[-1], places[-1] - places[-2], 1e-4, "mean velocity")
 
 
