@@ -227,8 +227,7 @@ RunRequest run_request(const Arguments& arguments, const std::string& deck, cons
   request.output = request.resume             ? arguments.resume
                    : arguments.output.empty() ? "results/" + default_name(arguments.decks, arguments.settings)
                                               : arguments.output;
-  request.overwrite = arguments.overwrite, request.quiet = arguments.quiet;
-  request.deck_text = deck;
+  request.overwrite = arguments.overwrite, request.quiet = arguments.quiet, request.deck_text = deck;
   request.changed = [=, &registry](const std::vector<std::string>& settings) { return scene_of(deck, settings, arguments, registry); };
   request.provenance = provenance();
   return request;
@@ -308,8 +307,8 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
     return done;
   }
   coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
-  for (const std::string& sentence : check_expectations(scene))
-    if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
+  for (const auto& sentences : {check_expectations(scene), scene.idle_keys})
+    for (const std::string& sentence : sentences) if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
   accuracy::check_series(scene.accuracy.requests, names_of_series(scene));
 
   if (arguments.check) {

@@ -69,6 +69,12 @@ std::vector<std::string> mistakes(const List& list) {
   return all;
 }
 
+std::vector<std::string> idle_keys(const List& list) {
+  std::vector<std::string> all = list.idle;
+  add_inner(list, idle_keys, all);
+  return all;
+}
+
 std::vector<std::string> unknown_keys(const List& list, const List& root) {
   std::vector<std::string> all;
   if (list.foreign) return all;

@@ -30,6 +30,7 @@ struct List {
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;
   std::vector<std::string> mistakes;                ///< one sentence per refused value; the key keeps its default
+  std::vector<std::string> idle;                    ///< one sentence per key that is given but has no effect
   bool alike = false;                               ///< true if inner sections inherit keys through the key `like` or from `defaults`
   std::vector<std::string> mentioned;               ///< names that are allowed in this section although they are not declared
   std::shared_ptr<Teuchos::ParameterList> foreign;  ///< parameters passed to another library; null if this program reads the section
@@ -48,6 +49,9 @@ struct Section::State {
 /// Returns the mistakes in a section, followed by the mistakes in its inner sections. A mistake in a key that several sections inherit is reported
 /// once.
 std::vector<std::string> mistakes(const List& list);
+
+/// Returns the sentences about keys without effect in a section, followed by those of its inner sections, as mistakes() does.
+std::vector<std::string> idle_keys(const List& list);
 
 /// Returns a sentence for each key in a section or its inner sections that is given but not declared. The sentence suggests the closest key, which
 /// may be in another section of `root`. An unknown key that several sections inherit is reported once.

@@ -223,6 +223,15 @@ void Section::key(std::string_view name, Field& field, const Choice& choice, std
 template void Section::key(std::string_view, std::string&, const Choice&, std::string_view);
 template void Section::key(std::string_view, std::optional<std::string>&, const Choice&, std::string_view);
 
+void Section::without_effect(const std::vector<std::string>& names, const std::string& because) {
+  List& list = *state_->list;
+  for (const Entry& entry : list.entries)
+    if (std::ranges::count(names, entry.key) > 0 && entry.value != entry.fallback)
+      list.idle.push_back(list.path_of(entry.key) + " has no effect " + because + ": remove the key.");
+}
+
+std::vector<std::string> Section::idle_keys() const { return deck::idle_keys(*state_->list); }
+
 Section Section::enter(std::string_view name, std::string_view meaning) {
   List& outer = *state_->list;
   auto inner = std::make_unique<List>();

@@ -73,6 +73,11 @@ class Section {
 
   void key(std::string_view name, bool& field, std::string_view meaning);
 
+  /// States that the keys `names`, which are declared before, have no effect `because` of another choice ("with Time/scheme `bs3`"). A key to which
+  /// the deck gives another value than the default is then listed by idle_keys().
+  void without_effect(const std::vector<std::string>& names, const std::string& because);
+  std::vector<std::string> idle_keys() const;  ///< returns one sentence for each such key of this section and its inner sections
+
   /// Declares a section inside this one by calling `options.declare(Section&)`.
   template <class Options>
   void section(std::string_view name, Options& options, std::string_view meaning) {

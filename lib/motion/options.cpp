@@ -67,6 +67,14 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("predictor order", predictor_order, deck::between(0, 3), "1",
               "largest degree of the polynomial through earlier velocities that predicts the initial guess of a stage of Time/scheme "
               "`tr-bdf2`. Each step uses the degree that would have been best for the previous step");
+  const std::string because = "with Time/scheme `" + scheme + "`";
+  const bool automatic = scheme == "auto", explicit_scheme = scheme == "bs3" || scheme == "rkc2", paper = scheme == "crank-nicolson";
+  if (!paper) section.without_effect({"iteration tolerance", "nonlinear solver", "step control", "count euler step"}, because);
+  if (explicit_scheme) section.without_effect({"newton tolerance"}, because);
+  if (explicit_scheme || paper)
+    section.without_effect({"newton iterations", "linear tolerance", "contraction limit", "secants"}, because);
+  if (!automatic) section.without_effect({"largest operator"}, because);
+  if (!automatic && scheme != "tr-bdf2") section.without_effect({"predictor order"}, because);
 }
 
 void TimeOptions::check() const {

@@ -36,6 +36,7 @@ void Options::declare(deck::Section& section) {
       "1e-7 of the sum of the magnitudes of the terms, and of about 1e-8 in the shape; results of a mirrored, reordered or shifted deck in "
       "unbounded fluid then agree to 1e-8 instead of 1e-10. `double`: no such error. `auto`: `single` if Quadrature/tolerance is at least 1e-3 and "
       "the deck has no Spectrum");
+  if (rule == LayerRule::adaptive) section.without_effect({"points"}, "with Quadrature/rule `adaptive`");
 }
 
 void Options::choose_smooth_sums() {

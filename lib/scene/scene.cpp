@@ -227,6 +227,7 @@ void Scene::declare(deck::Section& root) {
   root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);
+  idle_keys = root.idle_keys();
   if (root.documenting()) return;
   complete_walls(*this);
   take_posts(*this);

@@ -197,6 +197,7 @@ struct Scene : SharedOptions {
   /// Particles in the order of the deck, at least one after declare(). A deck with the section Particle has one, without a name. In a scene of posts
   /// only, the one particle stands for their size.
   std::vector<ParticleKind> particles;
+  std::vector<std::string> idle_keys;  ///< sentences about keys that the deck gives although they have no effect
 
   Scene() = default;
   explicit Scene(const Registry& parts) { registry = &parts; }

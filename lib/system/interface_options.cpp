@@ -19,6 +19,7 @@ void InterfaceOptions::declare(deck::Section& section) {
               "dimensionless speed at which the mesh of a drop slides along the interface to keep its elements well shaped, with "
               "Interface/motion `relaxed`: it slides like an elastic membrane of capillary number 1/relaxation. Increase it if elements "
               "become distorted");
+  if (motion && *motion != MeshMotion::relaxed) section.without_effect({"relaxation"}, "with Interface/motion `" + word(*motion) + "`");
 }
 
 }  // namespace tanktread::coupling

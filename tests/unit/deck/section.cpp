@@ -75,6 +75,36 @@ TEST(Choices, RefuseAnotherWordWithAGuess) {
   EXPECT_EQ(refusal("    law: 2\n"), "Kinds/law must be soft, hard or very hard, but is 2.");
 }
 
+TEST(KeysWithoutEffect, AreListedIfTheDeckChangesThem) {
+  struct Scheme {
+    std::string scheme = "implicit";
+    double tolerance = 1e-3;
+    std::vector<std::string> idle;
+    void declare(Section& root) {
+      Inner inner{*this};
+      root.section("Time", inner, "time steps");
+      idle = root.idle_keys();
+    }
+    struct Inner {
+      Scheme& of;
+      void declare(Section& section) {
+        section.key("scheme", of.scheme, Choice{"implicit", "explicit"}, "scheme");
+        section.key("tolerance", of.tolerance, positive(), "1", "tolerance");
+        if (of.scheme == "explicit") section.without_effect({"tolerance"}, "with Time/scheme `explicit`");
+      }
+    };
+  };
+  const auto idle = [](const std::string& keys) {
+    Scheme scheme;
+    read_text("Tanktread: {Time: {" + keys + "}}").declare(scheme);
+    return scheme.idle;
+  };
+  EXPECT_TRUE(idle("scheme: implicit, tolerance: 1e-2").empty());
+  EXPECT_TRUE(idle("scheme: explicit, tolerance: 1e-3").empty()) << "the default, as in a printed deck";
+  EXPECT_EQ(idle("scheme: explicit, tolerance: 1e-2"),
+            std::vector<std::string>{"Time/tolerance has no effect with Time/scheme `explicit`: remove the key."});
+}
+
 TEST(UnknownKeys, AreRefusedWithTheirPathAndAGuess) {
   EXPECT_EQ(refusal("    shaer rate: 1\n"), "Kinds/shaer rate is not a key of the deck; was Kinds/shear rate meant?");
   EXPECT_EQ(refusal("    Inner: {detph: 1}\n"), "Kinds/Inner/detph is not a key of the deck; was Kinds/Inner/depth meant?");
