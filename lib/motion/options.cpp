@@ -8,6 +8,22 @@
 
 namespace tanktread::motion {
 
+namespace {
+
+/// States which keys of the section Time have no effect with this time integration scheme.
+void state_idle_keys(deck::Section& section, const std::string& scheme) {
+  const std::string because = "with Time/scheme `" + scheme + "`";
+  const bool automatic = scheme == "auto", explicit_scheme = scheme == "bs3" || scheme == "rkc2", paper = scheme == "crank-nicolson";
+  if (!paper) section.without_effect({"iteration tolerance", "nonlinear solver", "step control", "count euler step"}, because);
+  if (explicit_scheme) section.without_effect({"newton tolerance"}, because);
+  if (explicit_scheme || paper)
+    section.without_effect({"newton iterations", "linear tolerance", "contraction limit", "secants"}, because);
+  if (!automatic) section.without_effect({"largest operator"}, because);
+  if (!automatic && scheme != "tr-bdf2") section.without_effect({"predictor order"}, because);
+}
+
+}  // namespace
+
 void TimeOptions::declare(deck::Section& section) {
   section.key(
       "scheme", scheme, deck::Choice{"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"},
@@ -67,14 +83,7 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("predictor order", predictor_order, deck::between(0, 3), "1",
               "largest degree of the polynomial through earlier velocities that predicts the initial guess of a stage of Time/scheme "
               "`tr-bdf2`. Each step uses the degree that would have been best for the previous step");
-  const std::string because = "with Time/scheme `" + scheme + "`";
-  const bool automatic = scheme == "auto", explicit_scheme = scheme == "bs3" || scheme == "rkc2", paper = scheme == "crank-nicolson";
-  if (!paper) section.without_effect({"iteration tolerance", "nonlinear solver", "step control", "count euler step"}, because);
-  if (explicit_scheme) section.without_effect({"newton tolerance"}, because);
-  if (explicit_scheme || paper)
-    section.without_effect({"newton iterations", "linear tolerance", "contraction limit", "secants"}, because);
-  if (!automatic) section.without_effect({"largest operator"}, because);
-  if (!automatic && scheme != "tr-bdf2") section.without_effect({"predictor order"}, because);
+  state_idle_keys(section, scheme);
 }
 
 void TimeOptions::check() const {
