@@ -76,7 +76,6 @@ constexpr std::array<Kind, 6> kinds{{
      "left: {center: [-3.0, 0.0, 0.5]}, right: {center: [3.0, 0.0, -0.5]}}, Time: {final time: 10.0}, Output: {interval: 0.5}"},
 }};
 
-/// Returns the names of the decks that `--new` prints.
 std::vector<std::string> kinds_of_decks() {
   std::vector<std::string> names;
   for (const Kind& kind : kinds) names.emplace_back(kind.name);
@@ -92,7 +91,8 @@ std::string new_deck(const std::string& name) {
   return "# " + std::string(kind.title) + " Every key: tanktread --reference\n" + document.commented();
 }
 
-void state(CLI::App& app, Arguments& arguments) {
+/// Declares the options of the command line.
+void declare_options(CLI::App& app, Arguments& arguments) {
   app.footer(
       "An expectation (Expect) belongs to the deck that states it. If an overlay or --set changes a key that results depend on and does not\n"
       "state the expectation again, a miss is reported and does not fail the run.\n"
@@ -179,7 +179,7 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
 }
 
 /// Replaces `file` by its path, as returned by `found`. Registers it to be copied into the results directory under the name `kept`.
-void find(std::string& file, const std::string& kept, const Arguments& arguments, Scene& scene) {
+void find_and_keep(std::string& file, const std::string& kept, const Arguments& arguments, Scene& scene) {
   file = found(file, kept, arguments);
   scene.files.emplace_back(file, kept);
 }
@@ -187,9 +187,9 @@ void find(std::string& file, const std::string& kept, const Arguments& arguments
 /// Finds the files (shapes, positions of copies) that the deck names in the section of a particle, and reads the shape.
 void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
   surface::ParticleShape& shape = kind.particle.shape;
-  if (kind.copies.file) find(*kind.copies.file, kept_places(kind), arguments, scene);
-  if (shape.file) find(*shape.file, kept_surface(kind), arguments, scene);
-  if (auto& file = kind.membrane.stress_free_file) find(*file, kept_stress_free(kind), arguments, scene);
+  if (kind.copies.file) find_and_keep(*kind.copies.file, kept_places(kind), arguments, scene);
+  if (shape.file) find_and_keep(*shape.file, kept_surface(kind), arguments, scene);
+  if (auto& file = kind.membrane.stress_free_file) find_and_keep(*file, kept_stress_free(kind), arguments, scene);
   shape.read();
   auto& initial = shape.initial;
   if (!arguments.resume.empty() && initial && (initial->file || initial->run)) initial.reset();  // the shape is read from the checkpoint
@@ -201,10 +201,10 @@ void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
 /// Reads the scene of a deck, with its files, and checks it.
 void prepare(deck::Document& deck, const Arguments& arguments, Scene& scene) {
   deck.declare(scene);
-  if (auto& outline = scene.tube.outline) find(*outline, kept_name(*outline), arguments, scene);
-  if (auto& channel = scene.tube.channel; channel && channel->points) find(*channel->points, kept_name(*channel->points), arguments, scene);
+  if (auto& outline = scene.tube.outline) find_and_keep(*outline, kept_name(*outline), arguments, scene);
+  if (auto& channel = scene.tube.channel; channel && channel->points) find_and_keep(*channel->points, kept_name(*channel->points), arguments, scene);
   if (auto& history = scene.flow.history; history && history->file) {
-    find(*history->file, kept_flow_history, arguments, scene);
+    find_and_keep(*history->file, kept_flow_history, arguments, scene);
     history->read();
   }
   for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
@@ -347,7 +347,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
   try {
     Arguments arguments;
     CLI::App app("Deformable capsules and drops in viscous flow, by isogeometric boundary elements.", "tanktread");
-    state(app, arguments);
+    declare_options(app, arguments);
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -358,9 +358,9 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
       return done;
     }
     const int code = run(arguments, registry, speaks);
+    // These commands print their result on standard output; a run writes files.
     const bool prints = arguments.check || arguments.cite || arguments.reference || arguments.reference_series || arguments.rejections ||
-                        arguments.schema ||
-                        !arguments.new_deck.empty();  // true if the command prints its result on standard output; a run writes files
+                        arguments.schema || !arguments.new_deck.empty();
     if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {

@@ -86,7 +86,7 @@ class Run {
     if (!motion.failure().empty()) throw RunFailure("the evaluation of the velocity of the initial shape failed: " + motion.failure());
     state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(motion, state_, scene_.time);
     record();
-    settle();
+    collect_totals();
     save();
   }
 
@@ -116,7 +116,7 @@ class Run {
     adapting_ = false;
     const std::string error = error_of([this] { advance(); });
     if (error.empty() && !interrupted_) {
-      settle();
+      collect_totals();
       return reason_to_stop();
     }
     state_ = before;
@@ -151,7 +151,7 @@ class Run {
     motion::State before = state_;
     within_step_.reset();
     integrate(lands ? snapshot : scene_.time.final_time, before);
-    judge();
+    check_mesh();
     ++totals_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) interpolate_within(before);
@@ -211,7 +211,7 @@ class Run {
   }
 
   /// Collects the totals of the run after a finished step, for a checkpoint: counts of operations, phase angle, contacts and warnings.
-  void settle() {
+  void collect_totals() {
     totals_.counts = particle_->counts();
     totals_.phase_angle = particle_->phase_angle();
     totals_.contacts = particle_->contacts();
@@ -257,7 +257,7 @@ class Run {
   }
 
   /// Computes the quality of the mesh. Throws RunFailure if an element is folded.
-  void judge() {
+  void check_mesh() {
     if (first_.particle.rigid()) return;
     const auto clock = phases_.time("soundness");
     quality_ = soundness(particle_->bezier(), state_.x, ranks_);
@@ -275,8 +275,8 @@ class Run {
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const Results::Sampled snapshot = within_step_ && within_step_->sampled ? *within_step_->sampled : sample();
-    if (within_step_) settle();  // sample() has evaluated the velocity at the time of the snapshot. The totals are collected again, so that the
-                              // checkpoint includes the operations of this evaluation.
+    // sample() has evaluated the velocity at the time of the snapshot; the totals are collected again to include this evaluation.
+    if (within_step_) collect_totals();
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, snapshot);
@@ -323,7 +323,7 @@ class Run {
     const auto tolerance = scene_.time.steady_tolerance;
     const bool flow_changes = scene_.flow.history && scene_.flow.history->lasts(state_.time);
     if (tolerance && !flow_changes && row_.largest("shape_velocity") < *tolerance) return steady;
-    if (scene_.time.end_when_past && least_way(scene_, particle_->body(), row_) > *scene_.time.end_when_past) return past;
+    if (scene_.time.end_when_past && least_axial_position(scene_, particle_->body(), row_) > *scene_.time.end_when_past) return past;
     return {};
   }
 

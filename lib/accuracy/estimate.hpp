@@ -15,8 +15,8 @@ namespace tanktread::accuracy {
 /// the differences, because a difference that is small by chance is taken for fast convergence.
 struct Estimate {
   double error = 0;       ///< estimated error of the finest level; NaN if it cannot be estimated
-  double ratio = 0;       ///< observed ratio of the errors of the last two levels, (C_(l-1) E_(l-1))/(C_l E_l) with C and E of (9.1); NaN if it is
-                          ///< unknown
+  /// observed ratio of the errors of the last two levels, (C_(l-1) E_(l-1))/(C_l E_l) with C and E of (9.1); NaN if it is unknown
+  double ratio = 0;
   std::string untrusted;  ///< reason for which the estimate cannot be trusted; empty if it can
   bool trusted() const { return untrusted.empty(); }
 };

@@ -23,6 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
+/// Calls `choose` on the first rank only, and returns its result (a number, or true or false) on all ranks. Collective.
+double decided(const auto& choose) { return coupling::decided([&] { return std::vector{static_cast<double>(choose())}; })[0]; }
+
 /// Decision about a level: it is finished, it failed with the same deck and is not run again, it is resumed, or it is run anew.
 enum class Start { finished, failed, resume, anew };
 
@@ -83,22 +86,20 @@ class Ladder {
   /// Returns whether the directory of level k in a resumed ladder holds results or a recorded failure. Such a level probably need not be run again.
   /// The deck of the earlier run is not compared, because it depends on shares of the error that are measured later.
   bool is_over(int k) const {
-    return coupling::decided([&] {
+    return decided([&] {
       std::error_code absent;
       const fs::path place = directory(std::to_string(k));
-      return std::vector<double>{double(task_.resume && (fs::exists(place / "summary.yaml", absent) || fs::exists(place / failure_file, absent)))};
-    })[0] != 0;
+      return task_.resume && (fs::exists(place / "summary.yaml", absent) || fs::exists(place / failure_file, absent));
+    }) != 0;
   }
 
   /// Returns the reason not to run level k if it is predicted to exceed the wall-clock limit of all levels together, otherwise an empty text.
   std::string reason_to_stop(int k) const {
     const auto limit = task_.options.wall_clock_limit;
     if (!limit) return {};
-    const auto numbers = coupling::decided([&] {
-      return std::vector<double>{seconds_here(), predicted_seconds(seconds())};
-    });
-    if (numbers[0] + numbers[1] <= *limit) return {};
-    return formatted("level %d is predicted to take %.3g s, which exceeds Accuracy/wall-clock limit, %g s", k, numbers[1], *limit);
+    const double so_far = decided([&] { return seconds_here(); }), next = decided([&] { return predicted_seconds(seconds()); });
+    if (so_far + next <= *limit) return {};
+    return formatted("level %d is predicted to take %.3g s, which exceeds Accuracy/wall-clock limit, %g s", k, next, *limit);
   }
 
   /// Returns the wall seconds of the finished levels.
@@ -113,7 +114,7 @@ class Ladder {
   /// Runs level k, unless it is finished already. Returns `stopped` if the run was interrupted and can be resumed, or 0 if the run ended or failed.
   int run(int k) {
     std::optional<Outcome> outcome;
-    const int code = run(level_at(k), std::to_string(k), outcome);
+    const int code = run_level(level_at(k), std::to_string(k), outcome);
     if (code == stopped || !failure_of_last_.empty()) return code;
     if (ranks_.rank() == 0) levels_.push_back(std::move(*outcome));
     ++count_;
@@ -124,12 +125,10 @@ class Ladder {
 
   /// Returns whether level k is expected to meet all requests. If so, the additional runs of balance() would cost more than they save.
   bool within_reach(int k) const {
-    return coupling::decided([&] {
+    return decided([&] {
       const double gain = levels_.empty() ? 1 : expected_error(level_at(k)) / expected_error(levels_.back().level);
-      return std::vector<double>{double(std::ranges::all_of(answers_, [&](const Answer& one) {
-        return margin * gain * one.estimate.error <= one.allowed;
-      }))};
-    })[0] != 0;
+      return std::ranges::all_of(answers_, [&](const Answer& one) { return margin * gain * one.estimate.error <= one.allowed; });
+    }) != 0;
   }
 
   /// Measures which shares of the error are due to time integration and to quadrature, and stores them in shares_. For this, runs level 2 again with
@@ -139,7 +138,7 @@ class Ladder {
   int balance() {
     balanced_ = true;
     std::optional<Outcome> quadrature;
-    if (run({2, 1, 2}, "2_time", looser_) == stopped || run({2, 2, 1}, "2_quadrature", quadrature) == stopped) return stopped;
+    if (run_level({2, 1, 2}, "2_time", looser_) == stopped || run_level({2, 2, 1}, "2_quadrature", quadrature) == stopped) return stopped;
     const auto found = coupling::decided([&] {
       std::vector<double> most;
       for (const Request& request : task_.options.requests) {
@@ -159,13 +158,12 @@ class Ladder {
   /// Runs one level in its directory, unless it is finished already. Sets `outcome` on the first rank. Returns `stopped` if the run was interrupted
   /// and can be resumed, or 0 if the run ended or failed. If the deck of a new level is invalid (UserError) and a coarser level is finished, the
   /// level counts as failed.
-  int run(const Level& level, const std::string& name, std::optional<Outcome>& outcome) try {
+  int run_level(const Level& level, const std::string& name, std::optional<Outcome>& outcome) try {
     failure_of_last_.clear();
     resuming_ = false;
     const std::string deck = program_.deck(settings(task_.values, level));
     std::string failure;  // reason for which an earlier run of this deck failed; set on the first rank
-    const auto known = coupling::decided([&] { return std::vector<double>{static_cast<double>(start_of(directory(name), level, deck, failure))}; });
-    const auto start = static_cast<Start>(static_cast<int>(known[0]));
+    const auto start = static_cast<Start>(static_cast<int>(decided([&] { return start_of(directory(name), level, deck, failure); })));
     resuming_ = start == Start::resume;
     if (start == Start::failed) {
       fail(name, failure + " (recorded by an earlier run; to search again, delete " + failure_file + ")");
@@ -175,8 +173,8 @@ class Ladder {
     if (start != Start::finished) {
       const auto limit = task_.options.wall_clock_limit;
       const double before = seconds_here();
-      const double left = coupling::decided([&] { return std::vector<double>{limit ? std::max(1e-3, *limit - before) : 0}; })[0];
-      const int code = run(name, deck, start == Start::resume, limit ? std::optional(left) : std::nullopt);
+      const double left = decided([&] { return limit ? std::max(1e-3, *limit - before) : 0; });
+      const int code = run_deck(name, deck, start == Start::resume, limit ? std::optional(left) : std::nullopt);
       seconds = seconds_here() - before;
       if (code == stopped || !failure_of_last_.empty()) {
         seconds_ += seconds;
@@ -198,9 +196,9 @@ class Ladder {
     return 0;
   }
 
-  /// Runs a deck. If a search for a steady or periodic shape fails, stores the reason in `failure_file`. Returns `stopped` if the run was interrupted
-  /// and can be resumed, or 0 if it ended or failed.
-  int run(const std::string& name, const std::string& deck, bool resume, std::optional<double> limit) {
+  /// Runs a deck in the directory of the level `name`. If a search for a steady or periodic shape fails, stores the reason in `failure_file`. Returns
+  /// `stopped` if the run was interrupted and can be resumed, or 0 if it ended or failed.
+  int run_deck(const std::string& name, const std::string& deck, bool resume, std::optional<double> limit) {
     try {
       if (program_.run(deck, directory(name), resume, limit) == stopped) return stopped;
       return 0;
@@ -257,30 +255,30 @@ class Ladder {
 
   /// Estimates the errors of the finest level k for all requests and prints one line per request. Returns whether all requests are met.
   bool judge(int k) {
-    const auto all_met = coupling::decided([&] {
+    const bool all_met = decided([&] {
       answer_all();
-      return std::vector<double>{double(std::ranges::all_of(answers_, &Answer::met))};
-    });
+      return std::ranges::all_of(answers_, &Answer::met);
+    }) != 0;
     say(formatted("  level %-5d %d elements per side, tolerance %.2g, %.3g s", k, elements_per_side(k),
                   tolerance(level_at(k).time), levels_.empty() ? 0 : levels_.back().seconds));
     for (const Answer& one : answers_) say("              " + sentence(one));
-    return all_met[0] != 0;
+    return all_met;
   }
 
   /// Returns whether finer levels are not expected to help. This is so if `obstacle` reports, for each of the two finest levels, a reason why no
   /// error can be estimated, or if every request that is not met is for a series that vanishes (Answer::vanishes).
   bool hopeless() const {
-    return coupling::decided([&] {
-      if (levels_.size() < 4) return std::vector<double>{0};
+    return decided([&] {
+      if (levels_.size() < 4) return false;
       const std::vector<Outcome> before(levels_.begin(), levels_.end() - 1);
-      return std::vector<double>{double((!obstacle(levels_).empty() && !obstacle(before).empty()) ||
-                                        std::ranges::all_of(answers_, [](const Answer& one) { return one.met || one.vanishes; }))};
-    })[0] != 0;
+      return (!obstacle(levels_).empty() && !obstacle(before).empty()) ||
+             std::ranges::all_of(answers_, [](const Answer& one) { return one.met || one.vanishes; });
+    }) != 0;
   }
 
   /// Publishes the finest finished level as the results, and returns the exit code.
   int conclude(Code code, const std::string& why) {
-    if (coupling::decided([&] { return std::vector<double>{double(levels_.size())}; })[0] == 0) {
+    if (decided([&] { return levels_.size(); }) == 0) {
       if (code == stopped) {
         if (ranks_.rank() == 0) report(code, why, "");
         return stopped;
@@ -288,13 +286,12 @@ class Ladder {
       throw RunFailure("no accuracy level was completed" + (failure_.empty() ? "" : ": " + failure_));
     }
     const std::string status = code == stopped ? program_.reason_of_stop() : "";
-    const auto outcome = coupling::decided([&] {
+    return static_cast<int>(decided([&] {
       answer_all();
       const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_, answers_), {status, why}, seconds_);
       report(code, why, missed_expectations);
-      return std::vector<double>{double(code == met && !missed_expectations.empty() ? missed : code)};
-    });
-    return static_cast<int>(outcome[0]);
+      return code == met && !missed_expectations.empty() ? missed : code;
+    }));
   }
 
   void report(Code code, const std::string& why, const std::string& missed_expectations) const {
@@ -316,13 +313,13 @@ class Ladder {
   std::optional<Outcome> looser_;                   // result of level 2 with a looser time tolerance, on the first rank
   std::vector<Answer> answers_;                     // estimated errors for the requests, on the first rank
   int count_ = 0;                                   // number of finished levels
-  double seconds_ = 0;                              // wall seconds of all runs, on the first rank. Finished runs include the time before they
-                                                    // were resumed
+  // wall seconds of all runs, on the first rank. Finished runs include the time before they were resumed
+  double seconds_ = 0;
   bool balanced_ = false;                           // true if balance() has been called, which measures `shares_`
   std::vector<double> shares_{0.25, 0.25};          // shares of time integration and quadrature in the error at level 2
   bool resuming_ = false;                           // true if the latest run resumes an earlier one
-  std::string failure_, failure_of_last_;           // failure_: message of the latest failed run. failure_of_last_: message of the latest run if it
-                                                    // failed, otherwise empty
+  // failure_: message of the latest failed run. failure_of_last_: message of the latest run if it failed, otherwise empty
+  std::string failure_, failure_of_last_;
 };
 
 }  // namespace
@@ -335,11 +332,8 @@ double predicted_seconds(const std::vector<double>& seconds) {
 }
 
 std::optional<std::string> ladder_deck(const fs::path& directory) {
-  const auto there = coupling::decided([&] {
-    std::error_code absent;
-    return std::vector<double>{double(fs::is_regular_file(directory / ladder_file, absent))};
-  });
-  if (there[0] == 0) return {};
+  std::error_code absent;
+  if (decided([&] { return fs::is_regular_file(directory / ladder_file, absent); }) == 0) return {};
   return text_of_file(directory / ladder_file, (directory / ladder_file).string(), 10'000'000);
 }
 

@@ -44,8 +44,8 @@ struct Answer {
   double allowed = 0;    ///< largest error that the request allows, in the unit of the series; for a relative request, at least the round-off error
   bool met = false;
   bool vanishes = false;  ///< true if a relative request cannot be met: the values of the series are not larger than its differences between levels
-  double statistical = std::numeric_limits<double>::quiet_NaN();  ///< statistical error of a time average over several particles, not included in
-                                                                  ///< `estimate`; NaN if unknown
+  /// statistical error of a time average over several particles, not included in `estimate`; NaN if unknown
+  double statistical = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Returns the estimated error for a request, and whether it meets the request, from the levels finished so far, coarse to fine. `looser`: result of

@@ -7,10 +7,10 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double stable = 2.3;       // largest step dt times stiffness rho for BS3; less than the stability limit 2.51, because the measured rho is a
-                                     // lower bound
-constexpr double solve_share = 0.5;  // assumed work of a linear solve, in velocity evaluations; measured: 0.4 to 1.5, on meshes of 218 and 866
-                                     // control points
+// largest step dt times stiffness rho for BS3; less than the stability limit 2.51, because the measured rho is a lower bound
+constexpr double stable = 2.3;
+// assumed work of a linear solve, in velocity evaluations; measured: 0.4 to 1.5, on meshes of 218 and 866 control points
+constexpr double solve_share = 0.5;
 constexpr double memory_of_work = 0.8;
 constexpr int measured_every = 10, trial = 10, tried_again_after = 50;  // steps
 
@@ -35,14 +35,9 @@ Scheme& Automatic::chosen(const Choice& choice) {
 }
 
 void Automatic::measure(coupling::Dynamics& dynamics, State& state, Choice& choice) const {
-  const auto points = static_cast<double>(state.x.rows());
-  if (choice.points == points && choice.age < measured_every) return;
+  if (choice.points == static_cast<double>(state.x.rows()) && choice.age < measured_every) return;
   if (state.frozen.size() == 0) freeze(dynamics, state, state.time);
-  dynamics.at(state.time, state.time);
-  const double found = stiffness(dynamics, state.x, state.history.front(), state.direction, choice.points == points ? 3 : 8);
-  if (std::isfinite(found)) choice.stiffness = found;
-  choice.points = points;
-  choice.age = 0;
+  measure_stiffness(dynamics, state, choice);
 }
 
 /// Updates the choice of the scheme after an accepted step.

@@ -14,8 +14,8 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double noise = 30;  // a correction below this multiple of the tolerance counts as converged, because quadrature errors may prevent smaller
-                              // corrections
+// a correction below this multiple of the tolerance counts as converged, because quadrature errors may prevent smaller corrections
+constexpr double noise = 30;
 }
 
 void ContinuationOptions::declare(deck::Section& section) {
@@ -125,8 +125,8 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
     if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // another branch, or no branch
     const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
-    solved.rest = moved * turned;  // estimated error, because dG/dp is evaluated at `from` instead of the solution: distance of the solution from
-                                   // `from`, times the change of the scaled parameter
+    // estimated error, because dG/dp is evaluated at `from` and not at the solution: distance from `from`, times the change of the scaled parameter
+    solved.rest = moved * turned;
     if (solved.rest < tolerance) return solved;
   }
   return {};

@@ -140,8 +140,8 @@ class Branch {
   double last_share_ = 1;         // last step of the second parameter, divided by the interval between two of its given values
   std::size_t values_ = 0;        // number of given values of the second parameter that have been reached
   std::string failure_;
-  double step_ = 0, prediction_error_ = 1;  // step_: length of the next step. prediction_error_: distance of the latest point from its prediction,
-                                            // divided by the step
+  // step_: length of the next step. prediction_error_: distance of the latest point from its prediction, divided by the step
+  double step_ = 0, prediction_error_ = 1;
   double heading_ = 0;  // last change of the scaled parameter q along the branch; at a fold its sign changes. Not reset when the mesh changes
   int count_ = 0;
   bool ended_ = false;

@@ -10,8 +10,8 @@ namespace tanktread::motion {
 namespace {
 constexpr double shrink = 0.75, grow = 1.33;
 constexpr int most = 8, few = 4;      // sub-iterations
-constexpr int most_accelerated = 40;  // largest number of NOX iterations per step; if they do not converge, halving the step is cheaper than more
-                                      // iterations
+// largest number of NOX iterations per step; if they do not converge, halving the step is cheaper than more iterations
+constexpr int most_accelerated = 40;
 }  // namespace
 
 CrankNicolson::CrankNicolson(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox)
@@ -47,8 +47,8 @@ CrankNicolson::Iteration CrankNicolson::iterate(coupling::Dynamics& dynamics, co
 StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   begin(dynamics, state);
   Attempts attempts(options_, state, limit);
-  const bool known = by_error_ && state.history.size() > 1;  // true if State::memory contains two values of the last accepted step: its
-                                                             // size, and its error divided by the tolerance
+  // true if State::memory contains two values of the last accepted step: its size, and its error divided by the tolerance
+  const bool known = by_error_ && state.history.size() > 1;
 
   for (;;) {
     const double dt = attempts.next();

@@ -24,8 +24,8 @@ class FixedPointError {
   /// point. The cost is a least-squares problem with m columns, without evaluations of the fixed-point map.
   Net operator()(const Net& x, const Net& f);
 
-  bool known() const { return before_.size() > 1; }  ///< returns true if the latest estimate (4.32) uses earlier iterates; without earlier iterates
-                                                     ///< the estimate is -f_k
+  /// Returns true if the latest estimate (4.32) uses earlier iterates; without earlier iterates the estimate is -f_k.
+  bool known() const { return before_.size() > 1; }
 
  private:
   int most_;

@@ -43,8 +43,8 @@ struct Parabola {
 /// interval.
 std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   constexpr int most = 10;
-  constexpr double relative_misfit = 1e-2;  // assumed relative error of the parameter at the vertex of the first parabola. The error falls with the
-                                            // third power of the distance between the three points of the parabola
+  // assumed relative error of the parameter at the vertex of the first parabola; it falls with the third power of the distance between the points
+  constexpr double relative_misfit = 1e-2;
   const double narrow = std::min(0.25, std::cbrt(options_.fold_tolerance / relative_misfit));
   const double first = three[2].s - three[0].s;
   double before = std::numeric_limits<double>::quiet_NaN();
@@ -65,8 +65,8 @@ std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
       return static_cast<std::size_t>(std::ranges::min_element(at, {}, [s](double one) { return std::abs(one - s); }) - at.begin());
     };
     const double reach = std::max(std::abs(left - vertex), std::abs(right - vertex)), apart = (right - left) / 8;
-    const bool flat = std::abs(parabola.coefficients[2]) * reach * reach < allowed;  // the parameter is the same, to the tolerance, at all three
-                                                                                     // points and at the vertex of the parabola
+    // the parameter is the same, to the tolerance, at all three points and at the vertex of the parabola
+    const bool flat = std::abs(parabola.coefficients[2]) * reach * reach < allowed;
     const bool last = right - left < narrow * first || k + 1 == most, found = flat || last || std::abs(q - before) < allowed;
     const double change = flat || std::isnan(before) ? 0 : std::abs(q - before);
     before = q;

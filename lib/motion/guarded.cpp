@@ -9,8 +9,8 @@ namespace tanktread::motion {
 
 namespace {
 
-enum Outcome { fine, told_to_stop, failed, exhausted };  // outcomes of a call on one rank, from best to worst; the worst outcome of all ranks is the
-                                                         // common outcome
+// outcomes of a call on one rank, from best to worst; the worst outcome of all ranks is the common outcome
+enum Outcome { fine, told_to_stop, failed, exhausted };
 
 }  // namespace
 

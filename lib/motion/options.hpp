@@ -31,8 +31,8 @@ struct TimeOptions {
   double newton_tolerance = 0.2;           ///< allowed error of the quasi-Newton iteration of a stage, divided by `tolerance`
   int newton_iterations = 6;               ///< largest number of iterations of a stage before the step is halved
   double linear_tolerance = 0.05;          ///< allowed relative residual of the linear solves of a stage
-  double contraction_limit = 0.3;          ///< contraction rate of the quasi-Newton iteration above which the frozen layer operator, the boundary
-                                           ///< integrals in the Jacobian (4.3), is assembled again
+  /// contraction rate of the quasi-Newton iteration above which the frozen layer operator in the Jacobian (4.3) is assembled again
+  double contraction_limit = 0.3;
   double largest_operator = 32;             ///< memory of the frozen layer operator above which `auto` uses rkc2, GB on all ranks together
   int secants = 2;                         ///< number of corrections stored by the quasi-Newton iteration (4.13)
   int predictor_order = 3;                 ///< largest degree of the polynomial through known slopes that predicts a stage of tr-bdf2

@@ -18,8 +18,8 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     const Net defect = dynamics.defect(stage.y, (stage.y - rhs) / shift);
     ++stage.iterations;
     if (!defect.allFinite()) return;
-    if (k == 1 && options.secants > 0) {  // only the first correction gives a secant, because later corrections are so small that quadrature errors
-                                          // dominate them
+    // only the first correction gives a secant, because later corrections are so small that quadrature errors dominate them
+    if (k == 1 && options.secants > 0) {
       const Net jacobian_error = dynamics.jacobian_error(defect - before, delta, shift);
       if (!jacobian_error.allFinite()) return;
       secants.add(delta, jacobian_error, options.secants);

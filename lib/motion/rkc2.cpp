@@ -20,17 +20,6 @@ struct StiffnessMemory {
   double points = 0;     ///< number of control points of the mesh on which the stiffness was measured
 };
 
-void measure(coupling::Dynamics& dynamics, State& state, StiffnessMemory& memory, StepReport& report) {
-  const auto points = static_cast<double>(state.x.rows());
-  const int iterations = memory.points == points ? 3 : 8;
-  dynamics.at(state.time, state.time);
-  const double found = stiffness(dynamics, state.x, state.history.front(), state.direction, iterations);
-  if (std::isfinite(found)) memory.stiffness = found;
-  memory.age = 0;
-  memory.points = points;
-  report.iterations += iterations;
-}
-
 /// Values T_j(w), T_j'(w) and T_j''(w) of the Chebyshev polynomials of degree j = 0 … s at the point w.
 struct Chebyshev {
   std::vector<double> t, d, dd;
@@ -75,7 +64,8 @@ StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limi
   begin(dynamics, state);
   StiffnessMemory memory = remembered<StiffnessMemory>(state.memory);
   Attempts attempts(options_, state, limit);
-  if (memory.age >= lasting_steps || memory.points != static_cast<double>(state.x.rows())) measure(dynamics, state, memory, attempts.report);
+  const auto measure = [&] { attempts.report.iterations += measure_stiffness(dynamics, state, memory); };
+  if (memory.age >= lasting_steps || memory.points != static_cast<double>(state.x.rows())) measure();
 
   for (;;) {
     const double rho = margin * memory.stiffness;
@@ -100,7 +90,7 @@ StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limi
       return attempts.accept(dynamics, std::move(y), error, factor, step_share(options_.tolerance, 2));
     }
     attempts.reject(std::min(factor, 0.8), error);
-    if (memory.age > 0) measure(dynamics, state, memory, attempts.report);
+    if (memory.age > 0) measure();
   }
 }
 

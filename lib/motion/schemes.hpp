@@ -2,6 +2,7 @@
 // The schemes of `Time/scheme`, and the step control that they share.
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -109,6 +110,19 @@ int rkc2_stages(double dt, double rho);
 /// the iteration starts from pseudo-random numbers that are the same in every run. An iteration costs one product with the frozen operator, or one
 /// velocity evaluation if nothing is assembled.
 double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations);
+
+/// Measures the stiffness (4.7) at the state, with three iterations if it was measured on a mesh of as many control points before, otherwise eight.
+/// Sets `stiffness`, unless the result is not finite, `age` (0) and `points` in the memory of a scheme. Returns the number of iterations.
+template <class Memory>
+int measure_stiffness(coupling::Dynamics& dynamics, State& state, Memory& memory) {
+  const auto points = static_cast<double>(state.x.rows());
+  const int iterations = memory.points == points ? 3 : 8;
+  dynamics.at(state.time, state.time);
+  const double found = stiffness(dynamics, state.x, state.history.front(), state.direction, iterations);
+  if (std::isfinite(found)) memory.stiffness = found;
+  memory.age = 0, memory.points = points;
+  return iterations;
+}
 
 /// The Crank-Nicolson scheme of the paper by Maestre et al. (2017), equation 38, by default with its sub-iteration and its step rule (4.1):
 ///

@@ -48,9 +48,9 @@ class SteadyEquations {
   /// `step`: implicit step s of the preconditioner in (4.17), a time. `start`: the shape x0. `dynamics` must outlive this object.
   SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start);
 
-  Net residual(const Net& x);                          ///< returns G(x) (4.17) times the implicit step s; not finite if the evaluation fails.
-                                                       ///< Collective
-  /// returns (1 - s J)^{-1} r, with the implicit step s (4.17) and the frozen Jacobian J (4.3) linearised at x. Collective
+  /// Returns G(x) (4.17) times the implicit step s; not finite if the evaluation fails. Collective.
+  Net residual(const Net& x);
+  /// Returns (1 - s J)^{-1} r, with the implicit step s (4.17) and the frozen Jacobian J (4.3) linearised at x. Collective.
   Net precondition(const Net& x, const Net& r);
   double unit_length() const;                          ///< Euclidean norm of a displacement for which Dynamics::norm is 1
   std::vector<Net> neutral(const Net& x);  ///< returns an orthonormal basis of the neutral directions, the range of Q in (4.17). Collective

@@ -13,8 +13,8 @@ namespace {
 const double d = 1 - 1 / std::sqrt(2.0);
 const double w = std::sqrt(2.0) / 4;
 constexpr double worth_an_order = 0.7;  // a higher order of prediction is chosen only if its error is below this factor times the best error so far
-constexpr double accuracy = 4;  // the error estimate (4.4) contains |e1|/accuracy: |e1| is the estimated error of the second-order result, and the
-                                // extrapolated result (4.30) is more accurate
+// the error estimate contains |e1|/accuracy, because |e1| (4.4) is the error of the second-order result, and the result (4.30) is more accurate
+constexpr double accuracy = 4;
 
 /// Orders of extrapolation that would have given the best predictions of the slopes of the second and the third stage of a step.
 struct Orders {

@@ -124,15 +124,10 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
       if (scene.wall.solid || !scene.posts.empty()) lines.emplace_back("solids", solids_line(scene, ranks));
       return;
     }
-    if (scene.wall.present) {
-      lines.emplace_back("flow", scene.flow.type + history + ", beside a plane wall: represented by images, no wall unknowns");
-      return;
-    }
-    if (scene.domain.medium) {
-      lines.emplace_back("flow", scene.flow.type + history + ", in the medium `" + scene.domain.kind + "`: no unknowns on its boundaries");
-      return;
-    }
-    lines.emplace_back("flow", scene.flow.type + history + ", unbounded: no wall unknowns, no pressure drop");
+    std::string where = ", unbounded: no wall unknowns, no pressure drop";
+    if (scene.wall.present) where = ", beside a plane wall: represented by images, no wall unknowns";
+    else if (scene.domain.medium) where = ", in the medium `" + scene.domain.kind + "`: no unknowns on its boundaries";
+    lines.emplace_back("flow", scene.flow.type + history + where);
     return;
   }
   const surface::TubeWall& wall = *body.wall;

@@ -16,7 +16,7 @@
 #include "base/formatted.hpp"
 #include "deck/expectation.hpp"
 #include "deck/units.hpp"
-#include "record/duct_picture.hpp"
+#include "record/duct_arrays.hpp"
 #include "record/files/file.hpp"
 #include "record/files/progress.hpp"
 #include "record/files/checkpoint.hpp"
@@ -123,7 +123,7 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
     : scene_(scene), request_(request), body_(&body), ranks_(ranks), columns_(columns(scene)), writes_(ranks.rank() == 0),
       directory_(request.output) {
   std::vector<output::Array> channel;
-  if (const auto* flow = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get()); flow && !request.resume) channel = channel_picture(*flow);
+  if (const auto* flow = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get()); flow && !request.resume) channel = channel_arrays(*flow);
   write([&] {
     occupation_.emplace(directory_);
     request.resume ? output::tidy_directory(directory_) : begin();
@@ -138,7 +138,7 @@ void Results::begin() {
   output::start_directory(directory_);
   run_ = identifier();
   for (const auto& [file, name] : scene_.files) keep(file, name);
-  if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_picture(stokes::DuctFlow(*body_->duct)));
+  if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_arrays(stokes::DuctFlow(*body_->duct)));
   record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
   series_.emplace(directory_);
   declare_series();
@@ -173,7 +173,7 @@ std::optional<Resumed> Results::resumed() {
   if (saved.file.step != last_saved_)
     throw UserError("--resume " + directory_.string() + ": " + chosen +
                     formatted(" contains step %d, but its name states another step", last_saved_));
-  for (const Warning& warning : resumed.totals.warnings.said) warnings_.push_back(warning.sentence);
+  for (const Warning& warning : resumed.totals.warnings.shown) warnings_.push_back(warning.sentence);
   write([&] {
     load_record(saved.checkpoint, chosen);
     set_aside(saved.damaged, chosen);

@@ -33,8 +33,8 @@ struct RunRequest {
   bool overwrite = false;       ///< true to delete the results of an earlier run in the directory first
   bool another_scheme = false;  ///< true if the checkpoint has another time scheme; only the data that all schemes use are then kept
   bool quiet = false;           ///< true to show no progress bar
-  bool of_ladder = false;       ///< true for a level of an accuracy ladder; the run then does not report why it ended and how to resume it, because
-                                ///< the ladder does
+  /// true for a level of an accuracy ladder; the run then does not report why it ended and how to resume it, because the ladder does
+  bool of_ladder = false;
   std::string deck_text;        ///< the effective deck, to be stored with the results
   /// Returns the scene of this deck with some keys changed by `settings`, each of which is `Section/key=value`.
   std::function<Scene(const std::vector<std::string>& settings)> changed;

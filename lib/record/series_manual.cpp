@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "record/duct_picture.hpp"
+#include "record/duct_arrays.hpp"
 #include "record/plan.hpp"
 #include "scene/series/series.hpp"
 #include "scene/series/run_totals.hpp"
@@ -164,7 +164,7 @@ std::string series_manual(const Registry& registry) {
   add(registry.series.columns(), "Output/series");
   text += "\n## Fields\n\nThe group `/VTKHDF` in `snapshot_<step>.hdf`, at the nodes of the snapshot.\n" + table("field", fields);
   text += "\n## The empty tube\n\nThe file `duct.h5` of a run in a tube.\n\n| array | unit | description |\n|---|---|---|\n";
-  for (const output::Array& one : duct_picture(stokes::DuctFlow(circle, 1, 1)))
+  for (const output::Array& one : duct_arrays(stokes::DuctFlow(circle, 1, 1)))
     text += line(one.name, one.unit, "", one.description);
   text += "\n## Summary\n\nThe file `summary.yaml`.\n" + table("entry", entries);
   const RunTotals none;

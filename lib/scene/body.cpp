@@ -58,7 +58,7 @@ FlowPlane plane_normal_to(Vec3 normal) {
 }
 
 std::optional<Mat3> axes_of_shear(const Mat3& gradient) {
-  constexpr double most = 1e-6;  // with which a gradient is written in a deck
+  constexpr double most = 1e-6;  // relative rounding error of a gradient in a deck, above which the flow is no simple shear
   const Eigen::JacobiSVD<Mat3> parts(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3 along = parts.matrixU().col(0), across = parts.matrixV().col(0), sizes = parts.singularValues();
   if (!(sizes[0] > 0) || sizes[1] > most * sizes[0] || std::abs(along.dot(across)) > most) return {};
@@ -125,13 +125,13 @@ bool alike(const ParticleScene& one, const ParticleScene& other) {
          levels(one) == levels(other);
 }
 
-Body body(const ParticleScene& scene, const Member* alike, std::shared_ptr<const stokes::DuctFlow> empty_duct) {
+Body body(const ParticleScene& scene, const Member* similar, std::shared_ptr<const stokes::DuctFlow> empty_duct) {
   Body b;
   const int levels = scene.adaptation.enabled ? scene.adaptation.levels : 0;
-  if (alike) {
-    const Body& other = *alike->body;
+  if (similar) {
+    const Body& other = *similar->body;
     b.mesh = other.mesh, b.space = other.space, b.plain = other.plain;
-    b.rest = surface::placed_again(other.rest, alike->scene.particle.shape, scene.particle.shape);
+    b.rest = surface::placed_again(other.rest, similar->scene.particle.shape, scene.particle.shape);
   } else if (const auto& imported = scene.particle.shape.imported) {
     b.space = imported->space;
     b.rest = surface::imported_shape(scene.particle.shape);
@@ -173,7 +173,7 @@ Body body(const ParticleScene& scene, const Member* alike, std::shared_ptr<const
 
 void check_in_medium(const ParticleScene& scene, const Body& body) {
   if (stokes::contains(scene.domain.medium.get(), coupling::collocation_matrix(body.space) * body.initial)) return;
-  throw UserError((scene.name.empty() ? "The particle" : "Particles/" + scene.name) + " is not inside the fluid of Domain/kind `" +
+  throw UserError((scene.name.empty() ? "The particle" : scene.path()) + " is not inside the fluid of Domain/kind `" +
                   scene.domain.kind + "` at the start.");
 }
 

@@ -24,14 +24,15 @@ namespace tanktread {
 /// in-plane direction a, the normal (cross product of b and a) and the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
 struct FlowPlane {
   Mat3 axes = Mat3::Identity();
-  std::optional<Mat3> of_shear;  ///< rows: direction of a simple shear flow, normal of the plane, direction of the velocity gradient. Set only for a
-                                 ///< simple shear of the flow type `linear`; for the type `simple shear`, these directions are the rows of `axes`
-  bool holds_flow = true;  ///< false if the flow is not planar; the Taylor parameter D is then measured in the plane of the longest and the shortest
-                           ///< axis of inertia
+  /// rows: direction of a simple shear flow, normal of the plane, direction of the velocity gradient. Set only for a simple shear of the flow type
+  /// `linear`; for the type `simple shear`, these directions are the rows of `axes`
+  std::optional<Mat3> of_shear;
+  /// false if the flow is not planar; the Taylor parameter D is then measured in the plane of the longest and the shortest axis of inertia
+  bool holds_flow = true;
 
   bool fixed() const { return axes.isIdentity(0); }                     ///< returns true if this is the plane x1 x3
-  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of the vector x along the three directions that
-                                                                        ///< are the rows of `axes`
+  /// Returns the components of the vector x along the three directions that are the rows of `axes`.
+  Vec3 components(const Vec3& x) const { return axes * x; }
   Net turned(const Net& x) const { return fixed() ? x : Net(x * axes.transpose()); }
   std::string description() const;
 };
@@ -68,8 +69,8 @@ struct Body {
   /// Reference volume V0: volume of the resting shape, or of the initial shape if the deck requests that the particle keeps that volume. V0 is
   /// computed on the first mesh and does not change if the mesh changes.
   double volume = 0;
-  double surfactant_mass = 0;  ///< initial mass of the surfactant (integral of the concentration over the surface), computed on the first mesh at
-                               ///< the start of the run; 0 before
+  /// initial mass of the surfactant (integral of the concentration over the surface), computed on the first mesh at the start of the run; 0 before
+  double surfactant_mass = 0;
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by the radius R_C
   double modulus = 1;  ///< shear modulus G_s, or the surface tension sigma of an interface
   surface::Symmetry symmetry;                       ///< symmetry common to the scene and the particle at all times

@@ -23,6 +23,8 @@ double least_distance(const PackedSphere& a, const PackedSphere& b, double gap) 
 
 namespace {
 
+double ball_volume(double radius) { return 4 * std::numbers::pi / 3 * std::pow(radius, 3); }
+
 constexpr int most_sweeps = 20000, thermal_sweeps = 200;
 constexpr double clear = 1.01;  // overlapping spheres are pushed apart to this multiple of least_distance()
 
@@ -218,7 +220,7 @@ int count(const CopiesOptions& how, double of_one, const std::optional<stokes::P
   } else if (how.number) {
     number = *how.number;
   } else {
-    const double room = how.box ? how.box->prod() : how.ball ? 4 * std::numbers::pi / 3 * std::pow(*how.ball, 3) : cell->volume();
+    const double room = how.box ? how.box->prod() : how.ball ? ball_volume(*how.ball) : cell->volume();
     number = std::max(1.0, std::round(*how.volume_fraction * room / of_one));
   }
   if (number > most)
@@ -245,11 +247,11 @@ std::vector<Copy> in_cell(const CopiesOptions& how, int number, double radius, c
 std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::PeriodicCell>& cell, std::vector<PackedSphere>& taken) {
   const CopiesOptions& how = kind.copies;
   const surface::ParticleShape& shape = kind.particle.shape;
-  const std::string list = "Particles/" + kind.name + "/copies";
+  const std::string list = kind.path() + "/copies";
   try {
     if (!shape.sized()) shape.check();
   } catch (const UserError& error) {
-    throw UserError("Particles/" + kind.name + ": " + error.what());
+    throw UserError(kind.path() + ": " + error.what());
   }
   const double radius = shape.circumscribed_radius();
   if (!how.present) {
@@ -257,7 +259,7 @@ std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::P
     return {};
   }
   how.check(list, cell && cell->n() == 3);
-  const int number = how.file ? 0 : count(how, 4 * std::numbers::pi / 3 * std::pow(shape.equivalent_radius(), 3), cell, list);
+  const int number = how.file ? 0 : count(how, ball_volume(shape.equivalent_radius()), cell, list);
   if (how.random()) {
     if (how.in_cell()) return in_cell(how, number, radius, shape.center, *cell, taken);
     return at_random(how, number, radius, shape.center, taken, list);
@@ -322,7 +324,7 @@ std::vector<std::vector<Copy>> all_places(const std::vector<ParticleKind>& kinds
   if (in_cell == kinds.end()) return all;
   if (!pack(taken, *cell, static_cast<std::uint64_t>(in_cell->copies.seed))) {
     double volume = 0;
-    for (const PackedSphere& one : taken) volume += 4 * std::numbers::pi / 3 * std::pow(one.radius, 3);
+    for (const PackedSphere& one : taken) volume += ball_volume(one.radius);
     throw UserError(
         formatted("Particles/%s/copies: the circumscribed spheres of the particles fill %.3g of the cell and cannot be placed there "
                   "without overlap: give fewer copies, a larger cell, or a smaller `least gap`.",

@@ -63,9 +63,9 @@ struct DomainRow {
   Mat3 cell = Mat3::Zero();  ///< lattice vectors of the cell as columns
   double volume_fraction = 0, relative_viscosity = 1;
   Mat3 stress = Mat3::Zero();  ///< contribution of the particles to the mean stress (6.9)
-  Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();  ///< normal stress differences S_aa - S_bb and S_bb - S_cc of the stress S =
-                                                                        ///< `stress`. Axes a and b are in the plane of the flow, c is its normal;
-                                                                        ///< in simple shear, a is the direction of the flow, b that of its gradient
+  /// normal stress differences S_aa - S_bb and S_bb - S_cc of the stress S = `stress`. Axes a and b are in the plane of the flow, c is its normal; in
+  /// simple shear, a is the direction of the flow, b that of its gradient
+  Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();
   Vec3 pressure_gradient = Vec3::Zero();
 
   /// Computes all data except `cell`, by (6.9) and (6.10), from the total volume, the total stresslet and the total force of the particles on the

@@ -45,8 +45,8 @@ std::optional<ExactBody> exact_body(const ParticleScene& scene);
 /// Errors of the pressure p, which follows from the force density f on the fluid, and of the normal n_h of the numerical surface. surface_errors()
 /// computes them from the control net `surface` and the control values `f`.
 struct SurfaceErrors {
-  double pressure = 0;  ///< L2 norm of p - p_exact divided by the L2 norm of p_exact (6.3); p = f.n_h + c, where the constant c makes the mean of p -
-                        ///< p_exact over the surface zero
+  /// L2 norm of p - p_exact divided by the L2 norm of p_exact (6.3); p = f.n_h + c, with the constant c for which the mean of p - p_exact is zero
+  double pressure = 0;
   double normal = 0;    ///< L2 norm of the error n_h - n of the numerical normal, divided by the L2 norm of the exact normal n
   double constant = 0;  ///< the constant c in the numerical pressure p = f.n_h + c
 };

@@ -164,9 +164,9 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.measure = load_measure(own);
   }
   const auto deforms = std::ranges::find_if(parameters.particles, [](const coupling::Particle& one) { return !one.rigid; });
-  for (coupling::Particle& one : parameters.particles)  // The load of a rigid body may be per unstressed or per current area (`measure`). The
-                                                        // `measure` of the deforming particles is used, because it is cheapest if all layers use
-                                                        // the same area.
+  // The load of a rigid body may be per unstressed or per current area (`measure`). The `measure` of the deforming particles is used, because it is
+  // cheapest if all layers use the same area.
+  for (coupling::Particle& one : parameters.particles)
     if (one.rigid && deforms != parameters.particles.end()) one.measure = deforms->measure;
   parameters.strong_load = scene.load_is_strong();
   parameters.volume = scene.volume;

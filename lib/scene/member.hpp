@@ -25,15 +25,14 @@ struct Member {
   spline::Block block;
   std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; this object is shared by members with equal spaces
   std::shared_ptr<const membrane::Membrane> membrane;  ///< membrane; shared if also the materials and the unstressed shapes are equal
-  spline::Place place;    ///< parametric point of the material point whose phase angle is recorded. The parametric point does not change if the mesh
-                          ///< adapts
+  /// parametric point of the material point whose phase angle is recorded. The parametric point does not change if the mesh adapts
+  spline::Place place;
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
   PhaseAngle phase_angle;
 
   Net own(const Net& of_all) const { return block.rows(of_all); }
   /// Returns the name under which the item `what` of this particle is stored or reported, for example `red: mesh`.
   std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }
-  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< returns the deck section of this particle, for messages
   /// Returns the name of the column `what` of this particle in the results.
   std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }
 };

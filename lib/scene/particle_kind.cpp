@@ -93,13 +93,13 @@ void ParticleKind::declare(deck::Section& section, const Registry& registry) {
     section.mention("copies");
   if (section.documenting()) return;
   particle.declare(section);
-  declare_lists(section, registry);
+  declare_sections(section, registry);
 }
 
 namespace {
 
 /// Reader of the section Membrane.
-struct MembraneList {
+struct MembraneSection {
   ParticleKind& kind;
   const Registry& registry;
 
@@ -110,7 +110,7 @@ struct MembraneList {
 };
 
 /// Reader of the section Interface.
-struct InterfaceList {
+struct InterfaceSection {
   ParticleKind& kind;
   const Registry& registry;
 
@@ -127,20 +127,20 @@ struct InterfaceList {
 
 }  // namespace
 
-void ParticleKind::declare_lists(deck::Section& section, const Registry& registry) {
+void ParticleKind::declare_sections(deck::Section& section, const Registry& registry) {
   surface.of_cylinder = particle.shape.shape == "cylinder";
   surface.fits_tightly = particle.rigid() && particle.shape.sized() && particle.shape.equivalent_radius() > 0.75 * duct_half_width;
   const bool deforms = !particle.rigid() && !surface.of_cylinder;
-  if (!deforms) section.leave_out("Membrane");  // removes the keys of Membrane that come from sections shared by several particles, because a
-                                                // particle without a membrane ignores them
+  // removes the keys of Membrane that come from sections shared by several particles, because a particle without a membrane ignores them
+  if (!deforms) section.leave_out("Membrane");
   membrane_given = section.given("Membrane");
-  if (MembraneList list{*this, registry}; deforms || membrane_given)
+  if (MembraneSection list{*this, registry}; deforms || membrane_given)
     section.section("Membrane", list, "mechanical properties of the particle's membrane or interface");
   if (particle.shape.shape != "file") section.section("Surface", surface, "spline space and mesh of the particle's surface");
   else
     refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
            "the file determines the spline space");
-  InterfaceList list{*this, registry};
+  InterfaceSection list{*this, registry};
   section.section("Interface", list, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
   if (!name.empty()) adaptation.film_resolution = particle.rigid() ? 0.5 : motion::AdaptationOptions::default_film_resolution;

@@ -31,7 +31,7 @@ void check_in_front(const ParticleScene& scene, const Body& body) {
   const Vec3& place = row.place;
   const double gap = row.gap, least = scene.wall.contact_gap * scene.least_radius.value_or(scene.radius());
   if (gap >= least) return;
-  const std::string name = scene.name.empty() ? "The particle" : "Particles/" + scene.name;
+  const std::string name = scene.name.empty() ? "The particle" : scene.path();
   const std::string where = formatted(" at [%.4g, %.4g, %.4g] ", place[0], place[1], place[2]);
   if (gap <= 0) throw UserError(name + " crosses the wall at the start:" + where + formatted("it reaches %.4g behind it.", -gap));
   throw UserError(name + " starts too close to the wall:" + where +

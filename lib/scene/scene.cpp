@@ -18,7 +18,7 @@ namespace tanktread {
 namespace {
 
 /// Section Output.
-struct OutputList {
+struct OutputSection {
   Scene& scene;
 
   void declare(deck::Section& section) {
@@ -29,7 +29,7 @@ struct OutputList {
 
 /// Declares the sections Output, Expect and Accuracy.
 void declare_results(deck::Section& root, Scene& scene) {
-  OutputList results{scene};
+  OutputSection results{scene};
   root.section("Output", results, "output files of the run");
   root.section("Expect", scene.expect, "expected values of output series, with tolerances");
   root.optional_section("Accuracy", scene.accuracy,
@@ -37,7 +37,7 @@ void declare_results(deck::Section& root, Scene& scene) {
 }
 
 /// Section Channel.
-struct ChannelList {
+struct ChannelSection {
   surface::TubeOptions& tube;
 
   void declare(deck::Section& section) {
@@ -47,7 +47,7 @@ struct ChannelList {
 };
 
 /// Section Particles.
-struct Kinds {
+struct ParticlesSection {
   std::vector<ParticleKind>& all;
   const ParticleKind& defaults;  // values before any key is read
   const Registry& registry;
@@ -123,7 +123,7 @@ void check_several(const Scene& scene) {
   const bool strong = alone.front().load_is_strong();
   for (ParticleScene one : alone) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies only to deformable particles
-    const std::string list = "Particles/" + one.name;
+    const std::string list = one.path();
     if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load must be the same for all particles.");
     try {
       one.check();
@@ -166,9 +166,9 @@ std::vector<ParticleKind> declare_particles(deck::Section& root, ParticleKind& o
              "give it for each particle in Particles/<name>, or for all particles in Particles/defaults");
   } else {
     root.section("Particle", only.particle, "resting shape, initial shape and motion of the particle");
-    only.declare_lists(root, registry);
+    only.declare_sections(root, registry);
   }
-  if (Kinds kinds{all, only, registry}; several || root.documenting())
+  if (ParticlesSection kinds{all, only, registry}; several || root.documenting())
     root.section("Particles", kinds, "several particles, instead of the sections Particle, Membrane, Surface, Interface and Adaptation");
   else
     root.mention("Particles");
@@ -187,7 +187,7 @@ void Scene::declare(deck::Section& root) {
   root.section("Flow", flow, "the ambient flow and the outer fluid");
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
   surface::TubeOptions documented;
-  ChannelList channel{root.given("Channel") ? tube : documented};
+  ChannelSection channel{root.given("Channel") ? tube : documented};
   refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one duct; give one of them");
   if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;

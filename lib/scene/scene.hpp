@@ -92,10 +92,11 @@ struct ParticleKind {
   double duct_half_width = std::numeric_limits<double>::infinity();  ///< least distance of the axis of Tube or Channel from its wall, if known
   double field_length = 0;      ///< length by which values of surface fields are multiplied to become rows of a state x; 0: R_C of the particle
 
+  std::string path() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< returns the section of the particle, for messages
   /// Declares Particles/<name>: the keys of Particle, and the inner sections `copies`, Membrane, Surface, Interface and Adaptation. `registry`:
   /// user-defined loads and fields.
   void declare(deck::Section& section, const Registry& registry);
-  void declare_lists(deck::Section& section, const Registry& registry);  ///< declares the sections Membrane, Surface, Interface and Adaptation
+  void declare_sections(deck::Section& section, const Registry& registry);  ///< declares the sections Membrane, Surface, Interface and Adaptation
   void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices that contradict the mesh, membrane or interface
 };
 
@@ -141,10 +142,10 @@ struct SharedOptions {
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
   /// Returns the section of the deck (Steady, Periodic or Spectrum) that replaces the simulation in time.
   Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }
-  Chosen flow_choice() const { return {flow.choice(), "Flow/type"}; }       ///< returns the type of the flow, for messages about rejected
-                                                                            ///< combinations
-  Chosen duct_choice() const { return {tube.list(), "Tube or Channel"}; }  ///< returns the section that describes a duct, for messages about rejected
-                                                                           ///< combinations
+  /// Returns the type of the flow, for messages about rejected combinations.
+  Chosen flow_choice() const { return {flow.choice(), "Flow/type"}; }
+  /// Returns the section that describes a duct, for messages about rejected combinations.
+  Chosen duct_choice() const { return {tube.list(), "Tube or Channel"}; }
   /// Returns the medium, which replaces the free-space kernels: the plane wall of the section Wall, or a medium chosen by Domain/kind that a program
   /// built on this library has added. Null in all other scenes.
   std::shared_ptr<const stokes::Medium> medium() const;
@@ -176,8 +177,8 @@ struct ParticleScene : SharedOptions, ParticleKind {
   bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem, as set by `Particle/forces` or by default
   double radius() const { return particle.shape.equivalent_radius(); }  ///< R_C, radius of the sphere of equal volume
   double rate() const;               ///< speed/R_C; if the speed is 0, modulus/(viscosity x R_C), or 1 for a rigid body; units 1/time
-  double speed() const;              ///< speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without
-                                     ///< gradient
+  /// speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without gradient
+  double speed() const;
   double modulus() const;            ///< shear modulus G_s, or the surface tension of a drop; units force/length; 0 for a rigid body
   bool elastic() const { return !particle.rigid() && membrane.law != "surface tension"; }  ///< true for a membrane, false for a drop or rigid body
   bool viscous_membrane() const { return !particle.rigid() && membrane.viscosity.any(); }

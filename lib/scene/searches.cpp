@@ -84,6 +84,7 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
   const Net v = flow.velocities(places);
   const std::vector<Mat3> gradients = flow.gradients(places);
   const auto of_lattice = static_cast<Eigen::Index>(3 * lattice.size());
+  // Rows: the change of the velocity at four points (12), the wall (1), the lattice vectors (3 each) and the conditions of the loads.
   Eigen::MatrixXd change = Eigen::MatrixXd::Zero(13 + of_lattice + of_loads.rows(), 6);
   // A wall excludes translations along its normal. The periods along the wall exclude rotations.
   if (scene.wall.present) change.row(12).head<3>() = scene.rate() * scene.wall.normal.normalized();

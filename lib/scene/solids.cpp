@@ -65,7 +65,7 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
 
 void check_outside_of_posts(const coupling::SolidScene& solids, const std::vector<Member>& members) {
   for (const Member& member : members)
-    if (!solids.solids->outside(member.body->initial)) throw UserError(member.spoken() + " crosses a post at the start: give it another center.");
+    if (!solids.solids->outside(member.body->initial)) throw UserError(member.scene.path() + " crosses a post at the start: give it another center.");
 }
 
 std::string solids_line(const Scene& scene, int ranks) {
@@ -157,8 +157,9 @@ SolidsRow solids_row(const SharedOptions& scene, const coupling::SolidScene& of,
       row.mean_velocity += velocity_integral / volume;
     }
   }
-  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // In the integral equation, the pressure gradient also drives a fictitious flow inside the
-                                                          // post. The force and the flow rate of this fictitious flow are removed here.
+  // In the integral equation, the pressure gradient also drives a fictitious flow inside the post. The force and the flow rate of this fictitious
+  // flow are removed here.
+  for (std::size_t k = 0; k < scene.posts.size(); ++k) {
     const Post& post = scene.posts[k];
     const Vec3 along = Vec3::Unit(post.axis);
     const double section = std::numbers::pi * post.radius * post.radius, length = period_of(post, solids.cell()).norm(), slope = gradient[post.axis];

@@ -106,7 +106,7 @@ void check_fit(const ParticleScene& scene, const Body& body) {
     check_fits(scene, body);
   } catch (const UserError& error) {
     if (scene.name.empty()) throw;
-    throw UserError("Particles/" + scene.name + ": " + error.what());
+    throw UserError(scene.path() + ": " + error.what());
   }
 }
 
@@ -230,8 +230,8 @@ TubeRow tube_row(coupling::Tube& tube, const stokes::AmbientFlow& flow, const Ne
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
   if (wall.channel || wall.period > 0) return;
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
-  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // a tube radius R_T must remain between the particles and each end, because
-                                                                         // the disturbance decays over about R_T
+  // a tube radius R_T must remain between the particles and each end, because the disturbance decays over about R_T
+  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());
   if (wall.length() < needed)
     throw RunFailure(
         formatted("%s, from x1 = %.4g to %.4g relative to the centroid: with less than R_T = %.4g left at an end, Tube/length = %.4g is "
@@ -240,7 +240,7 @@ void check_spread(const Scene& scene, const surface::TubeWall& wall, const surfa
                   wall.radius(), wall.length()));
 }
 
-double least_way(const Scene& scene, const Body& body, const Columns& row) {
+double least_axial_position(const Scene& scene, const Body& body, const Columns& row) {
   const std::string name = scene.in_system() ? "centroid_x" : "center_x";
   const std::vector<double> x1 = row.of_particles(name + "1"), x2 = row.of_particles(name + "2"), x3 = row.of_particles(name + "3");
   if (!body.wall || !body.wall->channel) return std::ranges::min(x1);

@@ -44,7 +44,7 @@ TubeRow tube_row(coupling::Tube& tube, const stokes::AmbientFlow& flow, const Ne
 
 /// Returns the smallest axial coordinate among the particles' centroids in a row of the results: x1, or in a channel the coordinate along the centre
 /// line.
-double least_way(const Scene& scene, const Body& body, const Columns& row);
+double least_axial_position(const Scene& scene, const Body& body, const Columns& row);
 
 /// Returns a warning if the gap to the wall in a row of the results is smaller than 0.6 of the size of the widest wall element, because the error of
 /// the wall traction then exceeds 1e-4. Otherwise, and without a tube, returns an empty text.

@@ -22,8 +22,8 @@ struct WallOptions {
   std::string shape = "plane";
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
   std::optional<double> distance;                 ///< distance of a second plate from the first, along the normal; not set if there is one plate
-  std::optional<Vec3> velocity, second_velocity;  ///< velocities of the first and the second plate; a plate whose velocity is not set moves with the
-                                                  ///< ambient flow
+  /// velocities of the first and the second plate; a plate whose velocity is not set moves with the ambient flow
+  std::optional<Vec3> velocity, second_velocity;
   std::optional<int> elements_per_period;         ///< number of elements of a plate along the longer of its two periods
   bool solid = false;         ///< true if the walls are meshed plates in a periodic cell, with unknown tractions; false if the wall acts by images
   double contact_gap = 1e-3;  ///< smallest allowed gap, divided by the radius R_C; the run ends if a gap is smaller

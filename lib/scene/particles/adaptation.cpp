@@ -60,7 +60,7 @@ Adapted transferred(const Subject& of, std::unique_ptr<Body> target, const Move&
 }
 
 /// Records in the result the displacement `moved` of the surfaces by the mesh change, divided by the radius R_C.
-void settle(Adapted& result, double moved, double radius) {
+void record_change(Adapted& result, double moved, double radius) {
   result.change = moved / radius;
   result.body->refit_error += result.change;
 }
@@ -84,7 +84,7 @@ Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   const spline::Transfer transfer(of.body.nested(), target->nested());
   const double residual = std::max(transfer(of.body.unstressed).residual, transfer(of.x).residual);
   Adapted result = transferred(of, std::move(target), [&](const Net& field) { return transfer(field).net; });
-  settle(result, residual, of.body.radius);
+  record_change(result, residual, of.body.radius);
   return result;
 }
 
@@ -216,7 +216,7 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
     if (change <= scene.adaptation.coarsening_tolerance) {
       Adapted result = transferred(of, std::move(target), [&](const Net& field) { return projection(field).net; });
       result.finer = false;
-      settle(result, change, body.radius);
+      record_change(result, change, body.radius);
       return result;
     }
     std::vector<double> unmoved;

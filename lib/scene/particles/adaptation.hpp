@@ -20,8 +20,8 @@ struct Adapted {
   std::unique_ptr<Body> body;  ///< null if the mesh does not change
   motion::State state;
   bool finer = true;    ///< true if the mesh was refined, false if it was coarsened
-  double change = 0;    ///< largest distance, divided by R_C, by which the transfer to the new mesh has displaced a point of the current or the
-                        ///< unstressed surface
+  /// largest distance, divided by R_C, by which the transfer to the new mesh has displaced a point of the current or the unstressed surface
+  double change = 0;
   int refused = 0;      ///< number of bisections of elements that were left out because they would exceed `Adaptation/levels`
   bool full = false;    ///< true if bisections were left out because the mesh would exceed `Adaptation/largest number of points`
 };

@@ -49,7 +49,7 @@ class Deforming : public ParticleSystem {
   coupling::Dynamics& dynamics() override { return fields_->dynamics(); }
   const coupling::Capsule* capsule() const override { return capsule_.get(); }
   coupling::CoupledMotion* fields() override { return fields_->motion(); }
-  const Body& body() const override { return all_ ? *all_ : *members_.front().body; }
+  const Body& body() const override { return stacked_ ? *stacked_ : *members_.front().body; }
   Net start() const override { return fields_->start(body().initial); }
   const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
 
@@ -60,8 +60,8 @@ class Deforming : public ParticleSystem {
     };
     require(resumed.state.x.rows() >= n_points() && resumed.totals.phase_angle.size() == members_.size());
     const Net x = resumed.state.x.topRows(n_points());
-    const bool another_symmetry = !all_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
-    if (another_mesh || another_symmetry) settle(x);
+    const bool another_symmetry = !stacked_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
+    if (another_mesh || another_symmetry) rebuild(x);
     require(resumed.state.x.rows() == start().rows());
     motion::refreeze(dynamics(), resumed.state, resumed.state.time);
     capsule_->counts() = resumed.totals.counts;
@@ -87,10 +87,8 @@ class Deforming : public ParticleSystem {
     coupling::Contacts contacts = contacts_;
     for (coupling::Contact& one : contacts.all) one.beyond = deformed * one.beyond;
     const bool first = contacts_.impulse == 0, holds = limiter.hold(own, step, contacts);
-    if (holds)
-      contacts_ = std::move(contacts);
-    else
-      press();
+    if (holds) contacts_ = std::move(contacts);
+    else apply_contacts();
     if (holds && own.x != fields_->shape(state.x)) {
       state.x = fields_->with_shape(state.x, own.x);
       state.history = {fields_->empty() ? own.history.front() : dynamics().velocity(state.x)};
@@ -105,12 +103,12 @@ class Deforming : public ParticleSystem {
 
   coupling::Contacts contacts() const override { return contacts_; }
 
-  void hold_by(const coupling::Contacts& contacts) override { contacts_ = contacts, press(); }
+  void hold_by(const coupling::Contacts& contacts) override { contacts_ = contacts, apply_contacts(); }
 
   /// Moves the centroid back to its initial position if `Particle/drift` is `held`. Then refines or coarsens the meshes for which an adaptation is
   /// due at this step.
   bool adapt(motion::State& state, RunTotals& totals) override {
-    before_.clear();
+    replaced_.clear();
     if (holds_centre_) {
       motion::State own = fields_->of_shape(state);
       hold_centre(capsule_->flow(), capsule_->geometry(), members_.front().scene.particle.shape.center, own);
@@ -121,31 +119,31 @@ class Deforming : public ParticleSystem {
     const auto clock = phases_.time("adaptation");
     fields_->set_state(state.x);
     motion::State own = fields_->of_shape(state);
-    placed_ = capsule_->rigid_at(own.x);
+    rigid_before_ = capsule_->rigid_at(own.x);
     const auto needs_load = [&](const Member& member) { return due(member) && member.scene.adaptation.limits_load(); };
     const Net load = std::ranges::any_of(members_, needs_load) ? capsule_->evaluate_on_demand(own.x, {}, 0)->load() : Net(Net::Zero(own.x.rows(), 3));
     std::vector<Net> loads;
     for (const Member& member : members_) loads.push_back(member.own(load));
     for (std::size_t p = 0; p < members_.size(); ++p)
       if (due(members_[p])) adapt(p, loads[p], own, totals);
-    if (before_.empty()) return false;
+    if (replaced_.empty()) return false;
     const std::unique_ptr<SurfaceFields> fields = std::move(fields_);
-    settle(own.x);
+    rebuild(own.x);
     capsule_->restore_volume(own.x);
     if (!own.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
-    press();
+    apply_contacts();
     std::vector<const Body*> bodies(members_.size(), nullptr);
-    for (const auto& [p, body] : before_) bodies[p] = body.get();
+    for (const auto& [p, body] : replaced_) bodies[p] = body.get();
     state = fields_->transferred(*fields, state, std::move(own), bodies);
     motion::refreeze(dynamics(), state, state.time);
     return true;
   }
 
   void undo_adapt(const Net& x) override {
-    if (before_.empty()) return;
-    for (auto& [p, body] : before_) members_[p].body = std::move(body);
-    before_.clear();
-    settle(x.topRows(n_points()));
+    if (replaced_.empty()) return;
+    for (auto& [p, body] : replaced_) members_[p].body = std::move(body);
+    replaced_.clear();
+    rebuild(x.topRows(n_points()));
   }
 
   std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
@@ -188,7 +186,7 @@ class Deforming : public ParticleSystem {
   }
 
   SurfaceSnapshot snapshot(const motion::State& whole_state) override {
-    const motion::State& state = shown_ = fields_->of_shape(whole_state);
+    const motion::State& state = snapshot_state_ = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x);
     const auto here = capsule_->evaluate_on_demand(state.x, state.history.empty() ? Net() : state.history.front(), 0);
     const Net load = here->load(), velocity = capsule_->slides() || !state.history.empty() ? here->fluid_velocity() : Net();
@@ -201,7 +199,7 @@ class Deforming : public ParticleSystem {
   }
 
  private:
-  const surface::Geometry& geometry(const Member& member) const { return all_ ? *member.geometry : capsule_->geometry(); }
+  const surface::Geometry& geometry(const Member& member) const { return stacked_ ? *member.geometry : capsule_->geometry(); }
 
   /// Returns the number of control points of all particles on their current meshes.
   Eigen::Index n_points() const {
@@ -218,7 +216,7 @@ class Deforming : public ParticleSystem {
   }
 
   /// Sets the current contact forces as loads of the system for all later evaluations.
-  void press() {
+  void apply_contacts() {
     capsule_->set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_->particles(), contacts_, body().space.n_points));
   }
 
@@ -235,10 +233,10 @@ class Deforming : public ParticleSystem {
 
   /// Builds the coupled system and all other data for the current meshes. The wall of a tube is kept.
   void set_up() {
-    const std::unique_ptr<Body> before = std::exchange(all_, nullptr);
+    const std::unique_ptr<Body> before = std::exchange(stacked_, nullptr);
     arrange(members_);
-    all_ = stacked_body(members_);
-    if (all_ && scene_.tube.present) all_->wall = before ? before->wall : wall(scene_, *all_);
+    stacked_ = stacked_body(members_);
+    if (stacked_ && scene_.tube.present) stacked_->wall = before ? before->wall : wall(scene_, *stacked_);
     std::unique_ptr<coupling::Tube> around;
     if (capsule_ && capsule_->tube() && !capsule_->tube()->fixed())
       around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
@@ -265,10 +263,10 @@ class Deforming : public ParticleSystem {
     if (!change.body) return;
     const int more = change.body->space.n_points - member.block.n_points;
     carry_contacts(p, change.body->nested());
-    before_.emplace_back(p, std::exchange(member.body, std::move(change.body)));
+    replaced_.emplace_back(p, std::exchange(member.body, std::move(change.body)));
     state = std::move(change.state);
     member.block.n_points += more;
-    if (placed_ && placed_->holds(p)) fit_again(p, state.x);
+    if (rigid_before_ && rigid_before_->holds(p)) fit_again(p, state.x);
     for (std::size_t after = p + 1; after < members_.size(); ++after) members_[after].block.first_point += more;
     (change.finer ? totals.refinements : totals.coarsenings) += 1;
   }
@@ -294,12 +292,12 @@ class Deforming : public ParticleSystem {
     body.initial = body.unstressed = body.rest;
     const Vec3 centre = surface::measures(body.space, body.rest).centroid;
     member.block.rows(x) =
-        ((body.rest.rowwise() - centre.transpose()) * placed_->turn(p).transpose()).rowwise() + placed_->centre(p).transpose();
+        ((body.rest.rowwise() - centre.transpose()) * rigid_before_->turn(p).transpose()).rowwise() + rigid_before_->centre(p).transpose();
   }
 
   /// Rebuilds the coupled system for the current meshes of the members, in the shape x. Counts of work are kept.
-  void settle(const Net& x) {
-    if (!all_) members_.front().body->symmetry = symmetry(members_.front().scene, body(), x);
+  void rebuild(const Net& x) {
+    if (!stacked_) members_.front().body->symmetry = symmetry(members_.front().scene, body(), x);
     if (capsule_) counts_ = capsule_->counts(), kernel_evaluations_ = kernel_evaluations();
     set_up();
     capsule_->counts() = counts_;
@@ -311,15 +309,15 @@ class Deforming : public ParticleSystem {
   Phases& phases_;
   std::vector<Member> members_;
   std::optional<coupling::SolidScene> solids_;
-  std::unique_ptr<Body> all_;  // body with the stacked nets of all particles; null if there is only one particle
+  std::unique_ptr<Body> stacked_;  // body with the stacked nets of all particles; null if there is only one particle
   std::unique_ptr<coupling::Capsule> capsule_;
   std::unique_ptr<SurfaceFields> fields_;
-  motion::State shown_;  // state of the latest snapshot; the function that computes the snapshot's fields refers to it
+  motion::State snapshot_state_;  // state of the latest snapshot; the function that computes the snapshot's fields refers to it
   std::optional<coupling::PowerBalance> power_;  // constructed at the first use
   coupling::OperationCounts counts_;  // work (solves, iterations) of the systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // number of kernel evaluations on earlier meshes
-  std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // particles whose mesh the latest step changed, and their previous bodies
-  std::optional<coupling::RigidParticles> placed_;  // positions of rigid particles, stored before their meshes change
+  std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> replaced_;  // particles whose mesh the latest step changed, and their previous bodies
+  std::optional<coupling::RigidParticles> rigid_before_;  // positions of rigid particles, stored before their meshes change
   std::vector<Warning> remarks_;
   coupling::Contacts contacts_;  // contacts that hold particles apart
   bool holds_centre_ = members_.size() == 1 && holds_centre(members_.front().scene);

@@ -235,7 +235,7 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
   const NearestPair nearest(pairs, [](std::size_t) { return true; });
   const Nearest found = nearest.of(nearest.with_gap(nearest.gap()));
   if (found.gap > 10 * pairs.tolerance()) return check_not_nested(members, x);
-  const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].spoken(); };
+  const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].scene.path(); };
   if (found.first == found.second)
     throw UserError("Domain is smaller than " + name(found.first) +
                     formatted(", which overlaps its own image near [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
@@ -330,9 +330,7 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
 }
 
 std::string touching(const Scene& scene, int first, int second) {
-  const auto name = [&](int number) {
-    return !scene.named() ? "Particle" : "Particles/" + scene.particles[static_cast<std::size_t>(number) - 1].name;
-  };
+  const auto name = [&](int number) { return scene.particles[static_cast<std::size_t>(number) - 1].path(); };
   return name(first) + (first == second ? " touches its image" : " and " + name(second) + " touch");
 }
 

@@ -55,14 +55,14 @@ Limiter::Held Limiter::held(const Approach& found, double target) const {
   return {found.contact, found.gap, target, force, force, {}, {}};
 }
 
-/// Updates the gaps of known contacts in the shape x. Adds a contact at every other place where a gap is below (1 - slack/10) times the limit, also
-/// beside a known contact if the gap there is smaller and below (1 - slack) times the gap to restore, because the force dents a soft drop.
-/// Returns false if a gap is below half of the limit.
+/// Updates the gaps of known contacts in the shape x. Adds a contact at every other position where the gap is below (1 - slack/10) times the limit.
+/// Near a known contact, adds one only if the gap is smaller than at that contact and below (1 - slack) times its required gap, because the contact
+/// force dents a soft drop. Returns false if a gap is below half of the limit.
 bool Limiter::find(const Net& x) {
   for (Held& one : held_) one.gap = approach(members_, x, one.contact).gap;
   for (Approach found : approaches(members_, x, limit_, ranks_, capsule_.cell())) {
     if (!(found.gap >= limit_ / 2)) return false;
-    Held* const known = beside(found.contact, x);
+    Held* const known = known_near(found.contact, x);
     if (known && known->response.size() == 0) {
       if (found.gap >= known->gap) continue;
       found.contact.force = known->contact.force;
@@ -76,7 +76,7 @@ bool Limiter::find(const Net& x) {
 
 /// Returns the known contact of smallest gap that is between the same two particles and nearer to `contact` than half an element size; null if there
 /// is none.
-Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
+Limiter::Held* Limiter::known_near(const coupling::Contact& contact, const Net& x) {
   const Body& body = *members_[contact.particle[0]].body;
   const double element = body.radius * std::sqrt(4 * std::numbers::pi / static_cast<double>(body.space.elements.size()));
   const Vec3 here = place(members_, x, contact);

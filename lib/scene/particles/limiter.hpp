@@ -48,7 +48,7 @@ class Limiter {
 
   bool find(const Net& x);
   Held held(const Approach& found, double target) const;
-  Held* beside(const coupling::Contact& contact, const Net& x);
+  Held* known_near(const coupling::Contact& contact, const Net& x);
   double target(const Approach& found) const;
   double error() const;
   bool respond(const motion::State& state);

@@ -39,12 +39,12 @@ class ParticleSystem {
   virtual ~ParticleSystem() = default;
   virtual coupling::Dynamics& dynamics() = 0;
   virtual const coupling::Capsule* capsule() const { return nullptr; }           ///< returns the coupled system; null for a free rigid body
-  virtual coupling::CoupledMotion* fields() { return nullptr; }  ///< returns the motion of the surfaces together with their fields; null without
-                                                                 ///< fields
+  /// Returns the motion of the surfaces together with their fields; null without fields.
+  virtual coupling::CoupledMotion* fields() { return nullptr; }
   virtual const Body& body() const = 0;
   virtual Net start() const = 0;                                                 ///< returns State::x at time zero
-  virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if this has changed the mesh of
-                                                                                 ///< body()
+  /// Resumes a run; returns true if this has changed the mesh of body().
+  virtual bool resume(Resumed& resumed) = 0;
   virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
   /// Discards data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
   /// therefore discards them after each checkpoint.
@@ -54,16 +54,16 @@ class ParticleSystem {
   virtual bool hold_apart(motion::State&, double /*step*/) { return true; }
   virtual coupling::Contacts contacts() const { return {}; }                      ///< returns the current contacts
   virtual void hold_by(const coupling::Contacts&) {}  ///< sets the contact forces that act from now on; they refer to the current mesh
-  virtual bool adapt(motion::State& state, RunTotals& totals) = 0;  ///< adapts meshes after a step; returns true if this has changed the mesh of
-                                                                    ///< body()
+  /// Adapts meshes after a step; returns true if this has changed the mesh of body().
+  virtual bool adapt(motion::State& state, RunTotals& totals) = 0;
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::OperationCounts counts() const = 0;
-  virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase angle of each particle when the
-                                                                                        ///< series were last computed
+  /// Returns the phase angle of each particle when the series were last computed.
+  virtual std::vector<PhaseAngle> phase_angle() const = 0;
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results: the data of the particles and of
-                                                                              ///< `progress`, with the time and the work of the run
+  /// Returns a row of results: the data of the particles and of `progress`, with the time and the work of the run.
+  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfaceSnapshot snapshot(const motion::State& state) = 0;
 };

@@ -13,16 +13,15 @@ namespace tanktread {
 
 namespace {
 
-constexpr double grown = 5;         // growth of waves on a compressed membrane, in e-folds, above which the user is warned; the waves soon become
-                                    // visible
-constexpr int limited_steps = 10;   // number of consecutive steps limited by stability after which the user is warned; a few such steps can occur at
-                                    // the start
+// growth of waves on a compressed membrane, in e-folds, above which the user is warned; the waves soon become visible
+constexpr double grown = 5;
+// number of consecutive steps limited by stability after which the user is warned; a few such steps can occur at the start
+constexpr int limited_steps = 10;
 constexpr double folding = 0.05;    // warning threshold of jacobian_ratio, which is at least 0.5 on uniform elements and 0.1 at a degenerate pole
 constexpr double slenderness = 10;  // threshold of aspect_ratio
 constexpr double lost_volume = 1e-3;
-constexpr double stiff_area = 3e4;  // threshold of K/G_s and K R_C^2/E_b, with the modulus K of the total area and the bending modulus E_b. If both
-                                    // are above it, time steps become very small
-
+// threshold of K/G_s and K R_C^2/E_b, with the modulus K of the total area. If both are above it, time steps become very small
+constexpr double stiff_area = 3e4;
 
 /// Returns the largest wave number that a mesh of element size h can represent.
 double wave_number(double h) { return std::numbers::pi / h; }
@@ -83,8 +82,8 @@ std::vector<Warning> first_warnings(const Scene& scene) {
 }
 
 bool Warnings::fresh(const Warning& warning) {
-  if (std::ranges::find(memory_.said, warning.kind, &Warning::kind) != memory_.said.end()) return false;
-  memory_.said.push_back(warning);
+  if (std::ranges::find(memory_.shown, warning.kind, &Warning::kind) != memory_.shown.end()) return false;
+  memory_.shown.push_back(warning);
   return true;
 }
 

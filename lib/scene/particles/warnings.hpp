@@ -43,7 +43,7 @@ class Warnings {
   struct Memory {
     double waves = 0;            ///< estimated growth of unresolved waves on the compressed membrane so far: logarithm of their amplitude ratio
     int limited = 0;             ///< number of consecutive steps, up to the latest, whose size was limited by stability
-    std::vector<Warning> said;  ///< warnings shown so far
+    std::vector<Warning> shown;  ///< warnings shown so far
   };
 
   explicit Warnings(const ParticleScene& scene) : scene_(scene) {}

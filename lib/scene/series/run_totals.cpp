@@ -72,8 +72,8 @@ void store(const RunTotals& totals, output::Checkpoint& checkpoint) {
     phase_angle.row(static_cast<Eigen::Index>(p)) << totals.phase_angle[p].degrees, totals.phase_angle[p].rate;
   checkpoint.arrays["phase and tank-treading frequency"] = phase_angle;
   for (const auto& [phase, seconds] : totals.seconds) checkpoint.numbers[std::string(phase_prefix) + phase] = seconds;
-  for (std::size_t k = 0; k < totals.warnings.said.size(); ++k)
-    checkpoint.texts[warning_name(k)] = totals.warnings.said[k].kind + "\n" + totals.warnings.said[k].sentence;
+  for (std::size_t k = 0; k < totals.warnings.shown.size(); ++k)
+    checkpoint.texts[warning_name(k)] = totals.warnings.shown[k].kind + "\n" + totals.warnings.shown[k].sentence;
 }
 
 RunTotals stored_totals(const output::Checkpoint& checkpoint) {
@@ -89,7 +89,7 @@ RunTotals stored_totals(const output::Checkpoint& checkpoint) {
   for (std::size_t k = 0; checkpoint.texts.contains(warning_name(k)); ++k) {
     const std::string& text = checkpoint.texts.at(warning_name(k));
     const std::size_t end = text.find('\n');
-    totals.warnings.said.push_back({text.substr(0, end), text.substr(end + 1)});
+    totals.warnings.shown.push_back({text.substr(0, end), text.substr(end + 1)});
   }
   return totals;
 }

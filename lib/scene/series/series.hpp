@@ -19,8 +19,9 @@ namespace tanktread {
 struct ProgressRow {
   motion::StepReport step = {};  ///< report of the time step that ended at this row
   double wall_seconds = 0;
-  std::optional<long> evaluations = {};  ///< number of velocity evaluations in a search for steady shapes, summed over all systems (one per value of
-                                         ///< the continuation parameters); if not set, the number in `counts` is used
+  /// number of velocity evaluations in a search for steady shapes, summed over all systems (one per value of the continuation parameters); if not
+  /// set, the number in `counts` is used
+  std::optional<long> evaluations = {};
   double time = 0;
   coupling::OperationCounts counts = {};
   void add_columns(const Scene& scene, Columns& to) const;

@@ -1,4 +1,4 @@
-#include "record/duct_picture.hpp"
+#include "record/duct_arrays.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace {
 TEST(DuctPicture, HoldsTheSectionAndTheVelocityInsideOfIt) {
   surface::TubeOptions tube;
   tube.section = "ellipse", tube.semi_axes = surface::Vec2(2, 1);
-  const auto arrays = duct_picture(stokes::DuctFlow(tube, 1, 0.5));
+  const auto arrays = duct_arrays(stokes::DuctFlow(tube, 1, 0.5));
   const auto named = [&](const std::string& name) { return *std::ranges::find(arrays, name, &output::Array::name); };
   const output::Array x2 = named("x2"), x3 = named("x3"), v = named("velocity"), outline = named("outline");
   ASSERT_EQ(v.shape, (std::vector<std::size_t>{x3.values.size(), x2.values.size()}));

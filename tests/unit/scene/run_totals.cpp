@@ -31,7 +31,7 @@ TEST(RunTotals, ComesBackFromACheckpoint) {
   EXPECT_EQ(again.arrays.at("phase and tank-treading frequency"), checkpoint.arrays.at("phase and tank-treading frequency"));
   EXPECT_EQ(checkpoint.numbers.size(), 15u + 2 + 2);
   EXPECT_EQ(stored_totals(checkpoint).kernel.far, 1LL << 40);
-  EXPECT_EQ(stored_totals(checkpoint).warnings.said.at(1).sentence, "at time 2 it folds");
+  EXPECT_EQ(stored_totals(checkpoint).warnings.shown.at(1).sentence, "at time 2 it folds");
 }
 
 TEST(RunTotals, OfAnotherVersionIsLacking) {
@@ -57,7 +57,7 @@ TEST(RunTotals, WarningsGoOnWhereTheyWere) {
   const ParticleScene only = scene.first();
   Warnings whole(only);
   int steps = 0;
-  while (whole.memory().said.empty() && steps < 100) look(whole), ++steps;
+  while (whole.memory().shown.empty() && steps < 100) look(whole), ++steps;
   ASSERT_GT(steps, 3);
   Warnings first(only), second(only);
   for (int k = 1; k < steps; ++k) EXPECT_TRUE(look(first).empty());

@@ -61,11 +61,11 @@ TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
   Told run({"Membrane/capillary number=0.1"});
   for (int k = 0; k < 10; ++k) EXPECT_EQ(run.first(at(0.1, -0.13)), "");  // the waves need time to grow
   for (int k = 0; k < 10; ++k) run.first(at(0.1, -0.13));
-  ASSERT_EQ(run.warnings.memory().said.size(), 1u);
-  const std::string sentence = run.warnings.memory().said.front().sentence;
+  ASSERT_EQ(run.warnings.memory().shown.size(), 1u);
+  const std::string sentence = run.warnings.memory().shown.front().sentence;
   EXPECT_TRUE(names(sentence, "Membrane/bending modulus") && names(sentence, "at time 1 ")) << sentence;
   for (int k = 0; k < 50; ++k) EXPECT_EQ(run.first(at(0.1, -0.14)), "");
-  EXPECT_EQ(run.warnings.memory().said.size(), 1u);
+  EXPECT_EQ(run.warnings.memory().shown.size(), 1u);
 }
 
 TEST(Warnings, TellOfCompressionOnlyWhereTheMeshAndNotBendingSetsTheWave) {
@@ -73,7 +73,7 @@ TEST(Warnings, TellOfCompressionOnlyWhereTheMeshAndNotBendingSetsTheWave) {
   for (int k = 0; k < 50; ++k) EXPECT_EQ(stiff.first(at(0.1, -0.13)), "");  // the fastest wave has k = 4.7, and the mesh resolves k = 24
   Told soft({"Membrane/capillary number=0.1", "Membrane/bending modulus=1e-5"});
   for (int k = 0; k < 50; ++k) soft.first(at(0.1, -0.13));
-  EXPECT_TRUE(names(soft.warnings.memory().said.at(0).sentence, "too little resistance"));
+  EXPECT_TRUE(names(soft.warnings.memory().shown.at(0).sentence, "too little resistance"));
 }
 
 TEST(Warnings, TellOfAFixedStepBeyondTheLimit) {

@@ -14,10 +14,10 @@ namespace tanktread {
 ///   velocity (m, n)  v_1 at the grid's points; NaN outside of the cross-section
 ///   maximum (3)      x2, x3 of the largest velocity, and this velocity
 ///   pressure_gradient, mean_velocity, radius (R_T)
-std::vector<output::Array> duct_picture(const stokes::DuctFlow& flow);
+std::vector<output::Array> duct_arrays(const stokes::DuctFlow& flow);
 
 /// Returns the shape of a channel and the flow through the empty channel, for plots: the arrays of the file `channel.h5` of a run's results.
 /// Collective.
-std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow);
+std::vector<output::Array> channel_arrays(const coupling::ChannelFlow& flow);
 
 }  // namespace tanktread

@@ -1,4 +1,4 @@
-#include "record/duct_picture.hpp"
+#include "record/duct_arrays.hpp"
 
 #include <limits>
 
@@ -8,11 +8,11 @@
 namespace tanktread {
 namespace {
 
-constexpr int places_around = 400, lines = 121;
+constexpr int points_around = 400, lines = 121;
 
 std::vector<double> outline_of(const surface::Outline& outline) {
   std::vector<double> out;
-  const auto share = outline.shares(places_around);
+  const auto share = outline.shares(points_around);
   for (int k = 0; k < outline.n_sides(); ++k) {
     auto knots = outline.knots(k, share[static_cast<std::size_t>(k)]);
     if (k + 1 < outline.n_sides()) knots.pop_back();
@@ -49,7 +49,7 @@ std::vector<double> velocities(const stokes::DuctFlow& flow, const std::vector<d
 
 }  // namespace
 
-std::vector<output::Array> duct_picture(const stokes::DuctFlow& flow) {
+std::vector<output::Array> duct_arrays(const stokes::DuctFlow& flow) {
   const auto [low, high] = flow.outline().box();
   const auto x2 = line(low[0], high[0]), x3 = line(low[1], high[1]), outline = outline_of(flow.outline());
   const auto [place, fastest] = flow.maximum();
@@ -74,7 +74,7 @@ std::vector<output::Array> duct_picture(const stokes::DuctFlow& flow) {
 
 namespace {
 
-constexpr int places_along = 301, sections = 10;
+constexpr int points_along = 301, sections = 10;
 
 /// Returns the coordinates x1, x2, x3 of all points in one array, point after point.
 std::vector<double> flat(const std::vector<Vec3>& rows) {
@@ -107,13 +107,13 @@ WallLine along_wall(const coupling::ChannelFlow& flow) {
 
 }  // namespace
 
-std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
+std::vector<output::Array> channel_arrays(const coupling::ChannelFlow& flow) {
   const surface::Channel& channel = flow.channel();
   const auto [low, high] = channel.outline().box();
   std::vector<double> s, factor, rate_s;
   std::vector<Vec3> centre, lines[4];
-  for (int k = 0; k < places_along; ++k) {
-    s.push_back(channel.start() + (channel.end() - channel.start()) * k / (places_along - 1));
+  for (int k = 0; k < points_along; ++k) {
+    s.push_back(channel.start() + (channel.end() - channel.start()) * k / (points_along - 1));
     const surface::Channel::Section at = channel.section(s.back());
     centre.push_back(at.centre);
     factor.insert(factor.end(), {at.factor[0], at.factor[1]});
@@ -121,8 +121,8 @@ std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
     lines[2].push_back(at.centre + low[1] * at.factor[1] * Vec3::UnitZ()),
         lines[3].push_back(at.centre + high[1] * at.factor[1] * Vec3::UnitZ());
   }
-  Net axis(places_along, 3);
-  for (int k = 0; k < places_along; ++k) axis.row(k) = centre[static_cast<std::size_t>(k)].transpose();
+  Net axis(points_along, 3);
+  for (int k = 0; k < points_along; ++k) axis.row(k) = centre[static_cast<std::size_t>(k)].transpose();
   const Net v = flow.velocities(axis);
   std::vector<double> velocity(v.data(), v.data() + v.size());
   for (int k = 0; k < sections; ++k)
