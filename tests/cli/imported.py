@@ -28,7 +28,7 @@ def _written():
     return pathlib.Path("first/surface.iga")
 
 
-def a_written_surface_is_the_next_run_s_start():
+def a_written_surface_can_start_the_next_run():
     file = _written()
     run(deck(IMPORT % file), "--output", "second", "--quiet")
     close(series("second", "volume")[0], series("first", "volume")[-1], 1e-13, "volume")
@@ -96,7 +96,7 @@ def keys_of_other_shapes_and_meshes_are_refused():
     check("nowhere.iga" in result.stderr, result.stderr)
 
 
-def a_file_is_found_beside_the_deck_and_a_run_goes_on_without_it():
+def a_file_is_found_next_to_the_deck_and_a_resumed_run_does_not_need_it():
     file = _written()
     pathlib.Path("decks").mkdir()
     file.rename("decks/surface.iga")  # the name that the run's own last surface has
@@ -109,7 +109,7 @@ def a_file_is_found_beside_the_deck_and_a_run_goes_on_without_it():
         close(series("part", name)[-1], series("whole", name)[-1], 1e-6, name)  # steps land on other snapshots
 
 
-def a_branch_finds_the_file_beside_the_deck_for_each_of_its_points():
+def a_branch_finds_the_file_next_to_the_deck_at_each_of_its_points():
     file = _written()
     pathlib.Path("branches").mkdir()
     file.rename("branches/surface.iga")
@@ -124,7 +124,7 @@ Tanktread:
     check(len(series("branch", "parameter")) >= 2, series("branch", "parameter"))
 
 
-def a_file_in_the_directory_of_results_stays():
+def a_surface_file_in_the_results_directory_is_not_deleted():
     file = _written()
     text = file.read_text()
     pathlib.Path("second").mkdir()

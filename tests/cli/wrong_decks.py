@@ -227,14 +227,14 @@ def _imported(file):
                 f"  Particle: {{shape: file, file: {file}}}\n  Time: {{final time: 1}}\n", "imported.yaml")
 
 
-def wrong_settings_arerefused():
+def wrong_settings_are_rejected():
     path = deck(GOOD)
     check(len(SETTINGS) + len(TEXTS) >= 30, "fewer than thirty wrong decks")
     for settings, words, *mistakes in SETTINGS:
         refused(words, path, *[word for setting in settings for word in ("--set", setting)], mistakes=(*mistakes, 1)[0])
 
 
-def all_mistakes_are_told_at_once():
+def all_mistakes_are_reported_together():
     """A line each: wrong values, unknown keys, a list that is none; then, once these are mended, contradictions."""
     def told(*settings):
         lines = run(deck(GOOD), *[word for setting in settings for word in ("--set", setting)], "--output", "refused", code=2).stderr.splitlines()
@@ -260,7 +260,7 @@ def all_mistakes_are_told_at_once():
         refused([f"Particles/{name}", "name"], deck(shared.replace("radius: -1, colour: 3", "").replace("one:", f"'{name}':")))
 
 
-def solvers_and_their_lists_are_tried_before_a_run():
+def solvers_and_their_parameters_are_tested_before_a_run():
     for settings, words, *_ in [entry for entry in SETTINGS if "Solvers/" in entry[0][-1]]:
         refused(words, deck(GOOD), "--check", *[word for setting in settings for word in ("--set", setting)])
     for settings in (["Solvers/iterative solver=BICGSTAB"], ["Solvers/Belos/Num Blocks=30", "Solvers/Belos/Orthogonalization=ICGS"],
@@ -284,12 +284,12 @@ def suggested_keys_exist():
         check("not available" in said or "cannot be chosen" in said or "meant?" in said, said)
 
 
-def wrong_texts_arerefused():
+def wrong_deck_texts_are_rejected():
     for text, words in TEXTS:
         refused(words, deck(text))
 
 
-def wrong_files_arerefused():
+def wrong_files_are_rejected():
     refused(["missing.yaml", "does not exist"], "missing.yaml")
     os.mkdir("folder.yaml")
     refused(["folder.yaml", "directory"], "folder.yaml")
@@ -320,7 +320,7 @@ def wrong_files_arerefused():
         refused(["locked.yaml", "cannot be read"], "locked.yaml")
 
 
-def wrong_command_lines_arerefused():
+def wrong_command_lines_are_rejected():
     refused(["No deck", "--help"])
     refused(["--colour"], deck(GOOD), "--colour")
     check("--set" in run(deck(GOOD), "--set", code=2).stderr, "a setting without a value")
@@ -333,19 +333,19 @@ def wrong_command_lines_arerefused():
         check(not pathlib.Path("nowhere").exists(), "a directory was made")
 
 
-def several_ranks_speak_once():
+def several_ranks_print_one_message():
     result = run(deck(GOOD), "--set", "Flow/shaer rate=1", ranks=2, code=None)
     lines = [line for line in result.stderr.splitlines() if line.startswith("tanktread:")]
     check(result.returncode == 2, f"exit code {result.returncode}")
     check(len(lines) == 1, result.stderr)
 
 
-def the_good_deck_is_good():
+def the_unchanged_deck_is_valid():
     result = run(deck(GOOD), "--check")
     check("capillary number: 0.3" in result.stdout and "final time: 0.01" in result.stdout, result.stdout)
 
 
-def decks_of_other_editors_and_roomy_settings_are_good():
+def decks_of_other_editors_and_settings_with_spaces_are_valid():
     for text in ("\ufeff" + GOOD, GOOD.replace("\n", "\r\n")):
         pathlib.Path("other.yaml").write_text(text, encoding="utf-8", newline="")
         result = run("other.yaml", "--set", " Time/final time = 0.02", "--check")
@@ -355,7 +355,7 @@ def decks_of_other_editors_and_roomy_settings_are_good():
     run(_tube("outline.csv"), "--check")
 
 
-def shipped_decks_are_good_and_so_is_what_they_effectively_say():
+def shipped_decks_and_their_effective_decks_are_valid():
     for outline in (SOURCE / "inputs").glob("*.csv"):
         shutil.copy(outline, ".")  # looked for beside the deck
     for path in sorted((SOURCE / "inputs").glob("*.yaml")):
