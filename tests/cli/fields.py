@@ -99,7 +99,7 @@ def _theory(l, tension, elasticity, diffusivity):
 
 
 def modes_of_a_drop_at_rest_are_those_of_linear_theory():
-    """Second harmonics of shape and surfactant on a sphere, which decay together; nothing else decays more slowly but the first of the surfactant."""
+    """The second harmonics of shape and concentration on a sphere decay together. Only the first harmonic of the concentration decays more slowly."""
     text = """Tanktread:
   Flow: {type: quiescent}
   Particle: {viscosity ratio: %g}

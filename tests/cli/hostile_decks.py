@@ -57,7 +57,7 @@ KEYS = _keys()
 
 
 def _dumped(tree):
-    """A deck as text; what is a `Raw` stands in it as it is."""
+    """Returns a deck as text. A value of type `Raw` is inserted verbatim."""
     lines = []
 
     def write(name, value, indent):

@@ -35,7 +35,7 @@ def a_spheroid_aligns_with_an_extension():
 
 def pressure_drops_in_ducts_are_additive():
     """Stokes flow is linear: a body that moves in fluid at rest, and the body at rest in the flow, together are the body
-    that moves in the flow. A free body under a force is the body that is told to move as it does."""
+    that moves in the flow. A free body under a force behaves like a body with a prescribed equal velocity."""
     moves = "velocity: [1, 0.2, 0.1], angular velocity: [0.1, 0.3, 0.2]"
     text = """Tanktread:
   Flow: {type: %s}

@@ -34,7 +34,7 @@ def _harmonics(force, radius, degree):
 
 
 def _stretch(force, radius, degree=60):
-    """Half lengths along and across two opposite forces, less 1, of a sphere of shear modulus 1 and area modulus 3.
+    """Returns the half lengths along and across two opposite forces, minus 1, of a sphere with shear modulus 1 and area modulus 3.
 
     Displacements a Y r + b grad Y balance a load of harmonic l by 2 K (2a - L b) = p_r and G (L - 2) b - K (2a - L b) = p_t, L = l (l + 1)."""
     along = across = 0.0

@@ -137,7 +137,7 @@ TEST(SingleLayer, MovesAndTurnsWithTheSurface) {
   const Net u = scene().apply(scene().x, scene().f, {.tolerance = 1e-10});
   const Net moved = scene().apply((scene().x * turn.transpose()).rowwise() + Eigen::RowVector3d(5, -3, 2), scene().f * turn.transpose(),
                                   {.tolerance = 1e-10});
-  EXPECT_LT(largest(moved - u * turn.transpose()), 1e-9 * largest(u));  // rules are chosen for other metrics and distances
+  EXPECT_LT(largest(moved - u * turn.transpose()), 1e-9 * largest(u));  // tolerance: other quadrature rules are chosen after the rotation
 }
 
 TEST(SingleLayer, ScalesWithLengthAndWithTheDensity) {

@@ -132,7 +132,7 @@ TEST(TubeWall, IsRefusedWhenItIsTooShort) {
   }
 }
 
-/// Returns the largest error of cos(2 pi x1/L + angle around), interpolated by periodic densities of a wall that repeats, at points of all elements.
+/// Returns the largest error of cos(2 pi x1/L + angle around), interpolated by densities of a periodic wall, at points of all elements.
 double error_of_wave(int around, int along, double grading) {
   TubeOptions options = circle(around, along);
   options.grading = grading;
