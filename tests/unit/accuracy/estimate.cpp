@@ -92,7 +92,7 @@ TEST(Difference, InterpolatesIfThereAreTooFewSuchTimes) {
   for (const double value : found.values) EXPECT_NEAR(value, 0.1, 1e-12);  // cubics are exact
 }
 
-TEST(Difference, IsNanWhereACurveIs) {
+TEST(Difference, IsNanIfACurveIsNan) {
   const Curve a{{0, 1, 2}, {1, nan, 3}}, b{{0, 1, 2}, {1, 2, 3.5}};
   EXPECT_DOUBLE_EQ(largest(difference(a, b).values), 0.5);
   EXPECT_TRUE(std::isnan(largest({nan, nan})));

@@ -38,14 +38,14 @@ TEST(Keys, OfEveryTypeAreRead) {
   EXPECT_EQ(k.inner.depth, 0.25);
 }
 
-TEST(Keys, TakeAWholeNumberForANumberButNotText) {
+TEST(Keys, AcceptAWholeNumberAsANumberButNotText) {
   EXPECT_EQ(kinds("    shear rate: 2\n").rate, 2.0);
   EXPECT_EQ(refusal("    shear rate: \"2\"\n"), "Kinds/shear rate must be a number, positive (unit: 1/time), but is \"2\" (text).");
   EXPECT_EQ(kinds("    count: 4.0\n").count, 4);
   EXPECT_EQ(refusal("    count: 4.5\n"), "Kinds/count must be a whole number, between 1 and 9, but is 4.5.");
 }
 
-TEST(Keys, RefuseAValueOutsideTheirRuleWithPathRuleUnitAndValue) {
+TEST(Keys, RejectAValueOutsideTheirRangeWithPathRangeUnitAndValue) {
   EXPECT_EQ(refusal("    shear rate: -1\n"), "Kinds/shear rate must be a number, positive (unit: 1/time), but is -1.");
   EXPECT_EQ(refusal("    count: 10\n"), "Kinds/count must be a whole number, between 1 and 9, but is 10.");
   EXPECT_EQ(refusal("    Inner:\n      depth: 2.5\n"), "Kinds/Inner/depth must be a number, between 0 and 1 (unit: length), but is 2.5.");

@@ -25,7 +25,7 @@ TEST(MissingFeatures, AreKnownByPathOrName) {
   EXPECT_EQ(missing_feature("Surfactant"), "");
 }
 
-TEST(UnknownKeys, AreRefusedWithWhatIsMissingOrMeant) {
+TEST(UnknownKeys, AreRejectedWithTheMissingFeatureOrASuggestion) {
   EXPECT_EQ(refusal("    Temperature: 1\n"),
             "Kinds/Temperature is not a key of the deck: Brownian motion is not available (README.md lists what the program can do).");
   EXPECT_EQ(refusal("    Surfactant: 1\n"), "Kinds/Surfactant is not a key of the deck; was the section Interface/surfactant meant?");

@@ -21,7 +21,7 @@ TEST(Units, TakeNumbersOfEveryKind) {
   EXPECT_DOUBLE_EQ(units.number("2 h", "seconds"), 7200);
 }
 
-TEST(Units, AreSaidInSI) {
+TEST(Units, AreStatedInSI) {
   const Units units({"2 um", "5 ms", "3 pN"});
   EXPECT_EQ(units.in_si("length/time"), "0.0004 m/s");
   EXPECT_EQ(units.in_si("force length", 10), "6e-17 N m");

@@ -124,7 +124,7 @@ TEST(DirectSolver, TachoSolvesSymmetricSystemsAndIsRefusedForOthers) {
   EXPECT_THROW(solver.factor(banded(60, 6, 0.4)), UserError);
 }
 
-TEST(DirectSolver, NamesWhatItHasWhenAskedForWhatItHasNot) {
+TEST(DirectSolver, NamesTheAvailableSolversIfAnUnknownOneIsRequested) {
   try {
     DirectSolver solver(named("Kaiser"));
     FAIL();

@@ -30,7 +30,7 @@ TEST(Membrane, TangentIsTheGradientOfTheLoad) {
   for (const Law& law : laws) EXPECT_LT(tangent_error(Membrane(s.space, s.net, law), s, x, u), 1e-9);
 }
 
-TEST(Membrane, TangentIsSymmetricAndKnowsRigidMotions) {
+TEST(Membrane, TangentIsSymmetricAndInvariantUnderRigidMotions) {
   const Sphere& s = sphere(3);
   const Net x = deformed(s.net), u = random_net(x.rows(), 3), v = random_net(x.rows(), 4);
   for (const Law& law : laws) {
@@ -142,7 +142,7 @@ TEST(Membrane, IsUnstressedAtRest) {
   }
 }
 
-TEST(Membrane, InflationStretchesAlikeEverywhere) {
+TEST(Membrane, InflationStretchesUniformly) {
   const Sphere& s = sphere(3);
   const double area = surface::measures(s.space, s.net).area;
   for (double stretch : {0.9, 1.1, 1.6})

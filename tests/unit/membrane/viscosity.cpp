@@ -37,7 +37,7 @@ struct Sphere {
 /// Returns an ellipsoid, so that no result is right only by symmetry.
 Net stretched(const Net& net) { return net * Vec3(1.3, 0.9, 1.1).asDiagonal(); }
 
-TEST(ViscousLoad, OfARigidMotionIsNothing) {
+TEST(ViscousLoad, OfARigidMotionVanishes) {
   const Sphere sphere;
   const Net x = stretched(sphere.net);
   Mat3 turn;

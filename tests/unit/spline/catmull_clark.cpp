@@ -77,7 +77,7 @@ TEST(CatmullClark, FieldsAreC2AcrossAllSidesButThoseOfTheInnermostSquares) {
   EXPECT_LT(bend, 1e-10);  // rounding of 1e-16 divided by the squared side 2^-8 of the smallest piece
 }
 
-TEST(CatmullClark, EverySiteIsSeenAlikeFromAllPiecesAroundIt) {
+TEST(CatmullClark, AllPiecesAroundASiteHaveTheSameValue) {
   const TMesh mesh = cube(4);
   const Space s = space(mesh, rule);
   const Net net = random_net(s.n_points, 8);

@@ -63,7 +63,7 @@ TEST(LatticeMaps, OfAPolarSphereTurnAboutItsAxisAndChangeThePoles) {
   EXPECT_EQ(all_maps(*mesh.lattice, {0, 0}).size(), 4u * 5u);
 }
 
-TEST(LatticeMaps, TakeElementsToWhereTheirCornersGo) {
+TEST(LatticeMaps, MapElementsLikeTheirCorners) {
   const TMesh mesh = cube(4, 2);
   const Lattice& l = *mesh.lattice;
   const Tiling tiling = elements(mesh);

@@ -51,7 +51,7 @@ TEST(Channel, NarrowsAsItsProfileSays) {
   EXPECT_NEAR(slit.smallest_radius(), 1, 1e-12);
 }
 
-TEST(Channel, KnowsWhereAPlaceIs) {
+TEST(Channel, FindsThePositionOfAPointInTheChannel) {
   for (const TubeOptions& options : {constriction(), step(), bend()}) {
     const Channel channel(options);
     for (const double s : {-3., -0.5, 0.3, 1.5, 4., 7.})
@@ -144,7 +144,7 @@ void refused(const TubeOptions& options, const std::string& words) {
   }
 }
 
-TEST(Channel, IsRefusedWhereItIsNone) {
+TEST(Channel, IsRejectedIfItIsWrong) {
   TubeOptions closed = constriction(), short_end = constriction(), tight = bend(), round = step();
   closed.channel->depth = 0.999;
   refused(closed, "The channel is closed at s");

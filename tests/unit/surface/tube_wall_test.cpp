@@ -53,13 +53,13 @@ TEST(TubeWall, HasANormalIntoTheFluid) {
     }
 }
 
-TEST(TubeWall, HasAllPlacesOfACollocationPointAtOnePoint) {
+TEST(TubeWall, HasAllSitesOfACollocationPointAtOnePosition) {
   for (const TubeWall& wall : {of(circle(12, 8)), of(square())})
     for (const auto& sites : wall.space.collocation)
       for (const spline::Site& site : sites) EXPECT_LT((place(wall, site) - place(wall, sites.front())).norm(), 1e-12);
 }
 
-TEST(TubeWall, CollocatesOnItsRimsAndNowhereTwice) {
+TEST(TubeWall, HasCollocationPointsOnItsRimsWithoutDuplicates) {
   for (const TubeWall& wall : {of(circle(12, 8)), of(square())}) {
     double closest = 1;
     for (int i = 0; i < wall.space.n_points; ++i) {
@@ -120,7 +120,7 @@ TEST(TubeWall, HasElementsAlongItInProportionToThoseAroundIt) {
   }
 }
 
-TEST(TubeWall, IsRefusedWhenItIsTooShort) {
+TEST(TubeWall, IsRejectedIfItIsTooShort) {
   const TubeWall wall = of(circle(12, 8));
   EXPECT_NO_THROW(check_length(wall, -1.4, 1.4));
   try {
@@ -170,7 +170,7 @@ TEST(PeriodicTubeWall, HasDensitiesThatRepeatToTheOrderOfTheSplines) {
   }
 }
 
-TEST(PeriodicTubeWall, HasNeitherSitesNorMiddlesOnTheSeam) {
+TEST(PeriodicTubeWall, HasNoSitesAndNoElementCentresOnTheSeam) {
   const TubeOptions options = circle(10, 7);
   const TubeWall wall = periodic_tube_wall(outline(options), options, 2.5, 7);
   EXPECT_EQ(wall.sites.size(), 70u);

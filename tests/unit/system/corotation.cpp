@@ -67,7 +67,7 @@ TEST(Corotation, DeformationIsWhatRemainsOfAStretch) {
 
 // A sphere is rotated and then slightly stretched. Operators assembled before the rotation are as accurate as operators assembled on the new shape.
 // Without corotation the result differs by a tenth.
-TEST(Corotation, OperatorsOfATurnedCapsuleAreThoseAssembledThere) {
+TEST(Corotation, OperatorsOfARotatedCapsuleEqualNewlyAssembledOnes) {
   for (const char* frozen : {"nodal", "assembled"})
     for (const double ratio : {1.0, 5.0}) {
       SphereInFlow f(3, "quiescent");

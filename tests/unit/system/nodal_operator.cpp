@@ -68,7 +68,7 @@ TEST(NodalOperator, RowsDoNotDependOnTheOtherRowsAskedFor) {
   EXPECT_EQ(part.row(0), Net::Zero(1, 3));  // rows of other targets are unchanged
 }
 
-TEST(NodalOperator, IsTheSameByClustersToATenthOfWhatItLeavesOut) {
+TEST(NodalOperator, WithClustersGivesNearlyTheSameResult) {
   Fixture f(12);  // more points than a leaf can hold
   const Net force = Net::Random(f.space.n_points, 3), dense = f.nodal(3, force, f.targets);
   f.far_sum = "tree";
