@@ -383,7 +383,7 @@ def _points(results):
 
 
 class Trial:
-    """Runs and checks of one deck, in a directory of its own."""
+    """Runs and checks of one deck, in a separate directory."""
 
     def __init__(self, c, directory):
         self.scene, self.c, self.directory, self.wrong = Scene(c), c, pathlib.Path(directory), []

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A page of inputs/cookbook does what it says.
+"""Tests a page of inputs/cookbook.
 
 Usage: cookbook.py <tanktread> <source directory> <page> [--pictures]
 

@@ -162,7 +162,7 @@ MUTATIONS = [_values_changed, _values_changed, _value_of_the_deck_changed, _valu
 
 
 def _fault(name):
-    """Returns a sentence about what is wrong with the program's answer to the deck `name`, or nothing."""
+    """Returns a sentence that describes a wrong response of the program to the deck `name`, or an empty text."""
     try:
         result = subprocess.run(command(name, "--check", "--quiet"), capture_output=True, stdin=subprocess.DEVNULL, timeout=SECONDS)
     except subprocess.TimeoutExpired:

@@ -28,7 +28,7 @@ FIT = "deck: deck.yaml\nunknown: {Membrane/capillary number: {start: 0.3}}\nexpe
 CURVE, OUTLINE = "{series: taylor_inertia, curve: %s, error: 0.1}", "{outline: %s, scale: 1, error: 0.1}"
 PHASES = "deck: deck.yaml\nalong: {key: Flow/shear rate, from: 1, to: 2, within: 1.5}\nacross: {Particle/radius: [1]}\ncurves: {one: {}}\n"
 FROM_MANY_RUNS = {"step", "viscosity", "tweezers", "treading", "recovery"}  # figures that make their runs from a deck or study
-CASES = []  # (words of the command, exit code, what it said)
+CASES = []  # (words of the command, exit code, standard error)
 
 
 def _ended(*words):

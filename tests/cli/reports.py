@@ -64,7 +64,7 @@ def _content(path):
 
 
 def _used(path):
-    """Returns what the page does in a browser; None where there is none."""
+    """Returns values that the page computes in a browser; None if no browser is available."""
     page = pathlib.Path("used.html")
     page.write_text(pathlib.Path(path).read_text().replace("</body>", USE + "</body>"))
     document, errors = shown(page.resolve().as_uri())

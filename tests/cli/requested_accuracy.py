@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 2
-"""Accuracy on request: levels, estimated errors, their files, resumption, and what is said if a request is not met."""
+"""Accuracy on request: levels, estimated errors, their files, resumption, and the message if a request is not met."""
 import math
 import os
 import pathlib

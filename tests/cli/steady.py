@@ -32,7 +32,8 @@ def a_run_is_not_steady_before_its_flow_starts():
 
 
 def a_shape_that_is_not_found_from_rest_is_approached_through_weaker_flows():
-    """Near the fold of a capsule in extension, at Ca 0.52 on this mesh. The way says where steady shapes end."""
+    """The capsule is in extension near the fold, which is at Ca = 0.52 on this mesh. The message lists the weaker flows that
+    were used."""
     text = """
 Tanktread:
   Flow: {type: uniaxial extension}

@@ -1,7 +1,7 @@
-// Membrane under compression. Without resistance to bending, the fastest growing wave is the shortest one of the mesh; with it, the wave has a length
-// of its own. On a uniformly compressed sphere the wave is the lowest mode of the energy's second derivative H with respect to the mass matrix. A
-// flat membrane under the tension -T with bending modulus B has the eigenvalues -T k^2 + B k^4: not bounded below if B = 0, otherwise lowest at k^2 =
-// T/2B.
+// Membrane under compression. Without bending stiffness, the fastest growing wave is the shortest one of the mesh. With bending stiffness, its
+// wavelength does not depend on the mesh. On a uniformly compressed sphere the wave is the lowest mode of the energy's second derivative H with
+// respect to the mass matrix. A flat membrane under the tension -T with bending modulus B has the eigenvalues -T k^2 + B k^4: not bounded below if B
+// = 0, otherwise lowest at k^2 = T/2B.
 
 #include <cmath>
 

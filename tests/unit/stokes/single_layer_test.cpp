@@ -47,7 +47,8 @@ const Scene& scene() {
 
 double largest(const Net& u) { return u.rowwise().norm().maxCoeff(); }
 
-/// The choice of near panels and of their rules depends on the size of their own surface only: eight surfaces are integrated as accurately as one.
+/// The choice of near panels and of their rules depends only on the size of the surface that contains them: eight surfaces are integrated as
+/// accurately as one.
 TEST(SingleLayer, RulesOfASurfaceDoNotDependOnTheNumberOfSurfaces) {
   const Scene one;
   std::vector<const spline::Space*> spaces(8, &one.space);

@@ -52,8 +52,8 @@ struct TreadingEllipsoid {
 
 TEST(Transport, TheFrequencyIsThatOfTheMaterial) {
   const TreadingEllipsoid e;
-  EXPECT_NEAR(e.treading(&e.sphere).frequency / e.rate, 1, 2e-3);  // weighted by the sphere's length, on chords: (1/36)^2
-  EXPECT_NEAR(e.treading(nullptr).frequency / e.rate, 1, 2e-3);    // weighted by the time that a point needs
+  EXPECT_NEAR(e.treading(&e.sphere).frequency / e.rate, 1, 2e-3);  // weighted by length on the unstressed sphere; error of the chords: (1/36)^2
+  EXPECT_NEAR(e.treading(nullptr).frequency / e.rate, 1, 2e-3);    // weighted by the time that a point spends on each part
 }
 
 TEST(Transport, ADropWithAStagnationPointDoesNotTankTread) {
