@@ -166,7 +166,7 @@ def an_error_on_the_first_rank_ends_all_ranks():
     check(sum(line.startswith("tanktread: cannot write") for line in said.splitlines()) == 1, said)
 
 
-def a_checkpoint_of_another_version_is_refused():
+def a_checkpoint_of_another_version_is_rejected():
     import h5py
 
     run(deck(DECK), "--set", "Time/final time=0.1", "--output", "out", "--quiet")

@@ -134,7 +134,7 @@ def an_initial_shape_in_a_tube_reaches_the_same_steady_shape_as_the_resting_shap
     close(series("goes_on", "taylor_inertia")[0], series("resting", "taylor_inertia")[-1], 1e-9, "taylor_inertia of the other run")
 
 
-def an_initial_shape_that_does_not_fit_into_its_tube_is_refused():
+def an_initial_shape_that_does_not_fit_into_its_tube_is_rejected():
     for shape in "stretch: [1, 2, 1], volume: own", "stretch: [0.2, 2.5, 2]", "map: [1, 0, 0, 0, 1, 0, 0, 2, 1]":
         said = run(deck(TUBE % (1, "", f", initial shape: {{{shape}}}", CAPSULE, 1)), "--output", "through", "--quiet", code=2).stderr
         check(said.count("\n") == 1 and "does not fit into the tube" in said, said)

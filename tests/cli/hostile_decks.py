@@ -179,7 +179,7 @@ def _fault(name):
     return f"{traces} in: {lines[0][:500]}" if traces else ""
 
 
-def mutated_decks_are_checked_or_refused_in_one_sentence():
+def mutated_decks_are_checked_or_rejected_in_one_sentence():
     import yaml
 
     for outline in (SOURCE / "inputs").glob("*.csv"):

@@ -48,7 +48,7 @@ def _refused(name, lines, *words):
     check(said.count("\n") == 0 and all(word in said for word in (name, *words)), said)
 
 
-def files_that_hold_no_closed_surface_are_refused_in_one_sentence():
+def files_without_a_closed_surface_are_rejected_in_one_sentence():
     lines = _written().read_text().splitlines()
     starts = [i for i, line in enumerate(lines) if line.startswith("belem")] + [len(lines)]
     count = next(i for i, line in enumerate(lines) if line.startswith("elemN"))
@@ -87,7 +87,7 @@ Tanktread:
     close(float(said.split("a particle of radius ")[1].split()[0]), 1.88, 0.04, "radius")  # the control point at the tip is at 1.60
 
 
-def keys_of_other_shapes_and_meshes_are_refused():
+def keys_of_other_shapes_and_meshes_are_rejected():
     file = _written()
     for setting, word in ("Surface/elements per side=6", "Surface"), ("Particle/radius=1", "Particle/radius"), ("Adaptation/enabled=true", "Adaptation"):
         result = run(deck(IMPORT % file), "--set", setting, "--check", code=2)

@@ -119,7 +119,7 @@ def points_of_a_branch_are_named_by_their_numbers():
     style.plt.close("all")
 
 
-def a_suspension_that_ends_before_the_averages_begin_says_so():
+def a_suspension_that_ends_before_the_averages_begin_is_reported():
     deck("""
 Tanktread:
   Flow: { type: simple shear }

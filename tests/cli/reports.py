@@ -123,7 +123,7 @@ def axes_have_the_units_of_the_deck():
     check(told is None or {"time, ms", "taylor_inertia"} <= set(told["texts"]), told)
 
 
-def a_run_that_is_not_finished_says_so():
+def an_unfinished_run_is_marked_in_its_report():
     deck(DECK)
     run("deck.yaml", "--output", "results", "--quiet", code=1)
     pathlib.Path("results/summary.yaml").unlink()

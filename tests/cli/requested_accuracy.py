@@ -168,7 +168,7 @@ def an_existing_run_cannot_be_resumed_with_a_request():
     check(sorted(pathlib.Path("plain").iterdir()) == before, "results were deleted")
 
 
-def the_wall_clock_limit_is_honoured_and_said():
+def the_wall_clock_limit_is_respected_and_reported():
     deck(DROP)
     result = run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/wall-clock limit=0.6", "--quiet", "--output", "short",
                  code=4, timeout=60)
@@ -301,7 +301,7 @@ def tables_reports_and_bands_have_errors():
     close(weighted, 0.1 - one.series["taylor_inertia"][-1], 1e-6, "residual divided by the discretisation error")
 
 
-def a_run_without_a_request_states_what_it_knows():
+def a_run_without_a_request_states_its_known_errors():
     deck(DROP)
     run("deck.yaml", "--quiet", "--output", "plain")
     known = summary("plain")["estimated errors"]
@@ -332,7 +332,7 @@ def wrinkles_are_reported_instead_of_an_error():
     check("position error" not in tanktread.run("wrinkled").snapshots()[-1].fields, "an error of position in spite of wrinkles")
 
 
-def wrong_requests_are_refused():
+def wrong_requests_are_rejected():
     deck(DROP)
     for request, words in (("taylor_inertai=1e-3", ["taylor_inertia meant"]), ("taylor_inertia", ["no value"]),
                            ("taylor_inertia=-1", ["positive"]), ("taylor_inertia@start=1", ["@end"]), ("wall_seconds=1", ["no error"]),

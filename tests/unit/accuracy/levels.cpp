@@ -106,7 +106,7 @@ TEST(Levels, HalveFixedSteps) {
   EXPECT_FALSE(sets(deck, {3, 3, 3}, "Time/tolerance=3.125e-05"));
 }
 
-TEST(Levels, RefuseShapesOfOneMesh) {
+TEST(Levels, RejectShapesOfOneMesh) {
   EXPECT_NO_THROW(check_levels(plain));
   EXPECT_THROW(check_levels(with(plain, {{"Particle/initial shape/run", "results/a"}})), UserError);
 }

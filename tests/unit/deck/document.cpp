@@ -84,7 +84,7 @@ TEST(Settings, OverrideAllDecksAndAreReadAsYaml) {
   EXPECT_EQ(s.kinds.rate, 3.0);
 }
 
-TEST(Settings, ThatAreNoSettingsAreRefused) {
+TEST(Settings, ThatAreNoSettingsAreRejected) {
   for (const char* setting : {"Kinds/count", "Kinds/count=", "=3", "count=3", "/count=3", "Kinds//count=3"})
     EXPECT_EQ(refused({}, {setting}), std::string("--set '") + setting + "' must be of the form Section/key=value.");
   EXPECT_EQ(refused({}, {"Kinds/count=[1, 2"}), "--set 'Kinds/count=[1, 2': the value is not valid YAML.");
@@ -145,7 +145,7 @@ TEST(Xml, IsReadByExtension) {
             (folder.path / "deep.xml").string() + ": its elements are nested more than 100 deep.");
 }
 
-TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
+TEST(Files, ThatAreNoDecksAreRejectedInOneSentence) {
   const Folder folder;
   const std::string missing = folder.path / "missing.yaml";
   EXPECT_EQ(refused({missing}), "The deck " + missing + " does not exist.");

@@ -55,7 +55,7 @@ TEST(Keys, RejectAValueOutsideTheirRangeWithPathRangeUnitAndValue) {
             "Kinds/sides must be two numbers in brackets, each positive (unit: length), but is [1, 2, 3].");
 }
 
-TEST(Keys, RefuseWrongTypes) {
+TEST(Keys, RejectWrongTypes) {
   EXPECT_EQ(refusal("    enabled: 1\n"), "Kinds/enabled must be true or false, but is 1.");
   EXPECT_EQ(refusal("    note: 1\n"), "Kinds/note must be text (in quotes), but is 1.");
   EXPECT_EQ(refusal("    center: 1\n"), "Kinds/center must be three numbers in brackets (unit: length), but is 1.");
@@ -68,14 +68,14 @@ TEST(Keys, RefuseWrongTypes) {
   EXPECT_NE(refusal("    shear rate: nan\n"), "");
 }
 
-TEST(Choices, RefuseAnotherWordWithAGuess) {
+TEST(Choices, RejectAnotherWordWithASuggestion) {
   EXPECT_EQ(refusal("    law: sotf\n"), "Kinds/law must be soft, hard or very hard, but is \"sotf\" (text); was `soft` meant?");
   EXPECT_EQ(refusal("    law: SOFT\n"), "Kinds/law must be soft, hard or very hard, but is \"SOFT\" (text); was `soft` meant?");
   EXPECT_EQ(refusal("    law: glass\n"), "Kinds/law must be soft, hard or very hard, but is \"glass\" (text).");
   EXPECT_EQ(refusal("    law: 2\n"), "Kinds/law must be soft, hard or very hard, but is 2.");
 }
 
-TEST(UnknownKeys, AreRefusedWithTheirPathAndAGuess) {
+TEST(UnknownKeys, AreRejectedWithTheirPathAndASuggestion) {
   EXPECT_EQ(refusal("    shaer rate: 1\n"), "Kinds/shaer rate is not a key of the deck; was Kinds/shear rate meant?");
   EXPECT_EQ(refusal("    Inner: {detph: 1}\n"), "Kinds/Inner/detph is not a key of the deck; was Kinds/Inner/depth meant?");
   EXPECT_EQ(refusal("    depth: 1\n"), "Kinds/depth is not a key of the deck; was Kinds/Inner/depth meant?") << "the key of another list";
@@ -84,7 +84,7 @@ TEST(UnknownKeys, AreRefusedWithTheirPathAndAGuess) {
   EXPECT_EQ(refusal("    Inner: {zebra: 1}\n"), "Kinds/Inner/zebra is not a key of the deck; Kinds/Inner has depth.");
 }
 
-TEST(GivenKeys, AreKnownAsGiven) {
+TEST(GivenKeys, AreDistinguishedFromDefaults) {
   struct Probe {
     bool given = false, other = true;
     std::string path;

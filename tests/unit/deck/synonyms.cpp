@@ -7,7 +7,7 @@
 namespace tanktread::deck {
 namespace {
 
-TEST(Synonyms, AreFoundHoweverTheyAreWritten) {
+TEST(Synonyms, AreFoundInAnySpelling) {
   for (const char* name : {"dt", "time_step", "Time-Step"}) EXPECT_EQ(synonym(name), "Time/fixed step or Time/initial step") << name;
   for (const char* name : {"tend", "t_end", "T end", "end time"}) EXPECT_EQ(synonym(name), "Time/final time") << name;
   for (const char* name : {"", "/", "|", "zebra", "shear rate"}) EXPECT_EQ(synonym(name), "") << name;

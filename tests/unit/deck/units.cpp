@@ -29,7 +29,7 @@ TEST(Units, AreStatedInSI) {
   EXPECT_EQ(units.in_si("degree"), "");
 }
 
-TEST(Units, RefuseOtherKinds) {
+TEST(Units, RejectOtherDimensions) {
   const Units units({});
   for (const char* kind : {"length", "1/time", "1", "R_C", "that of the key"})
     EXPECT_THROW(units.number("1 uN", kind), std::invalid_argument) << kind;

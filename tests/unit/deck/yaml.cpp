@@ -29,7 +29,7 @@ TEST(Texts, InDoubleQuotesKeepTheirEscapes) {
   }
 }
 
-TEST(Lines, ThatAreIndentedWronglyAreRefused) {
+TEST(Lines, ThatAreIndentedWronglyAreRejected) {
   EXPECT_EQ(refusal("    count: 1\n   law: soft\n"),
             "deck.yaml, line 4: this is not valid YAML (the indentation fits none of the lines above): `law: soft`.");
   EXPECT_EQ(refusal("\tcount: 1\n"), "deck.yaml, line 3: indent with spaces, not with tabs.");

@@ -157,7 +157,7 @@ TEST(Membrane, InflationStretchesUniformly) {
     }
 }
 
-TEST(Membrane, PreInflationLeavesTheStretchOneToOnePlusAlpha) {
+TEST(Membrane, PreInflationGivesTheStretchOnePlusAlpha) {
   const Sphere& s = sphere(3);
   const Vec3 centre(0.2, -0.1, 0.4);
   const Net rest = s.net.rowwise() + centre.transpose(), x = unstressed(rest, centre, 0.05);

@@ -338,7 +338,7 @@ TEST(Integrators, AutoMakesAFirstStepThatIsTooLongForExplicitSchemes) {
   }
 }
 
-TEST(Integrators, AutoAssemblesNothingLargerThanItIsAllowed) {
+TEST(Integrators, AutoAssemblesNoOperatorAboveTheMemoryLimit) {
   TimeOptions options = with("auto");
   options.largest_operator = 1e-9;  // in GB; the operator has 12 bytes
   Model model(1e3);
@@ -443,7 +443,7 @@ class Rescaled : public Model {
   double unit_;
 };
 
-TEST(Integrators, TheFirstStepIsTheSameWhateverTheUnitOfTime) {
+TEST(Integrators, TheFirstStepDoesNotDependOnTheUnitOfTime) {
   double first = 0;
   for (const double unit : {1.0, 1e-3, 1e4}) {
     Rescaled model(unit);

@@ -40,7 +40,7 @@ constexpr double places[][2] = {{0, 0}, {1, 0}, {1, 1}, {0.3, 0}, {1, 0.7}, {0.5
 
 Rule made(double s, double t, MetricBin metric, double tolerance) { return polar(s, t, metric, polar_orders(s, t, metric, 4, tolerance)); }
 
-TEST(Polar, IntegratesTheSingularityWhereverTheTargetIs) {
+TEST(Polar, IntegratesTheSingularityForAnyTarget) {
   for (const auto& [s, t] : places)
     for (const double b : {1., 3., 0.2})
       for (const double tolerance : {1e-4, 1e-8, 1e-12}) {

@@ -44,7 +44,7 @@ TEST(InitialShape, ThatEqualsTheRestingShapeGivesABitwiseEqualRun) {
   }
 }
 
-TEST(InitialShape, HasTheRestingVolumeUnlessItsOwnIsAskedFor) {
+TEST(InitialShape, HasTheRestingVolumeUnlessAnotherIsRequested) {
   const std::vector<std::string> shear = at_rest({"Particle/initial shape/map=[1.2, 0, 0.5, 0, 1, 0, 0, 0, 0.7]"});
   Evolution kept(shear);
   const double rest = surface::volume(kept.body().space, kept.body().rest);

@@ -51,7 +51,7 @@ TEST(Extraction, EqualMatricesAreSharedWithinSpacesAndAcrossThem) {
   EXPECT_EQ(distinct(stacked(both)), distinct(one));
 }
 
-TEST(Extraction, LevelsOfTheLatticeThatAreNotUsedChangeNothing) {
+TEST(Extraction, UnusedLevelsOfTheLatticeHaveNoEffect) {
   const Space a = space(cube(4, 0), ExtraordinaryRule::g1), b = space(cube(4, 2), ExtraordinaryRule::g1);
   ASSERT_EQ(a.elements.size(), b.elements.size());
   for (std::size_t k = 0; k < a.elements.size(); ++k) {

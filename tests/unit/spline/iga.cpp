@@ -150,7 +150,7 @@ Element turned_over(Element e) {
   return e;
 }
 
-TEST(Iga, InvertedElementsAndSurfacesAreRefused) {
+TEST(Iga, InvertedElementsAndSurfacesAreRejected) {
   const TMesh mesh = cube(3);
   Space s = space(mesh, ExtraordinaryRule::g1);
   const Net net = ball(mesh);

@@ -116,7 +116,7 @@ TEST(Refinement, OneCutAcrossSDividesTheElementOnlyAcrossS) {
   EXPECT_EQ(t_junctions(cut).size(), 2u);
 }
 
-TEST(Refinement, EveryBezierElementKnowsItsMeshElement) {
+TEST(Refinement, EveryBezierElementHasTheIndexOfItsMeshElement) {
   std::mt19937 generator(4);
   const TMesh mesh = refine(cube(4, 2), random_marks(cube(4, 2), 6, 0, generator)).mesh;
   const Space s = space(mesh, rule);

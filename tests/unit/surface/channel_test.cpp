@@ -39,7 +39,7 @@ TubeOptions bend() {
   return o;
 }
 
-TEST(Channel, NarrowsAsItsProfileSays) {
+TEST(Channel, HasTheRadiusOfItsProfile) {
   const Channel round(constriction());
   for (const double s : {-3., -1.7, 0., 0.4, 2.})
     EXPECT_NEAR(round.section(s).factor[0], std::abs(s) < 2 ? 1 - (1 + std::cos(pi * s / 2)) / 4 : 1, 1e-14);

@@ -160,7 +160,7 @@ TEST(Outline, IsApproachedByItsSplinesWithOrderFour) {
   EXPECT_EQ(rectangle(6, 5).shares(21), (std::vector<int>{6, 5, 6, 5})) << "opposite sides have equally many";
 }
 
-TEST(Outline, RefusesSidesThatCrossOrRunClockwise) {
+TEST(Outline, RejectsSidesThatCrossOrRunClockwise) {
   const auto message = [](const std::vector<Vec2>& corners) {
     try {
       polygon(corners);

@@ -28,7 +28,7 @@ Net stress_free(const CubeMesh& cube, const ParticleShape& shape, double reduced
 
 double reduced_volume(const Measures& m) { return 6 * std::sqrt(std::numbers::pi) * m.volume / std::pow(m.area, 1.5); }
 
-TEST(StressFreeSpheroid, HasTheAreaOfTheRestingShapeAndTheReducedVolumeAskedFor) {
+TEST(StressFreeSpheroid, HasTheAreaOfTheRestingShapeAndTheRequestedReducedVolume) {
   const CubeMesh cube(12);
   const ParticleShape shape = red_cell_shape();
   const Measures resting = measures(cube.space, cube.shape(shape));
@@ -63,7 +63,7 @@ TEST(StressFreeSpheroid, KeepsTheAreaOfEveryPiece) {
   EXPECT_LT(before, 1e-2);
 }
 
-TEST(StressFreeSpheroid, OfASphereIsTheSphereAndOfASpheroidOfItsOwnReducedVolumeTheSpheroid) {
+TEST(StressFreeSpheroid, OfASphereIsTheSphereAndOfASpheroidWithItsReducedVolumeTheSpheroid) {
   const CubeMesh cube(6);
   ParticleShape shape;
   EXPECT_LT((stress_free(cube, shape, 1) - cube.shape(shape)).norm() / cube.shape(shape).norm(), 1e-5);

@@ -73,7 +73,7 @@ TEST(TubeWall, HasCollocationPointsOnItsRimsWithoutDuplicates) {
   }
 }
 
-TEST(TubeWall, ReproducesConstantsAndItsOwnCoordinate) {
+TEST(TubeWall, ReproducesConstantsAndTheAxialCoordinate) {
   const TubeWall wall = of(circle(12, 8));
   for (const spline::Element& element : wall.space.elements) EXPECT_NEAR(spline::basis(element, 0.2, 0.7, 0).value.sum(), 1, 1e-14);
   const Net along = wall.net.col(0).replicate<1, 3>();

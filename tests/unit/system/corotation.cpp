@@ -55,7 +55,7 @@ TEST(Corotation, IsARotationEvenIfTheShapeIsMirrored) {
   EXPECT_NEAR(Mat3(f.topRows(3)).determinant(), 1, 1e-13);
 }
 
-TEST(Corotation, DeformationIsWhatRemainsOfAStretch) {
+TEST(Corotation, DeformationIsAStretchWithoutItsRotation) {
   std::vector<Particle> particles(1);
   particles[0].block = {0, 20, 0, 0};
   const Net from = cloud(1).rowwise() - cloud(1).colwise().mean(), stretched = from * Vec3(1.2, 1, 0.9).asDiagonal();

@@ -58,7 +58,7 @@ TEST(InterfaceMotion, NormalMotionHasNoTangentialPart) {
 
 // The stresslet of a spherical drop in a straining flow E, S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3) (Batchelor 1970, section 5), does not depend on
 // the constant surface tension. It must not depend on the tangential motion of the control points either.
-TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
+TEST(InterfaceMotion, StressletDoesNotDependOnTheMotionOfTheMesh) {
   SphereInFlow drop(6, "planar hyperbolic");
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{5};
   drop.parameters.particles.front().measure = stokes::Measure::current;

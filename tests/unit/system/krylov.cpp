@@ -46,7 +46,7 @@ TEST(Krylov, SolvesANonsymmetricSystemToTheTolerance) {
     }
 }
 
-TEST(Krylov, TheInverseAsPreconditionerLeavesOneIteration) {
+TEST(Krylov, TheInverseAsPreconditionerNeedsOneIteration) {
   const int n = 60;
   const Eigen::MatrixXd a = nonsymmetric(n), inverse = a.inverse();
   const auto product = [](const Eigen::MatrixXd& m) {
@@ -208,7 +208,7 @@ TEST(Krylov, AnInitialGuessThatIsTheSolutionIsNotChanged) {
   }
 }
 
-TEST(Krylov, ZeroRightHandSideCostsNothing) {
+TEST(Krylov, ZeroRightHandSideNeedsNoIteration) {
   Eigen::VectorXd x = Eigen::VectorXd::Ones(5);
   const SolveReport report = solve(Krylov("GMRES", nullptr), [](const double*, double*) { FAIL(); }, Eigen::VectorXd::Zero(5), x, 1e-8);
   EXPECT_EQ(report.iterations, 0);

@@ -75,7 +75,7 @@ TEST(Tube, SolvesTheBlockSystem) {
   EXPECT_LT((answer - r.velocity).norm() / answer.norm(), 1e-12);
 }
 
-TEST(Tube, HasThePressureDropOfTheFlowOnTheSurfaceHoweverCoarse) {
+TEST(Tube, HasTheExactPressureDropOnAnyMeshOfTheSurface) {
   Fixture s(1);
   const Net along = Eigen::RowVector3d(1, 0, 0).replicate(s.x.rows(), 1);
   const auto& rule = quadrature::tensor_gauss(12);

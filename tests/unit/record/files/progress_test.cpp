@@ -13,7 +13,7 @@ TEST(Progress, ALineContainsTimeStepIterationsDeformationAndTimeLeft) {
   EXPECT_EQ(progress_line({7.5, 60, 1, 0.4}, 0, 7.5, 12, 0), "100 %  t 7.5/7.5  step 60  1 iteration  D 0.4000");
 }
 
-TEST(Progress, AResumedRunCountsFromItsOwnBegin) {
+TEST(Progress, AResumedRunCountsFromItsResumption) {
   EXPECT_NE(progress_line({6, 1, 1, 0}, 5, 7, 10, 0).find(" 50 %"), std::string::npos);
   EXPECT_NE(progress_line({6, 1, 1, 0}, 5, 7, 10, 0).find("10 s left"), std::string::npos);
 }

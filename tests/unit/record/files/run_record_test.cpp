@@ -109,7 +109,7 @@ TEST(RunRecord, ItsChecksumIsOfItsFirstRowsInAnyOrderOfTheSeries) {
   EXPECT_NE(of_three, other.checksum(3));
 }
 
-TEST(RunRecord, RefusesARowOfTheWrongLength) {
+TEST(RunRecord, RejectsARowOfTheWrongLength) {
   const Scratch scratch;
   RunRecord record = three_series(scratch / "run.h5");
   EXPECT_THROW(record.append(std::array{1.0}), std::logic_error);
@@ -159,7 +159,7 @@ TEST(RunRecord, KilledAtAnyMomentHoldsEveryRowThatWasAnnounced) {
   }
 }
 
-TEST(OutputDirectory, StartsEmptyOfOldResultsAndLeavesOtherFilesAlone) {
+TEST(OutputDirectory, IsClearedOfOldResultsAndKeepsOtherFiles) {
   const Scratch scratch;
   for (const char* name : {"run.h5", "snapshot_000003.hdf", "snapshot_000004.hdf.part", "snapshot_000005.hdf.damaged.2", "summary.yaml",
                            "notes.txt", "picture.png.part"})
