@@ -39,7 +39,7 @@ view = simple.GetActiveViewOrCreate("RenderView")
 view.ViewSize, view.Background, view.UseColorPaletteForBackground = [1200, 900], [1, 1, 1], 0
 scene = simple.GetAnimationScene()
 scene.UpdateAnimationUsingDataTimeSteps()
-times = scene.TimeKeeper.TimestepValues or [0.0]  # one saved step is a number, not a list
+times = scene.TimeKeeper.TimestepValues or [0.0]  # a number if there is only one step
 times = list(times) if hasattr(times, "__len__") else [times]
 time = times[-1] if arguments.time is None else min(times, key=lambda one: abs(one - arguments.time))
 scene.AnimationTime = view.ViewTime = time

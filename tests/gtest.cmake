@@ -1,4 +1,4 @@
-# The headers of GoogleTest and of the modules, compiled once for all programs, and once with scene/body.hpp.
+# Precompiles the headers of GoogleTest and of the modules for all test programs; app_test_headers also contains scene/body.hpp.
 file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp CONTENT "")
 find_package(Eigen3 REQUIRED NO_MODULE)
 get_property(common_headers GLOBAL PROPERTY common_headers)
@@ -10,9 +10,9 @@ foreach(name test_headers app_test_headers)
 endforeach()
 target_precompile_headers(app_test_headers PRIVATE ${PROJECT_SOURCE_DIR}/lib/scene/body.hpp)
 
-# gtest_program(NAME KIND kind SOURCES … MODULES … [MPI [SERIAL suite…]]): one GoogleTest program, one ctest entry a TEST, with the label `kind`.
-# Suites whose names end in Long carry the label `long`. MPI: main() initialises MPI, and the whole program runs once more on two ranks,
-# but for the suites named after SERIAL (with and without parameters): their code knows of no ranks, or is run on several ranks by tests in tests/cli.
+# gtest_program(NAME KIND kind SOURCES … MODULES … [MPI [SERIAL suite…]]): adds a GoogleTest program with one ctest entry per TEST, with the label
+# `kind`. Suites whose names end in Long have the label `long`. MPI: main() initialises MPI, and the program also runs on two ranks, except the suites
+# named after SERIAL (with and without parameters), whose code does not use MPI or is run on several ranks by tests in tests/cli.
 function(gtest_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "MPI" "KIND" "SOURCES;MODULES;SERIAL")
   add_executable(${name} ${arg_SOURCES})
@@ -46,8 +46,8 @@ function(gtest_program name)
   endif()
 endfunction()
 
-# One ctest entry for each test of the program that passes the filter. gtest_discover_tests flattens properties that are lists,
-# so those are set by a file that ctest reads afterwards.
+# Adds a ctest entry for each test of the program that passes the filter. gtest_discover_tests flattens properties that are lists,
+# so these are set in a file that ctest reads afterwards.
 function(discover name selection filter labels)
   set(list ${name}_${selection}_TESTS)
   gtest_discover_tests(${name} TEST_PREFIX ${name}. TEST_FILTER "${filter}" TEST_LIST ${list} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)

@@ -1,4 +1,4 @@
-// The main() of tests of rooms that communicate.
+// Defines main() for the tests of modules that use MPI.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-# remarks_of(FILE): what a deck or script says of itself as a test, in comment lines among its first twenty:
+# remarks_of(FILE): reads the properties of a test from comment lines among the first twenty lines of a deck or script:
 #   # base: inputs/shear_neo_hookean.yaml     # ranks: 2     # label: long
-# sets remark_base, remark_ranks (default 1) and remark_label. A change of the file is seen by the next build.
+# Sets remark_base, remark_ranks (default 1) and remark_label. If the file changes, the next build configures again.
 function(remarks_of file)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   file(STRINGS ${file} lines LIMIT_COUNT 20 REGEX "^# *(base|ranks|label):")

@@ -76,7 +76,7 @@ def fitted(points, degree):
 
 
 def sphere(elements):
-    """Returns the lines of a unit sphere's file, its control points (n, 3), and the table (m, n) of its spline functions at m points."""
+    """Returns three items for a unit sphere: the lines of its file, its control points (n, 3), and the values (m, n) of its spline functions at m points."""
     with tempfile.TemporaryDirectory() as directory:
         deck = pathlib.Path(directory, "sphere.yaml")
         deck.write_text(SPHERE % elements)

@@ -49,7 +49,7 @@ def shapes(run, field):
     k = next((k for k in (6, 5, 4, 3) if 10 * cells * (k + 1) ** 2 * len(shots) < BYTES), 2)
     shots = evenly(shots, max(2, int(BYTES / (10 * cells * (k + 1) ** 2))))
     low, high = (numpy.array([edge(shot.points, axis=0) for shot in shots]) for edge in (numpy.min, numpy.max))
-    middles = (low + high) / 2  # of each, which a particle in a duct does not leave
+    middles = (low + high) / 2  # centre of the view of each snapshot; it moves with the particle in a duct
     if run.several and run.value("Flow/type") != "duct":
         middles[:] = (low.min(0) + high.max(0)) / 2
     size = 1.05 * max(abs(low - middles).max(), abs(high - middles).max(), 1e-300)  # between nodes a surface may bulge
@@ -72,7 +72,7 @@ def shapes(run, field):
 
 
 def curves(run):
-    """Returns all series, the most important ones first, of long ones every second, third … row."""
+    """Returns all series, the most important ones first. Long series are thinned to every second, third … row."""
     defined = {name: run.defined(name)[1] for name in FIRST if name in run.series}
     first = [name for name, values in defined.items() if len(values) and numpy.ptp(values) > 1e-9]
     names = first + sorted(name for name in run.series if name not in first and name != "time")

@@ -1,5 +1,5 @@
-"""Maps of the atlas about the method: poles, thin bodies, tips, meshes that are carried along, the length of steps in
-time, and accuracy asked for: of a step, of the integrals, of the volume."""
+"""Maps of the atlas about the numerical method: poles, thin bodies, tips, convected meshes, size of time steps, and
+tolerances of time steps, of integrals and of the volume."""
 
 import math
 

@@ -1,5 +1,5 @@
 """Maps of the atlas about the membrane (compression, pre-stress, bending, the form of the load) and about the particle
-itself, where there is no steady shape any more."""
+itself, at parameters beyond which no steady shape exists."""
 
 from package import PENS, SHEAR, SIDE, lines, numpy, style, varied
 import waves

@@ -1,4 +1,4 @@
-"""Imported first: the package tanktread of this source directory, and what several measurements use."""
+"""Imports the package tanktread of this source directory. Contains functions shared by several measurements."""
 
 import pathlib
 import sys
@@ -42,11 +42,11 @@ def table(head, rows):
 
 
 def line(study, axes, name, deck, jobs, measures, x=None, **pen):
-    """Makes the runs of a line of a figure and draws it: one measure on each of the axes, which may be fewer.
+    """Makes the runs of one line of a figure and draws it. The first measures are drawn, one on each of the axes.
 
     `jobs`: {x: settings}; `measures`: functions of an outcome, or names of series, whose last values are drawn; `x`: a
-    series whose last values are drawn instead of those of `jobs`. Returns rows (name, x, *measures, message), with NaN
-    of runs that did not come to their end."""
+    series whose last values are the abscissas instead of those in `jobs`. Returns rows (name, x, *measures, message),
+    with NaN for runs that were not completed."""
     rows = []
     for at, settings in jobs.items():
         outcome = study.run(deck, settings)
@@ -75,5 +75,5 @@ def lines(study, axes, given, measures, x=None, pens=PENS):
 
 
 def footer(figure, text, **look):
-    """Writes a text below a figure. What follows a dollar sign in the text is a command."""
+    """Writes a text below a figure. The part of the text after a dollar sign is a command."""
     figure.supxlabel(text.replace("$ ", r"\$ "), x=0.01, ha="left", fontsize=7.5, **look)

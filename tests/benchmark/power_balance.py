@@ -32,8 +32,8 @@ def finer(deck, change, path=()):
 
 
 def left_over(outcome):
-    """Returns the largest share of a row's power that is left over, when, the root of the mean square, and the number
-    of rows; None without any power."""
+    """Returns the largest residual of a row divided by its power, its time, the root mean square over the rows, and the
+    number of rows; None if there is no power."""
     series = outcome.series
     flow, forces, fluids = (series[name] for name in ("flow_power", "force_power", "fluid_dissipation"))
     power = (abs(flow) + abs(forces) + abs(fluids) + abs(flow + forces - fluids)) / 2

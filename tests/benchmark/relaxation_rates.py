@@ -43,7 +43,7 @@ def modes(study, scene, n, odd):
     membrane = {"Membrane/law": "surface tension", "Membrane/surface tension": 1.0} if SPHERES[scene] else {
         "Membrane/shear modulus": 1.0}
     rates = [exact(scene, l) for l in HARMONICS]
-    number = 5 * n  # slow modes of higher harmonics, which bend only, lie between those of the harmonics looked at
+    number = 5 * n  # slow bending modes of higher harmonics have rates between those of these harmonics
     spectrum = {"Spectrum/number": number, "Spectrum/near": (min(rates) + max(rates)) / 2}
     outcome = study.run(SCENES / "relaxation_rates.yaml", membrane | spectrum | {RATIO: SPHERES[scene] or 1.0, SIDE: n}
                         | ({"Spectrum/parity": [1, 1, -1]} if odd else {}))

@@ -34,7 +34,7 @@ def main():
     parser.add_argument("--search", action="store_true", help="also search for the cheapest single run")
     studies.arguments(parser, "results/requests", limit=60)
     parsed = parser.parse_args()
-    limit, parsed.limit = parsed.limit, 6 * parsed.limit  # references may take five times as long as the ladders
+    limit, parsed.limit = parsed.limit, 6 * parsed.limit  # a reference may take five times as long as all levels of a request
     study, rows = studies.study(parsed), []
 
     def lines():

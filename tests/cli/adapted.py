@@ -50,7 +50,7 @@ def _points(results):
     return series(results, "n_control_points")
 
 
-def two_ranks_make_the_mesh_of_one():
+def two_ranks_give_the_same_mesh_as_one():
     for ranks in 1, 2:
         run(deck(DECK), "--output", f"on_{ranks}", "--quiet", ranks=ranks)
     check(len(set(_points("on_1"))) > 2, f"the mesh changed less than twice: {_points('on_1')}")
@@ -60,7 +60,7 @@ def two_ranks_make_the_mesh_of_one():
         check(numpy.max(abs(one - two)) <= 1e-10 * max(1, numpy.max(abs(one))), f"{name} differs")
 
 
-def a_run_taken_up_after_refinements_goes_on_to_the_last_bit():
+def a_run_resumed_after_refinements_is_bitwise_equal():
     for mesh in "cube", "polar":
         text = DECK if mesh == "cube" else POLAR
         whole, part = f"whole_{mesh}", f"part_{mesh}"
@@ -86,7 +86,7 @@ def a_symmetric_scene_stays_symmetric_on_every_mesh():
     check(abs(middle).max() < 1e-12, f"the particle has drifted to {middle}, where the flow carries it off")
 
 
-def the_largest_number_of_points_is_kept_and_what_stays_coarse_is_said():
+def the_largest_number_of_points_is_respected_and_coarse_regions_are_reported():
     run(deck(DECK), "--set", "Adaptation/largest number of points=160", "--output", "run", "--quiet")
     most = max(_points("run"))
     check(98 <= most <= 160, f"{most} control points")
@@ -94,7 +94,7 @@ def the_largest_number_of_points_is_kept_and_what_stays_coarse_is_said():
     check(len(warnings) == 1 and "Adaptation/largest number of points = 160" in warnings[0], warnings)
 
 
-def the_volume_is_kept_through_every_change_of_the_mesh():
+def every_change_of_the_mesh_conserves_the_volume():
     for points in "catmull-clark", "g1":
         run(deck(DECK.replace("catmull-clark", points)), "--output", points, "--quiet")
         volume, lost = series(points, "volume"), series(points, "refit_error")
@@ -123,7 +123,7 @@ def a_change_of_the_mesh_that_fails_is_undone():
         check(series("whole", name).tobytes() == series("out", name).tobytes(), f"{name} differs")
 
 
-def a_picture_within_a_step_is_of_the_mesh_of_that_step():
+def a_snapshot_within_a_step_has_the_mesh_of_that_step():
     """A snapshot at a time before the first change of the mesh has the same points as in a run without adaptation."""
     pictures = {}
     for enabled in "true", "false":

@@ -14,7 +14,7 @@ Tanktread:
 """
 
 
-def ten_thousand_takes_at_most_twice_the_evaluations_of_ten():
+def an_area_modulus_of_10000_needs_at_most_twice_the_evaluations_of_10():
     """Measured: 1.5 times the evaluations and 1.3 times the steps. If the iteration of a stage started from
     extrapolated slopes only (see Dynamics::improve_start), the step size would decrease without limit."""
     counts = []
@@ -25,7 +25,7 @@ def ten_thousand_takes_at_most_twice_the_evaluations_of_ten():
     check(many <= 2 * few and long <= 2 * short, f"{many} evaluations for {few}, {long} steps for {short}")
 
 
-def two_processes_do_what_one_does():
+def two_ranks_agree_with_one():
     words = ["--set", "Time/fixed step=0.01", "--set", "Time/final time=0.04", "--set", "Solvers/tolerance=1e-12", "--set", "Output/interval=0.04"]
     for ranks in 1, 2:
         run(deck(DECK), *words, "--output", f"on_{ranks}", "--quiet", ranks=ranks)
@@ -33,7 +33,7 @@ def two_processes_do_what_one_does():
     check(abs(one - two).max() < 1e-9, f"D differs by {abs(one - two).max()}")
 
 
-def area_points_without_area_elasticity_change_nothing():
+def area_points_without_area_elasticity_have_no_effect():
     words = ["--set", "Membrane/area dilatation=0", "--set", "Surface/elements per side=3", "--set", "Time/fixed step=0.02",
              "--set", "Time/final time=0.04", "--set", "Output/interval=0.04", "--set", "Solvers/tolerance=1e-12", "--quiet"]
     for points in 0, 1:
@@ -53,7 +53,7 @@ Tanktread:
 """
 
 
-def a_whole_area_is_kept_the_better_the_more_it_resists():
+def the_change_of_the_total_area_falls_like_the_inverse_of_its_modulus():
     """As K grows, the tension that keeps the area tends to a limit, so that the change of the area falls like 1/K. The
     power balance counts the stored energy as energy, not as work of an external force."""
     path, words = deck(WHOLE), ["--set", "Membrane/global area dilatation"]
@@ -70,7 +70,7 @@ def a_whole_area_is_kept_the_better_the_more_it_resists():
     check(counts[2] <= 2 * counts[0], f"evaluations {counts}")
 
 
-def a_whole_area_is_one_with_symmetry_and_on_two_processes():
+def the_total_area_is_the_same_with_symmetry_and_on_two_ranks():
     words = ["--set", "Membrane/global area dilatation=100", "--set", "Membrane/bending number=0.05", "--set", "Membrane/area difference modulus=2",
              "--set", "Membrane/area difference=0.9", "--set", "Time/fixed step=0.05", "--set", "Time/final time=0.2", "--set", "Solvers/tolerance=1e-12",
              "--set", "Quadrature/far precision=double"]

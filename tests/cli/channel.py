@@ -29,7 +29,7 @@ def _refused(words, *settings, mistakes=1):
     refused(words, deck(DECK), *_words(settings), mistakes=mistakes)
 
 
-def what_is_no_channel_is_refused():
+def wrong_channels_are_rejected():
     _refused(["Channel", "Tube", "one duct"], "Tube/section=circle")
     _refused(["Channel/depth", "between 0 and 1", "1.2"], "Channel/depth=1.2")
     _refused(["closed", "0.01 R_T"], "Channel/depth=0.995")
@@ -65,12 +65,12 @@ def what_is_no_channel_is_refused():
     refused(["closed at s = -3.4"], deck(lines, "file.yaml"))
 
 
-def a_straight_channel_may_begin_anywhere():
+def the_position_of_a_straight_channel_does_not_matter():
     lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", "profile: straight").replace("end when past: -0.7", "end when past: 4")
     run(deck(lines), "--check", "--quiet", *_words(["Channel/start=0", "Channel/end=6.8", "Particle/center=[3.4, 0, 0]"]))
 
 
-def a_run_ends_when_it_is_past():
+def a_run_ends_when_the_particle_is_past_the_given_position():
     run(deck(DECK), "--output", "past", "--quiet")
     x = series("past", "centroid_x1")
     check(x[-2] <= -0.7 < x[-1], f"it ended at {x[-1]}")
@@ -80,7 +80,7 @@ def a_run_ends_when_it_is_past():
     check(len(rates) == 10 and numpy.abs(rates / numpy.pi - 1).max() < 3e-3, f"flow rates through sections: {rates}")
 
 
-def gaps_that_the_wall_does_not_resolve_are_told():
+def gaps_that_the_wall_mesh_does_not_resolve_are_reported():
     """Prescribed bodies and searches for steady shapes warn as runs in time do."""
     body = """Tanktread:
   Flow: {type: duct}
@@ -95,7 +95,7 @@ def gaps_that_the_wall_does_not_resolve_are_told():
         check(len(warned) == told, f"radius {radius}, {more}: {summary('told')['warnings']}")
 
 
-def mirror_planes_and_ranks_change_nothing():
+def results_do_not_depend_on_mirror_planes_and_ranks():
     fixed = ["Time/fixed step=0.02", "Time/final time=0.06", "Quadrature/tolerance=1e-7"]
     run(deck(DECK), *_words(fixed), "--output", "mirrored", "--quiet")
     run(deck(DECK), *_words(fixed + ["Symmetry/use=none"]), "--output", "whole", "--quiet")
@@ -107,7 +107,7 @@ def mirror_planes_and_ranks_change_nothing():
         check(numpy.abs(one - shared).max() < 1e-8 * scale, f"{name}: {one} on one rank, {shared} on two")
 
 
-def an_iterated_wall_does_what_the_factored_one_does():
+def an_iterated_wall_gives_the_result_of_a_factored_one():
     for ratio, symmetry in (1, "auto"), (1, "none"), (5, "auto"):
         fixed = ["Time/scheme=bs3", "Time/fixed step=0.01", "Time/final time=0.01", "Quadrature/tolerance=1e-5", f"Particle/viscosity ratio={ratio}"]
         for solver in "factored", "iterative":
@@ -119,7 +119,7 @@ def an_iterated_wall_does_what_the_factored_one_does():
     _refused(["Solvers/wall", "block"], "Solvers/wall=iterative", "Solvers/tube=block")
 
 
-def a_file_says_what_the_constriction_does():
+def a_profile_from_a_file_gives_the_result_of_the_constriction():
     s = numpy.linspace(-1, 1, 41)
     rows = "".join(f"{a},{f!r}\n" for a, f in zip(s, 1 - 0.15 * (1 + numpy.cos(numpy.pi * s))))
     pathlib.Path("same.csv").write_text("s,f\n" + rows)
@@ -148,7 +148,7 @@ def an_outline_from_a_file_is_scaled_at_the_inlet_too():
         check(abs(other / one - 1) < 2e-3, f"{name}: {one} of a circle, {other} of its outline")
 
 
-def films_are_found_in_every_period():
+def gaps_are_found_in_every_period():
     text = """
 Tanktread:
   Flow: {type: duct}
@@ -169,7 +169,7 @@ Tanktread:
     check(first[0] > 56 and (first == third).all(), f"control points in the modelled period {first}, two periods farther {third}")
 
 
-def the_pressure_drop_may_be_held():
+def the_pressure_drop_may_be_prescribed():
     for held in "flow rate", "pressure drop":
         run(deck(DECK), *_words([f"Flow/held={held}"]), "--output", held.split()[0], "--quiet")
     rate, added, empty = (numpy.array(series("pressure", name)) for name in ("flow_rate", "disturbed_pressure_drop", "channel_pressure_drop"))
@@ -177,7 +177,7 @@ def the_pressure_drop_may_be_held():
     check(series("pressure", "velocity_x1")[-1] < series("flow", "velocity_x1")[-1], "it is not slower")
 
 
-def viscosities_may_differ():
+def the_viscosity_ratio_may_differ_from_one():
     straight = "{profile: straight, azimuthal elements: 16, axial elements: 32, start: -3.1, end: 3.1}"
     first = ["Time/final time=1e-6", "Time/end when past=3", "Particle/center=[0, 0, 0]", "Quadrature/tolerance=1e-6"]
     built = "{profile: constriction, depth: 0.3, half length: 1.0, azimuthal elements: 8, axial elements: 20, start: -3.4, end: 3.4}"
@@ -192,7 +192,7 @@ def viscosities_may_differ():
         check(numpy.abs(series(f"narrow {ratio}", "volume_error")).max() < 1e-12, "the volume is not kept")
 
 
-def a_bend_is_its_own_mirror_image():
+def a_particle_passes_a_bend_backwards_as_forwards():
     """By reversibility of Stokes flow, a particle that passes the bend backwards moves as fast as one that passes it
     forwards, along the centre line and across it. The two walls have different meshes."""
     bend = "profile: straight, azimuthal elements: 12, bend radius: 2.0, bend start: 0.0, start: -3.0, end: 6.141592653589793"

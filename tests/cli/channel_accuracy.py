@@ -42,7 +42,7 @@ Tanktread:
         return series(name, "channel_extra_pressure_drop")[0], file["flow_rate"][:] / numpy.pi
 
 
-def the_empty_constriction_costs_what_is_known():
+def the_pressure_drop_of_an_empty_constriction_is_the_axisymmetric_one():
     extra, rates = _empty("default")
     close(extra, EMPTY, 1e-5 * EMPTY, "extra pressure drop on the default wall")
     check(numpy.ptp(rates) < 1e-5, f"flow rates on the default wall: {rates - 1}")
@@ -51,7 +51,7 @@ def the_empty_constriction_costs_what_is_known():
     check(len(rates) == 10 and numpy.abs(rates - 1).max() < 1e-6, f"flow rates: {rates - 1}")
 
 
-def a_slender_constriction_costs_what_lubrication_says():
+def the_pressure_drop_of_a_slender_constriction_is_that_of_lubrication_theory():
     """The relative error of lubrication theory falls with the square of depth divided by length."""
     x = (numpy.arange(4000) + 0.5) / 4000
     mean = numpy.mean((1 - 0.1 * (1 + numpy.cos(numpy.pi * x))) ** -4.0 - 1)  # mean of R^-4 - 1 over the half length
@@ -65,7 +65,7 @@ def _passes(name, wall, center, radius=0.5, tolerance=1e-7):
     return numpy.array([series(name, one)[0] if one in OF_PASSAGE[:3] or not wall.startswith("Tube") else numpy.nan for one in OF_PASSAGE])
 
 
-def what_is_straight_does_as_the_tube_does():
+def a_straight_channel_agrees_with_the_tube():
     tube = _passes("tube", "Tube: {azimuthal elements: 28, axial elements: 48}", "[0, 0, 0]")
     wall = "start: -3.3, end: 3.3, azimuthal elements: 24, axial elements: 48}"
     along = "Channel: {profile: straight, "
@@ -89,13 +89,13 @@ def _mirrored(name, walls, centers, along, radius):
             check(abs(one[k].sum() / other[k].sum() - 1) < bounds[1], f"{name}, {mesh}: pressure drops {one[2:]} and {other[2:]}")
 
 
-def a_quarter_bend_is_as_its_mirror_image():
+def a_quarter_bend_agrees_with_its_mirror_image():
     length = numpy.pi
     bend = f"profile: straight, bend radius: 2.0, bend start: 0.0, start: -3.0, end: {length + 3!r}"
     _mirrored("bend", (bend, bend), ("[-0.5, 0.2, 0]", "[1.8, 2.5, 0]"), False, 0.4)
 
 
-def a_constriction_without_symmetry_is_as_its_mirror_image():
+def a_constriction_without_symmetry_agrees_with_its_mirror_image():
     t = numpy.linspace(-1, 1, 41)
     s, f = 1.5 * (t - 0.25 * (1 - t * t)), 1 - 0.15 * (1 + numpy.cos(numpy.pi * t))
     for name, rows in ("fore", zip(s, f)), ("back", zip(-s[::-1], f[::-1])):

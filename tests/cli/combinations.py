@@ -6,7 +6,7 @@
 #   combinations.py <tanktread> <source directory>             the decks that cover most pairs
 #   combinations.py <tanktread> <source directory> --long      all of them
 #   combinations.py <tanktread> <source directory> --list      prints the decks as choices, runs nothing
-#   combinations.py <tanktread> <source directory> --one 'kind=drop, flow=duct'     runs one deck and its checks, the other choices as they come
+#   combinations.py <tanktread> <source directory> --one 'kind=drop, flow=duct'     runs one deck and its checks; the other choices are defaults that are compatible
 import collections
 import concurrent.futures
 import functools
@@ -90,7 +90,7 @@ STEP, STEPS = 0.005, 3
 FIRST = 12  # number of decks in the short run
 CHECKS = ("series", "resume", "ranks", "order", "symmetry", "motions")
 SIDES = [6.5, 3.7, 3.9]  # side lengths of a lattice divided by the particle's radius
-OWN = re.compile(r"(.*/)?(wall_seconds|solver_iterations|velocity_iterations)")  # of the machine, or of sums in another order
+OWN = re.compile(r"(.*/)?(wall_seconds|solver_iterations|velocity_iterations)")  # these series depend on the machine or on the order of summation
 UNDEFINED = re.compile(r"(.*/)?(inclination|axis_1_x[123])")  # NaN if two semi-axes are equal
 # positions of a smallest distance: known only to the square root of the tolerance, or one of several
 NEAREST = re.compile(r"first_of_gap|second_of_gap|particle_at_wall|gap_x[123]|nearest_to_wall_x[123]")
@@ -285,7 +285,7 @@ class Cover:
     """Decks that cover all pairs that the program accepts, and a deck of each pair that it rejects.
 
     Greedy: each deck starts from an uncovered pair and takes the values that cover most other pairs, as far as no pair of them is known to be
-    rejected. If the program rejects it, the pairs that its sentences are about are tried by themselves.
+    rejected. If the program rejects it, the pairs that its messages name are tested separately.
     """
 
     def __init__(self):
@@ -317,8 +317,8 @@ class Cover:
         return None
 
     def third(self, blamed, c):
-        """Searches for a choice in c with which a pair is rejected that is accepted without this choice. Returns True
-        if there is one."""
+        """Searches for a choice in c that makes the program reject a pair which it accepts without this choice.
+        Returns True if there is one."""
         for pair in blamed:
             for choice in c.items():
                 self.asked += 1
@@ -383,7 +383,7 @@ def _points(results):
 
 
 class Trial:
-    """Runs and checks of one deck, in a directory of its own."""
+    """Runs and checks of one deck, in a separate directory."""
 
     def __init__(self, c, directory):
         self.scene, self.c, self.directory, self.wrong = Scene(c), c, pathlib.Path(directory), []

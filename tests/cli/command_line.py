@@ -53,12 +53,12 @@ def check_states_the_cost_of_a_velocity_unless_it_is_quiet():
     check(re.search(r"\n  evaluation +not timed, .* would take about \d+ s", huge), huge)
 
 
-def results_go_where_the_deck_s_name_says():
+def results_are_in_the_directory_named_after_the_deck():
     run(deck(SMALL, "small_capsule.yaml"), "--quiet")
     check(pathlib.Path("results/small_capsule/run.h5").is_file(), list(pathlib.Path().rglob("*")))
 
 
-def later_decks_and_settings_win_and_are_stored():
+def later_decks_and_settings_override_earlier_ones_and_are_stored():
     base, over = deck(SMALL), deck("Tanktread:\n  Time: {final time: 0.04}\n  Flow: {viscosity: 3}\n", "overlay.yaml")
     run(base, over, "--set", "Flow/viscosity=2", "--set", "Membrane/pre-inflation=0.05", "--output", "out", "--quiet")
     text = _stored_deck("out")
@@ -68,7 +68,7 @@ def later_decks_and_settings_win_and_are_stored():
     check(final["time"] == 0.04, final["time"])
 
 
-def a_met_expectation_is_0_and_a_missed_one_1():
+def the_exit_code_is_0_for_a_met_expectation_and_1_for_a_missed_one():
     met = ["--set", "Expect/volume/value=4.18879", "--set", "Expect/volume/tolerance=1.0e-2", "--output", "met", "--quiet"]
     run(deck(SMALL), *met)
     check(summary("met")["expect"][0]["passed"] is True, "not noted")
@@ -77,7 +77,7 @@ def a_met_expectation_is_0_and_a_missed_one_1():
     check(summary("missed")["expect"][0]["passed"] is False, "not noted")
 
 
-def a_missed_expectation_under_mpirun_is_one_line():
+def a_missed_expectation_under_mpirun_prints_one_line():
     program = command(deck(SMALL), "--set", "Expect/volume/value=5", "--set", "Expect/volume/tolerance=1.0e-2", "--output", "out", "--quiet", ranks=2)
     launcher = ["mpirun", "-q", "--mca", "odls_base_sigkill_timeout", "0"]  # the launcher that --help recommends
     result = subprocess.run(launcher + program[1:], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=600)
@@ -86,7 +86,7 @@ def a_missed_expectation_under_mpirun_is_one_line():
     check(" ".join(launcher) in " ".join(run("--help").stdout.split()), "not in the help")
 
 
-def an_expectation_binds_what_it_was_stated_for():
+def an_expectation_fails_a_run_only_with_the_keys_it_was_stated_for():
     base = deck(SMALL + "  Expect:\n    volume: {value: 5, tolerance: 1.0e-2}\n    early: {series: volume, value: 5, tolerance: 1.0e-2, at: 0.02}\n", "base.yaml")
     other = deck("Tanktread:\n  Flow: {viscosity: 2}\n", "other.yaml")
     stated = deck("Tanktread:\n  Flow: {viscosity: 2}\n  Expect:\n    volume: {tolerance: 2.0e-2}\n", "stated.yaml")
@@ -121,14 +121,14 @@ def an_expectation_compares_times_with_units():
         check(("not binding: \"\"" in said) == binds, at, end, said)
 
 
-def an_expectation_that_the_run_does_not_reach_is_missed_and_said_to_be_before():
+def an_expectation_after_the_end_of_the_run_is_missed_with_a_warning():
     late = ["--set", "Expect/volume/value=4.18879", "--set", "Expect/volume/tolerance=1", "--set", "Expect/volume/at=9", "--output", "late", "--quiet"]
     lines = run(deck(SMALL), *late, code=1).stderr.splitlines()
     check(len(lines) == 2 and "warning: Expect/volume will be missed: it is for the time 9" in lines[0] and "9" in lines[1], lines)
     check("Expect/volume will be missed" in run(deck(SMALL), *late, "--check").stderr, "not said by --check")
 
 
-def a_run_that_fails_is_3_with_one_line_and_a_checkpoint():
+def a_failed_run_has_exit_code_3_one_line_and_a_checkpoint():
     hopeless = ["--set", "Time/minimum step=0.01", "--set", "Time/initial step=0.02", "--set", "Time/tolerance=1e-12", "--output", "out", "--quiet"]
     result = run(deck(SMALL), *hopeless, code=3)
     check(len(result.stderr.splitlines()) == 1, result.stderr)

@@ -32,7 +32,7 @@ Tanktread:
 """
 
 
-def spheres_are_held_by_the_force_that_drives_them():
+def the_contact_force_equals_the_force_that_drives_the_spheres():
     for solver in ("first kind", "second kind"):
         deck(SPHERES)
         run("deck.yaml", "--output", solver, "--quiet", "--set", f"Solvers/rigid bodies={solver}")
@@ -49,7 +49,7 @@ def spheres_are_held_by_the_force_that_drives_them():
         check(any("limiter" in sentence for sentence in summary(solver)["warnings"]), "no warning")
 
 
-def a_step_that_goes_too_far_is_shortened():
+def a_step_that_moves_particles_too_far_is_shortened():
     deck(SPHERES)
     run("deck.yaml", "--output", "long", "--quiet", "--set", "Time/initial step=1", "--set", "Time/tolerance=0.1",
         "--set", "Particles/left/force=[200, 0, 0]", "--set", "Particles/right/force=[-200, 0, 0]")
@@ -58,7 +58,7 @@ def a_step_that_goes_too_far_is_shortened():
     close(series("long", "contact_force")[-1], 200, 2e-5, "the force between them")
 
 
-def without_the_limiter_the_run_ends():
+def without_the_limiter_the_run_ends_at_contact():
     deck(SPHERES)
     error = run("deck.yaml", "--output", "ended", "--quiet", "--set", "Contact/limiter=false", code=3).stderr
     check("touch" in error and "Contact/limit" in error, error)
@@ -73,7 +73,7 @@ def _same(one, other, tolerance):
         check(numpy.abs(a - b).max() <= tolerance * max(1, numpy.abs(a).max()), f"{other}: {name} is off by {numpy.abs(a - b).max():.1e}")
 
 
-def capsules_are_held_and_ranks_and_a_pause_change_nothing():
+def the_limiter_holds_capsules_on_any_ranks_and_after_resumption():
     deck(CAPSULES)
     run("deck.yaml", "--output", "whole", "--quiet")
     gap, force = series("whole", "smallest_gap"), series("whole", "contact_force")
@@ -90,7 +90,7 @@ def capsules_are_held_and_ranks_and_a_pause_change_nothing():
     _same("whole", "part", 1e-13)
 
 
-def images_on_a_lattice_are_held_too():
+def the_limiter_acts_between_periodic_images():
     deck("""
 Tanktread:
   Flow: {type: planar hyperbolic}
@@ -107,7 +107,7 @@ Tanktread:
     check(force[-1] > 0 and abs(gap[-1] - 0.3) < 3e-5 and gap.min() > 0.3 * (1 - 1e-4), gap, force)
 
 
-def drops_that_are_pressed_together_are_held_apart():
+def the_limiter_keeps_drops_apart():
     """The contact force dents the interfaces, and the smallest gap moves to the rim of the dent."""
     deck("""
 Tanktread:
@@ -126,7 +126,7 @@ Tanktread:
     check(force[-1] > 0 and gap.min() > 0.05 * (1 - 0.02), gap, force)
 
 
-def images_are_let_go_when_the_flow_turns_back():
+def the_contact_force_vanishes_when_the_flow_reverses():
     """After the reversal of the flow at time 0.2, the period along x3 and the gap to the periodic image grow in every
     step."""
     deck("""
@@ -146,7 +146,7 @@ Tanktread:
     check(held.any() and not held[-1] and (held == (force > 0)).all(), "there is a force just where the gap is the limit", gap, force)
 
 
-def mistakes_are_named():
+def mistakes_are_reported():
     deck(SPHERES)
     refused(["Contact/limit", "-0.1"], "deck.yaml", "--set", "Contact/limit=-0.1")
     refused(["Contact/limit", "0"], "deck.yaml", "--set", "Contact/limit=0")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A page of inputs/cookbook does what it says.
+"""Tests a page of inputs/cookbook.
 
 Usage: cookbook.py <tanktread> <source directory> <page> [--pictures]
 
@@ -79,7 +79,7 @@ def execute(commands, root):
     return made.stdout
 
 
-def files_are_shown_as_they_are(page, text):
+def a_page_shows_its_files_verbatim(page, text):
     shown = {name for kind, content, name in blocks(text) if kind not in ("sh", "text")}
     for kind, content, name in blocks(text):
         if kind not in ("sh", "text"):
@@ -88,7 +88,7 @@ def files_are_shown_as_they_are(page, text):
     check(f"{page}.yaml" in shown, f"the deck {page}.yaml is not shown")
 
 
-def output_is_that_of_the_page(text, printed):
+def printed_output_agrees_with_the_page(text, printed):
     lines = printed.splitlines()
     for kind, content, _ in blocks(text):
         for line in content.splitlines() if kind == "text" else []:
@@ -97,14 +97,14 @@ def output_is_that_of_the_page(text, printed):
             del lines[:found + 1]
 
 
-def numbers_of_the_text_are_known(text):
+def numbers_of_the_text_occur_in_the_blocks(text):
     known = [value(word) for _, content, _ in blocks(text) for word in NUMBER.findall(content)]
     prose = re.sub(r"`[^`\n]*`|\]\([^)]*\)", " ", FENCE.sub("", text))
     for word in NUMBER.findall(prose):
         check("." not in word or any(abs(abs(value(word)) - abs(other)) <= 0.5001 * unit(word) for other in known), f"{word} is in no block")
 
 
-def what_to_try_is_accepted(page, text, root):
+def suggested_commands_are_accepted(page, text, root):
     prose = FENCE.sub("", text)
     for words in re.findall(r"`((?:--set '[^'`]*' ?)+)`", prose):
         execute(f"build/release/app/tanktread {FOLDER}/{page}.yaml {words} --check > /dev/null", root)
@@ -136,15 +136,15 @@ def main():
     page, keep = sys.argv[3], "--pictures" in sys.argv
     text = (SOURCE / FOLDER / f"{page}.md").read_text()
     try:
-        files_are_shown_as_they_are(page, text)
-        numbers_of_the_text_are_known(text)
+        a_page_shows_its_files_verbatim(page, text)
+        numbers_of_the_text_occur_in_the_blocks(text)
         with tempfile.TemporaryDirectory(prefix="tanktread-") as directory:
             root = pathlib.Path(directory)
             copy(root)
             printed = execute("\n".join(content for kind, content, _ in blocks(text) if kind == "sh"), root)
-            output_is_that_of_the_page(text, printed)
+            printed_output_agrees_with_the_page(text, printed)
             pictures_are_made(text, root, keep)
-            what_to_try_is_accepted(page, text, root)
+            suggested_commands_are_accepted(page, text, root)
     except Failed as failed:
         sys.exit(f"FAILED {page}: {failed}")
     print(f"passed {page}")

@@ -40,7 +40,7 @@ def a_finished_run_is_deleted_only_when_asked():
     check(pathlib.Path("notes/notes.txt").read_text() == "mine", "a file that is no result is gone")
 
 
-def a_sweep_names_its_own_directories():
+def runs_with_changed_keys_have_directories_named_after_the_keys():
     deck(DECK)
     deck("Tanktread: {Time: {final time: 0.05}}", "over lay.yaml")
     for ca in "0.2", "0.3":
@@ -52,7 +52,7 @@ def a_sweep_names_its_own_directories():
     check(max(map(len, found)) == 100, found)
 
 
-def a_file_that_cannot_be_read_stops_and_nothing_is_removed():
+def a_file_that_cannot_be_read_ends_the_run_and_nothing_is_removed():
     run(deck(DECK), "--output", "out", "--quiet")
     before = sorted(path.name for path in pathlib.Path("out").iterdir())
     newest = sorted(pathlib.Path("out").glob("snapshot_*.hdf"))[-1]
@@ -63,7 +63,7 @@ def a_file_that_cannot_be_read_stops_and_nothing_is_removed():
     check(newest.is_symlink() and before == sorted(path.name for path in pathlib.Path("out").iterdir()), "a file is gone")
 
 
-def files_of_another_run_or_changed_ones_are_refused():
+def changed_files_and_files_of_another_run_are_rejected():
     deck(DECK)
     for name in "out", "other":
         run("deck.yaml", "--output", name, "--quiet")
@@ -79,7 +79,7 @@ def files_of_another_run_or_changed_ones_are_refused():
     _refused("flipped", "run.h5", "differ from what was written")
 
 
-def what_standard_output_does_not_take_is_an_error():
+def a_failed_write_to_standard_output_is_an_error():
     import subprocess
 
     from harness import command

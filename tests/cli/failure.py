@@ -43,19 +43,19 @@ def _fails(*settings):
     return said
 
 
-def too_small_a_step_stops_and_a_looser_tolerance_goes_on():
+def a_run_with_too_small_steps_ends_and_continues_with_a_larger_tolerance():
     said = _fails("Time/minimum step=2e-3", "Time/tolerance=1e-9", "Time/initial step=0.01")
     check("minimum step" in said, said)
     _goes_on("out", "Time/tolerance=1e-4", "Time/minimum step=1e-9")
 
 
-def an_iteration_that_does_not_converge_stops_and_shorter_steps_go_on():
+def a_run_whose_iteration_diverges_ends_and_continues_with_shorter_steps():
     said = _fails("Time/scheme=crank-nicolson", "Time/fixed step=0.5", "Output/interval=0.5")
     check("did not converge" in said, said)
     _goes_on("out", "Time/fixed step=0.02")
 
 
-def a_stopped_run_has_a_checkpoint_and_goes_on():
+def a_stopped_run_has_a_checkpoint_and_continues():
     process = start(deck(DECK), "--set", "Time/tolerance=1e-9", "--set", "Time/final time=50", "--output", "out", "--quiet")
     end = time.monotonic() + 60
     while time.monotonic() < end and not (pathlib.Path("out/run.h5").exists() and len(series("out", "time")) > 3):
@@ -67,7 +67,7 @@ def a_stopped_run_has_a_checkpoint_and_goes_on():
     check(summary("out")["final"]["time"] == series("out", "time")[-1], "the summary is not of the last step")
 
 
-def a_run_in_a_long_step_stops_before_its_end_and_goes_on_to_the_same_bits():
+def a_run_stopped_within_a_long_step_continues_bitwise_equal():
     fine = ["--set", "Surface/elements per side=8", "--set", "Particle/viscosity ratio=5", "--set", "Time/final time=0.1"]
     run(deck(DECK), *fine, "--output", "whole", "--quiet")
     process = start(deck(DECK), *fine, "--output", "out", "--quiet")
@@ -96,7 +96,7 @@ def _told(signal_number, *arguments):
     return process.returncode, said
 
 
-def a_signal_before_the_first_step_ends_with_a_sentence():
+def a_signal_before_the_first_step_ends_the_run_with_one_sentence():
     rigid = ["--set", "Particle/motion=prescribed", "--set", "Particle/velocity=[1, 0, 0]", "--set", "Flow/type=quiescent"]
     code, said = _told(signal.SIGTERM, deck("Tanktread:\n  Surface: {elements per side: 6}\n"), *rigid, "--output", "rigid", "--quiet")
     check(code == 4 and said == "tanktread: stopped by a signal before any results were written\n", code, said)
@@ -104,7 +104,7 @@ def a_signal_before_the_first_step_ends_with_a_sentence():
     check(code == 4 and said == "tanktread: stopped by a signal before any results were written\n", code, said)
 
 
-def nobody_needs_to_listen():
+def a_closed_standard_output_does_not_end_the_run():
     words = command(deck(DECK), "--output", "out")
     reader, writer = os.pipe()
     os.close(reader)
@@ -113,7 +113,7 @@ def nobody_needs_to_listen():
     check(code == 0 and summary("out")["status"] == "done", f"exit code {code}")
 
 
-def a_solver_that_fails_at_a_trial_shape_makes_the_step_shorter():
+def a_solver_that_fails_at_a_trial_shape_shortens_the_step():
     # an explicit scheme, because the stages of implicit schemes do not solve the linear system for the velocity
     short = ["Time/scheme=bs3", "Particle/viscosity ratio=5", "Solvers/Belos/Maximum Iterations=8", "Time/initial step=3", "Time/final time=3",
              "Output/interval=3"]
@@ -125,7 +125,7 @@ def a_solver_that_fails_at_a_trial_shape_makes_the_step_shorter():
     check(newest == f"snapshot_{len(times) - 1:06d}.hdf", f"{newest} is not of the last of {len(times)} rows")
 
 
-def a_directory_belongs_to_one_run_at_a_time():
+def only_one_run_at_a_time_may_write_to_a_directory():
     process = start(deck(DECK), "--set", "Time/tolerance=1e-9", "--set", "Time/final time=50", "--output", "out", "--quiet")
     while process.poll() is None and not (pathlib.Path("out/run.h5").exists() and len(series("out", "time")) > 3):
         time.sleep(0.02)
@@ -137,7 +137,7 @@ def a_directory_belongs_to_one_run_at_a_time():
     run("--resume", "out", "--set", "Time/final time=0.5", "--set", "Time/tolerance=1e-4", "--quiet")
 
 
-def a_file_beyond_the_limit_is_an_error_of_writing():
+def exceeding_the_file_size_limit_is_a_write_error():
     words = " ".join(f"'{word}'" for word in command(deck(DECK), "--output", "out", "--quiet"))
     result = subprocess.run(["bash", "-c", f"ulimit -f 40; {words}"], capture_output=True, text=True, timeout=60)
     check(result.returncode == 3 and "cannot write" in result.stderr, result.returncode, result.stderr)
@@ -156,7 +156,7 @@ def a_run_stops_at_its_wall_clock_limit():
     check(len(said.splitlines()) == 1 and "wall-clock limit" in said and not pathlib.Path("held").exists(), said)
 
 
-def what_only_the_first_rank_meets_ends_all_of_them():
+def an_error_on_the_first_rank_ends_all_ranks():
     pathlib.Path("file").write_text("")
     said = run(deck(DECK), "--output", "file/out", "--quiet", ranks=2, code=2, timeout=60).stderr
     ours = [line for line in said.splitlines() if line.startswith("tanktread:")]
@@ -166,7 +166,7 @@ def what_only_the_first_rank_meets_ends_all_of_them():
     check(sum(line.startswith("tanktread: cannot write") for line in said.splitlines()) == 1, said)
 
 
-def a_checkpoint_of_another_version_is_refused():
+def a_checkpoint_of_another_version_is_rejected():
     import h5py
 
     run(deck(DECK), "--set", "Time/final time=0.1", "--output", "out", "--quiet")

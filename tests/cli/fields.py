@@ -29,7 +29,7 @@ def _two(particle, apart):
     return _deck(Particles={"a": particle, "b": {**particle, "center": apart}}, **STEPS)
 
 
-def particles_far_apart_do_what_one_does():
+def distant_particles_behave_like_single_ones():
     for particle, names in (DROP, ("taylor_inertia", "largest_concentration")), (CAPSULE, ("taylor_inertia", "membrane_dissipation")):
         for output, text in ("one", _one(particle, Symmetry={"use": "none"}, **STEPS)), ("two", _two(particle, [0, 1000, 0])):
             run(text, "--output", output, "--quiet", "--overwrite")
@@ -39,7 +39,7 @@ def particles_far_apart_do_what_one_does():
             check(off < 1e-9, f"{name} differs by {off}")
 
 
-def implicit_steps_do_what_explicit_ones_do():
+def implicit_and_explicit_steps_agree():
     for particle, names in (DROP, ("taylor_inertia", "largest_concentration")), (CAPSULE, ("taylor_inertia", "energy")):
         for scheme in "tr-bdf2", "bdf3", "bs3":
             run(_one(particle), "--set", f"Time/scheme={scheme}", "--set", "Time/tolerance=1e-6", "--output", scheme, "--quiet", "--overwrite")
@@ -65,7 +65,7 @@ def ranks_and_resumed_runs_agree():
             check(off <= most, f"{other} differs by {off}")
 
 
-def a_steady_search_finds_what_a_run_comes_to():
+def a_steady_search_finds_the_final_shape_of_a_run():
     flow = {"Flow": {"type": "uniaxial extension"}}
     slow = {**DROP, "Membrane": {"law": "surface tension", "capillary number": 0.05}}
     run(_one(slow, **flow, Steady={"tolerance": 1e-8}, Time={}), "--output", "steady", "--quiet")
@@ -77,7 +77,7 @@ def a_steady_search_finds_what_a_run_comes_to():
     check(abs(series("steady", "surfactant_mass")[-1] - 1) < 1e-12, "the mass is off")
 
 
-def meshes_that_adapt_keep_the_mass():
+def adaptive_meshes_conserve_the_mass():
     flow = {"Flow": {"type": "uniaxial extension"}, "Adaptation": {"enabled": True}}
     strong = {**DROP, "Membrane": {"law": "surface tension", "capillary number": 0.2}}
     run(_one(strong, **flow, Time={"scheme": "tr-bdf2", "final time": 1}), "--output", "adapted", "--quiet")
@@ -99,7 +99,7 @@ def _theory(l, tension, elasticity, diffusivity):
 
 
 def modes_of_a_drop_at_rest_are_those_of_linear_theory():
-    """Second harmonics of shape and surfactant on a sphere, which decay together; nothing else decays more slowly but the first of the surfactant."""
+    """The second harmonics of shape and concentration on a sphere decay together. Only the first harmonic of the concentration decays more slowly."""
     text = """Tanktread:
   Flow: {type: quiescent}
   Particle: {viscosity ratio: %g}

@@ -68,7 +68,7 @@ def an_error_of_the_runs_is_smooth_along_a_curve_and_does_not_average_out():
         check(abs(square - 2000) < 5 * numpy.sqrt(2 * 2000), f"wave number {wave}: chi square {square}")
 
 
-def curves_give_back_two_unknowns_and_tell_the_law():
+def a_fit_to_curves_recovers_two_unknowns_and_the_law():
     deck(SHEAR)
     truth = tanktread.run(pathlib.Path("deck.yaml").resolve(), {"Membrane/capillary number": 0.2, "Particle/viscosity ratio": 2.0})
     for name in "taylor_inertia", "inclination":
@@ -86,7 +86,7 @@ def curves_give_back_two_unknowns_and_tell_the_law():
     check(said.count("a further experiment, Flow/shear rate") == 2 and "correlation of" in said, said)
 
 
-def a_relaxation_tells_the_viscosity_of_a_membrane():
+def a_fit_to_a_relaxation_recovers_the_viscosity_of_a_membrane():
     """The data are the ratio of length to width of an ellipsoid that relaxes, with an unknown origin of time. Each law
     has its own unknown and start value."""
     deck("""
@@ -112,7 +112,7 @@ Tanktread:
     check("Particle/viscosity ratio" in _found("without"), said)
 
 
-def what_data_do_not_determine_is_said():
+def undetermined_unknowns_are_reported():
     deck(STILL)
     numpy.savetxt("circle.csv", _ellipse(1.2, 0.9), delimiter=",")
     one = {"deck": "deck.yaml", "unknown": {"Particle/radius": 1.3, "Membrane/shear modulus": 1.0},
@@ -129,7 +129,7 @@ def what_data_do_not_determine_is_said():
     close(_found()["Particle/radius"][1], 0.02, 4e-4, "error of the radius, which is that of the scale")
 
 
-def a_value_known_beforehand_counts():
+def a_known_value_contributes_to_the_fit():
     deck(STILL)
     numpy.savetxt("circle.csv", _ellipse(1.2, 0.9), delimiter=",")
     said = _fit({"deck": "deck.yaml", "unknown": {"Particle/radius": {"start": 1.1, "known": 1.2, "error": 1e-4}},
@@ -137,7 +137,7 @@ def a_value_known_beforehand_counts():
     close(_found()["Particle/radius"][0], 1.2, 1e-3, said)
 
 
-def a_value_at_a_bound_is_named():
+def an_unknown_at_a_bound_is_reported():
     deck(STILL.replace("per side: 8", "per side: 3"))
     data = [{"series": "length_x1", "value": 2.4, "error": 0.03}, {"series": "length_x3", "value": 1.8, "error": 0.03}]  # radius 1, error 0.01
     for given, bound in (({"start": 1.1, "from": 1.05}, "from"), ({"start": 0.9, "to": 0.97}, "to"), ({"start": 1.1, "from": 0.98, "to": 1.2}, None)):
@@ -148,7 +148,7 @@ def a_value_at_a_bound_is_named():
         check(bound is None or f"Particle/radius lies at its bound `{bound}`: a {'smaller' if bound == 'from' else 'larger'} value" in said, said)
 
 
-def an_outline_is_that_of_the_shape():
+def the_outline_of_a_shape_is_exact():
     deck(STILL.replace("initial shape:", "orientation: [0.0, 30.0, 0.0], initial shape:"))
     shot = tanktread.run("deck.yaml").snapshots()[0]
     turn = numpy.radians(30)
@@ -172,7 +172,7 @@ def _picture(noise, generator, pixels=256, finer=8):
     return image, silhouette.Outline(edge)
 
 
-def an_edge_is_found_to_a_twentieth_of_a_pixel():
+def an_edge_in_an_image_is_found_to_a_twentieth_of_a_pixel():
     generator = numpy.random.default_rng(1)
     for noise, bound in (0.0, 0.015), (0.02, 0.05):  # without the correction of the shift by blur, the error is 0.024
         image, edge = _picture(noise, generator)
@@ -192,7 +192,7 @@ def an_edge_is_found_to_a_twentieth_of_a_pixel():
     check(said.returncode == 2 and "does not close" in said.stderr and said.stderr.count("\n") == 1, said)
 
 
-def mistakes_are_one_sentence():
+def mistakes_are_reported_in_one_sentence():
     deck(SHEAR)
     numpy.savetxt("arc.csv", _ellipse(1, 1)[:40], delimiter=",")
     numpy.savetxt("circle.csv", _ellipse(1, 1), delimiter=",")

@@ -44,7 +44,7 @@ def _same(one, other, tolerance=0.0, but=()):
             close(_row(other)[name], value, tolerance * max(1, abs(value)), f"{name} of {other}")
 
 
-def a_table_of_a_file_is_that_of_the_deck():
+def a_table_from_a_file_gives_the_same_run_as_one_in_the_deck():
     run(deck(SHEAR % IN_LISTS), "--output", "lists", "--quiet")
     pathlib.Path("beside").mkdir()
     pathlib.Path("beside/pump.csv").write_text(IN_FILE)
@@ -58,7 +58,7 @@ def a_table_of_a_file_is_that_of_the_deck():
     check(_row("turning") != _row("lists"), "angles turn nothing")
 
 
-def an_intrinsic_viscosity_is_that_of_the_flow_at_its_time():
+def the_intrinsic_viscosity_refers_to_the_current_flow():
     steps = "  Time: {scheme: bs3, fixed step: 0.1, final time: 0.2}\n"
     head = "Tanktread:\n  Flow: {type: simple shear, history: {times: [0, 0.2], amplitudes: [0.5, %s]}}\n"
     deck(head % 0.0 + steps + "  Particle: {motion: free}\n  Surface: {elements per side: 4}\n", "only.yaml")
@@ -69,7 +69,7 @@ def an_intrinsic_viscosity_is_that_of_the_flow_at_its_time():
         check(abs(found[:-1] - 2.5).max() < 0.01 and numpy.isnan(found[-1]), f"{name}: {found}")  # NaN: no flow at the end
 
 
-def a_run_goes_on_with_the_table_that_it_began_with():
+def a_resumed_run_uses_its_copy_of_the_table():
     pathlib.Path("pump.csv").write_text(IN_FILE)
     run(deck(SHEAR % "file: pump.csv"), "--output", "whole", "--quiet")
     run(deck(SHEAR % "file: pump.csv"), "--output", "part", "--quiet", "--set", "Time/final time=0.2")
@@ -78,7 +78,7 @@ def a_run_goes_on_with_the_table_that_it_began_with():
     _same("whole", "part")
 
 
-def wrong_tables_are_refused():
+def wrong_tables_are_rejected():
     wrong = {"": "no row", "time, amplitude\n": "no row", "0\n": "1 entry", "0,1,2,3\n": "4 entries", "0,1\n1,2,3\n": "line 2", "0,1\n1,2,\n2,b\n": "\"b\" is not a number",
              "0,nan\n": "not a number", "1,1\n0,1\n": "line 2: times must", "-1,1\n": "line 1: times must", "0;1\n": "1 entry", "0,1e99\n": "not a number"}
     for text, words in wrong.items():
@@ -92,14 +92,14 @@ def wrong_tables_are_refused():
         check(said.count("\n") == 1 and "Flow/history" in said and words in said, more, said)
 
 
-def in_a_tube_an_amplitude_is_a_mean_velocity():
+def in_a_tube_the_amplitude_scales_the_mean_velocity():
     for name, particle, made_of in (("capsule", "", CAPSULE), ("viscous", ", viscosity ratio: 3", CAPSULE), ("free", ", motion: free, center: [0, 0, 0.1]", "Output: {}")):
         run(deck(TUBE % (2, "", particle, made_of, 0.2)), "--output", f"{name}_steady", "--quiet")
         run(deck(TUBE % (1, ", history: {times: [0], amplitudes: [2]}", particle, made_of, 0.2)), "--output", f"{name}_twice", "--quiet")
         _same(f"{name}_steady", f"{name}_twice", 1e-9, OVER_MEAN_VELOCITY)
 
 
-def a_body_in_a_tube_is_found_where_the_flow_rests_and_a_held_pressure_drop_follows_the_amplitude():
+def in_a_tube_a_run_may_start_at_zero_amplitude_and_a_prescribed_pressure_drop_scales_with_the_amplitude():
     sine = ", history: {type: sine, frequency: 1.0}"  # zero at the start
     run(deck(TUBE % (1, sine, ", motion: free, center: [0, 0, 0.1]", "Output: {interval: 0.1}", 0.1)), "--output", "sine", "--quiet")
     drop = series("sine", "disturbed_pressure_drop")
@@ -122,7 +122,7 @@ def a_capsule_in_a_tube_whose_flow_stops_comes_to_rest():
     check(abs(drop[-1]) < 0.05 * abs(drop[while_it_flows][-1]), drop)
 
 
-def an_initial_shape_in_a_tube_relaxes_to_where_the_resting_one_gets():
+def an_initial_shape_in_a_tube_reaches_the_same_steady_shape_as_the_resting_shape():
     text = TUBE % (1, "", "%s", CAPSULE, 3)
     run(deck(text % ""), "--output", "resting", "--quiet")
     run(deck(text % ", initial shape: {stretch: [1.2, 0.9, 0.95]}"), "--output", "stretched", "--quiet")
@@ -134,7 +134,7 @@ def an_initial_shape_in_a_tube_relaxes_to_where_the_resting_one_gets():
     close(series("goes_on", "taylor_inertia")[0], series("resting", "taylor_inertia")[-1], 1e-9, "taylor_inertia of the other run")
 
 
-def an_initial_shape_that_does_not_fit_into_its_tube_is_refused():
+def an_initial_shape_that_does_not_fit_into_its_tube_is_rejected():
     for shape in "stretch: [1, 2, 1], volume: own", "stretch: [0.2, 2.5, 2]", "map: [1, 0, 0, 0, 1, 0, 0, 2, 1]":
         said = run(deck(TUBE % (1, "", f", initial shape: {{{shape}}}", CAPSULE, 1)), "--output", "through", "--quiet", code=2).stderr
         check(said.count("\n") == 1 and "does not fit into the tube" in said, said)

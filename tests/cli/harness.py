@@ -1,8 +1,8 @@
-"""What the scripts of tests/cli share. A script is called as `<name>.py <tanktread> <source directory>` and reads like this:
+"""Functions shared by the scripts of tests/cli. A script is called as `<name>.py <tanktread> <source directory>` and reads like this:
 
     #!/usr/bin/python3
     # label: long                     (optional: left out of the default run)
-    # ranks: 2                        (optional: processors it takes)
+    # ranks: 2                        (optional: number of processors that it uses)
     from harness import check, main, run
 
     def an_unknown_key_is_named():
@@ -65,7 +65,7 @@ def deck(text, name="deck.yaml"):
 
 
 def command(*arguments, ranks=1):
-    """The command line of the program."""
+    """Returns the command line of the program."""
     words = [str(SOURCE / a) if isinstance(a, str) and "/" in a and (SOURCE / a).is_file() else str(a) for a in arguments]
     launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
     return [*launcher, str(PROGRAM), *words]
@@ -160,7 +160,7 @@ def shown(page):
 
 
 def series(results, name):
-    """One series of a run, as a numpy array."""
+    """Returns a series of a run as a numpy array."""
     import h5py
 
     with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
@@ -168,7 +168,7 @@ def series(results, name):
 
 
 def summary(results):
-    """The summary of a run, as a dictionary."""
+    """Returns the summary of a run as a dictionary."""
     import yaml
 
     return yaml.safe_load((pathlib.Path(results) / "summary.yaml").read_text())
@@ -182,7 +182,7 @@ def _outcome(test):
         try:
             test()
             return True, f"passed {test.__name__.replace('_', ' ')} ({time.perf_counter() - start:.1f} s)"
-        except Exception as error:  # the other tests of the script are run all the same
+        except Exception as error:  # the other tests of the script are run too
             said = str(error) if isinstance(error, Failed) else traceback.format_exc()
             return False, "FAILED " + test.__name__.replace("_", " ") + "\n" + said
         finally:

@@ -57,7 +57,7 @@ KEYS = _keys()
 
 
 def _dumped(tree):
-    """A deck as text; what is a `Raw` stands in it as it is."""
+    """Returns a deck as text. A value of type `Raw` is inserted verbatim."""
     lines = []
 
     def write(name, value, indent):
@@ -162,7 +162,7 @@ MUTATIONS = [_values_changed, _values_changed, _value_of_the_deck_changed, _valu
 
 
 def _fault(name):
-    """Returns a sentence about what is wrong with the program's answer to the deck `name`, or nothing."""
+    """Returns a sentence that describes a wrong response of the program to the deck `name`, or an empty text."""
     try:
         result = subprocess.run(command(name, "--check", "--quiet"), capture_output=True, stdin=subprocess.DEVNULL, timeout=SECONDS)
     except subprocess.TimeoutExpired:
@@ -179,7 +179,7 @@ def _fault(name):
     return f"{traces} in: {lines[0][:500]}" if traces else ""
 
 
-def mutated_decks_are_checked_or_refused_in_one_sentence():
+def mutated_decks_are_checked_or_rejected_in_one_sentence():
     import yaml
 
     for outline in (SOURCE / "inputs").glob("*.csv"):

@@ -28,7 +28,7 @@ FIT = "deck: deck.yaml\nunknown: {Membrane/capillary number: {start: 0.3}}\nexpe
 CURVE, OUTLINE = "{series: taylor_inertia, curve: %s, error: 0.1}", "{outline: %s, scale: 1, error: 0.1}"
 PHASES = "deck: deck.yaml\nalong: {key: Flow/shear rate, from: 1, to: 2, within: 1.5}\nacross: {Particle/radius: [1]}\ncurves: {one: {}}\n"
 FROM_MANY_RUNS = {"step", "viscosity", "tweezers", "treading", "recovery"}  # figures that make their runs from a deck or study
-CASES = []  # (words of the command, exit code, what it said)
+CASES = []  # (words of the command, exit code, standard error)
 
 
 def _ended(*words):
@@ -71,7 +71,7 @@ def _drawn_from_runs():
     return [name for name in figures.FIGURES if name not in FROM_MANY_RUNS]
 
 
-def records_that_are_cut_or_lack_something():
+def truncated_or_incomplete_records():
     _run()
     bad = [_damaged("no_series", lambda file: file.pop("series")), _damaged("no_deck", lambda file: file.pop("deck")),
            _damaged("no_unit", lambda file: file["series/volume"].attrs.pop("unit"))]
@@ -89,7 +89,7 @@ def records_that_are_cut_or_lack_something():
     _all_refused()
 
 
-def series_that_are_missing_or_nan():
+def missing_or_nan_series():
     _run()
 
     def nan(file):
@@ -117,7 +117,7 @@ def series_that_are_missing_or_nan():
     _all_refused()
 
 
-def snapshots_and_summaries_that_are_cut():
+def truncated_snapshots_and_summaries():
     _run()
     for name, part, share in (("a", "run.hdf.series", 0.5), ("b", "summary.yaml", 1), ("c", "snapshot", 0.5), ("d", "snapshot", 0)):
         shutil.copytree("one", name)
@@ -136,7 +136,7 @@ def snapshots_and_summaries_that_are_cut():
     _all_refused()
 
 
-def snapshots_that_have_no_names_or_fields_and_scenes_that_lack_what_is_drawn():
+def snapshots_and_scenes_without_the_data_of_a_figure():
     _run()
     for name, text in ("a", '{"files": [{"name": 3}]}'), ("b", '{"files": 1}'), ("c", '{"files": [{"name": "x.hdf", "time": "t"}]}'):
         shutil.copytree("one", name)
@@ -157,7 +157,7 @@ def snapshots_that_have_no_names_or_fields_and_scenes_that_lack_what_is_drawn():
     _all_refused()
 
 
-def tables_that_are_empty_or_no_tables():
+def empty_tables_and_files_that_are_not_tables():
     _run()
     _run("wall", DECK.replace("  Membrane:", "  Particle: { center: [0, 0, 1.5] }\n  Wall: { point: [0, 0, 0], normal: [0, 0, 1] }\n  Membrane:"))
     _run("pair", DECK.replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n  Surface: { elements per side: 3 }\n",
@@ -184,7 +184,7 @@ def tables_that_are_empty_or_no_tables():
     _all_refused()
 
 
-def studies_that_are_no_studies():
+def files_that_are_not_studies():
     deck(DECK)
     for name, content in (("empty.yaml", b""), ("binary.yaml", b"\x00\xff\xfe"), ("latin.yaml", "deck: für.yaml".encode("latin-1")), ("list.yaml", b"[1, 2]"),
                           ("cut.yaml", STUDY.encode()[:40]), ("csv.yaml", b"deck: x.csv\n")):
@@ -199,7 +199,7 @@ def studies_that_are_no_studies():
     _all_refused()
 
 
-def results_of_studies_that_are_cut():
+def truncated_results_of_studies():
     deck(DECK)
     pathlib.Path("study.yaml").write_text(STUDY)
     check(_ended("sweep", "study.yaml", "--jobs", "1")[0] == 0, "the sweep")
@@ -226,7 +226,7 @@ def results_of_studies_that_are_cut():
     check(_ended("sweep", "study.yaml", "--jobs", "1")[0] == 0, "runs whose notes are cut are made again")
 
 
-def pictures_that_are_no_pictures_and_places_that_cannot_be_written():
+def files_that_are_not_images_and_unwritable_paths():
     from matplotlib.image import imsave
 
     _run()
@@ -252,7 +252,7 @@ def pictures_that_are_no_pictures_and_places_that_cannot_be_written():
     _all_refused()
 
 
-def spaces_and_umlauts_are_taken():
+def file_names_with_spaces_and_umlauts_are_accepted():
     place = pathlib.Path("ein Ort für Läufe")
     place.mkdir()
     os.chdir(place)

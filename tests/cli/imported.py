@@ -28,7 +28,7 @@ def _written():
     return pathlib.Path("first/surface.iga")
 
 
-def a_written_surface_is_the_next_run_s_start():
+def a_written_surface_can_start_the_next_run():
     file = _written()
     run(deck(IMPORT % file), "--output", "second", "--quiet")
     close(series("second", "volume")[0], series("first", "volume")[-1], 1e-13, "volume")
@@ -48,7 +48,7 @@ def _refused(name, lines, *words):
     check(said.count("\n") == 0 and all(word in said for word in (name, *words)), said)
 
 
-def files_that_hold_no_closed_surface_are_refused_in_one_sentence():
+def files_without_a_closed_surface_are_rejected_in_one_sentence():
     lines = _written().read_text().splitlines()
     starts = [i for i, line in enumerate(lines) if line.startswith("belem")] + [len(lines)]
     count = next(i for i, line in enumerate(lines) if line.startswith("elemN"))
@@ -87,7 +87,7 @@ Tanktread:
     close(float(said.split("a particle of radius ")[1].split()[0]), 1.88, 0.04, "radius")  # the control point at the tip is at 1.60
 
 
-def keys_of_other_shapes_and_meshes_are_refused():
+def keys_of_other_shapes_and_meshes_are_rejected():
     file = _written()
     for setting, word in ("Surface/elements per side=6", "Surface"), ("Particle/radius=1", "Particle/radius"), ("Adaptation/enabled=true", "Adaptation"):
         result = run(deck(IMPORT % file), "--set", setting, "--check", code=2)
@@ -96,7 +96,7 @@ def keys_of_other_shapes_and_meshes_are_refused():
     check("nowhere.iga" in result.stderr, result.stderr)
 
 
-def a_file_is_found_beside_the_deck_and_a_run_goes_on_without_it():
+def a_file_is_found_next_to_the_deck_and_a_resumed_run_does_not_need_it():
     file = _written()
     pathlib.Path("decks").mkdir()
     file.rename("decks/surface.iga")  # the name that the run's own last surface has
@@ -109,7 +109,7 @@ def a_file_is_found_beside_the_deck_and_a_run_goes_on_without_it():
         close(series("part", name)[-1], series("whole", name)[-1], 1e-6, name)  # steps land on other snapshots
 
 
-def a_branch_finds_the_file_beside_the_deck_for_each_of_its_points():
+def a_branch_finds_the_file_next_to_the_deck_at_each_of_its_points():
     file = _written()
     pathlib.Path("branches").mkdir()
     file.rename("branches/surface.iga")
@@ -124,7 +124,7 @@ Tanktread:
     check(len(series("branch", "parameter")) >= 2, series("branch", "parameter"))
 
 
-def a_file_in_the_directory_of_results_stays():
+def a_surface_file_in_the_results_directory_is_not_deleted():
     file = _written()
     text = file.read_text()
     pathlib.Path("second").mkdir()

@@ -57,7 +57,7 @@ def _same_start(then, first):
     check(series(then, "taylor_inertia")[-1] < series(then, "taylor_inertia")[0], "it relaxes")
 
 
-def a_run_starts_from_the_end_of_another_and_goes_on_without_it():
+def a_run_starts_from_the_end_of_another_and_a_resumed_run_does_not_need_it():
     run(deck(FIRST % ("0.1", "false")), "--output", "first", "--quiet")
     newest = max(str(path) for path in pathlib.Path("first").glob("snapshot_*.hdf"))
     for shape in ("run: first", f"run: {newest}", "file: first/surface.iga"):
@@ -70,7 +70,7 @@ def a_run_starts_from_the_end_of_another_and_goes_on_without_it():
     close(series("then", "time")[-1], 0.05, 0, "time")
 
 
-def copies_move_and_turn_a_shape_from_a_file_or_run():
+def copies_translate_and_rotate_a_shape_from_a_file_or_run():
     run(deck(FIRST % ("0.05", "false")), "--output", "first", "--quiet", "--set", "Particle/center=[0.5, 0, 0]", "--set", "Particle/drift=held")
     deck("0, 0, 0\n4, 1, 0, 0, 0, 90\n", "positions.csv")
     for shape in "run: first", "file: first/surface.iga":
@@ -81,13 +81,13 @@ def copies_move_and_turn_a_shape_from_a_file_or_run():
                 close(series("then", f"many {copy}/length_x{k + 1}")[0], series("first", f"length_x{axes[k]}")[-1], 1e-9, "length")
 
 
-def random_copies_have_room_for_their_initial_shape():
+def random_copies_do_not_overlap_in_their_initial_shape():
     places = "initial shape: { stretch: [1, 1, 1.8], volume: own }\n      copies: { number: 4, box: [8, 8, 8], seed: 2 }"
     text = COPIES.replace("initial shape: { %s }\n      copies: { file: positions.csv }", places).replace("center: [0.5, 0, 0]", "radius: 1")
     run(deck(text), "--check", "--quiet")
 
 
-def a_volume_of_its_own_is_kept_and_found_again():
+def a_volume_other_than_the_resting_one_is_conserved_and_restored():
     run(deck(THEN % "stretch: [1.2, 0.9, 0.8], volume: own"), "--output", "own", "--quiet", "--set", "Time/final time=0.02")
     run("--resume", "own", "--quiet", "--set", "Time/final time=0.05")
     volume = series("own", "volume")
@@ -96,7 +96,7 @@ def a_volume_of_its_own_is_kept_and_found_again():
     close(series("own", "volume_error")[-1], 0, 1e-13, "volume_error")
 
 
-def another_run_s_mesh_is_taken_where_it_was_adapted():
+def the_adapted_mesh_of_another_run_is_used():
     run(deck(FIRST % ("0.5", "true")), "--output", "first", "--quiet")
     check(series("first", "n_control_points")[-1] > 98, "the first run refines")
     run(deck(THEN % "run: first" + ADAPTS), "--output", "then", "--quiet")
@@ -113,7 +113,7 @@ def a_stress_free_spheroid_keeps_its_points_on_an_adapted_mesh():
         close(series("then", "energy")[0] / series("first", "energy")[-1], 1, 1e-9, f"energy on {surface}")
 
 
-def another_mesh_is_refused_in_one_sentence():
+def another_mesh_is_rejected_in_one_sentence():
     run(deck(FIRST % ("0.01", "false")), "--output", "first", "--quiet")
     for shape, *more in (("run: first", "Surface/elements per side=5"), ("file: first/surface.iga", "Surface/elements per side=5"),
                          ("run: first", "Adaptation/enabled=true")):

@@ -23,7 +23,7 @@ def _installed():
     return place, os.environ | {"PATH": f"{place / 'bin'}:{os.environ['PATH']}", "TANKTREAD": ""}
 
 
-def a_scene_is_run_and_shown_by_what_is_installed():
+def the_installed_program_and_package_run_and_draw_a_scene():
     place, environment = _installed()
     pathlib.Path("mine.yaml").write_text(_done("tanktread", "--new", "capsule", env=environment))
     _done("tanktread", "mine.yaml", "--set", "Surface/elements per side=3", "--set", "Time/final time=0.2", "--output", "mine", "--quiet", env=environment)

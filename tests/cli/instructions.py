@@ -25,11 +25,11 @@ def _allowed():
     return re.search(r"TANKTREAD_INSTRUCTIONS: (.*) \(", said)[1].split(", ")
 
 
-def those_that_the_processor_lacks_are_refused_in_a_sentence():
+def unavailable_instruction_sets_are_rejected_in_one_sentence():
     check(_allowed()[0] == "baseline", _allowed())
 
 
-def the_plan_names_those_in_use():
+def the_plan_names_the_instruction_set():
     for instructions in _allowed():
         check(re.search(rf"kernels +{instructions}\b", _run_with(instructions, "--check").stdout), instructions)
 

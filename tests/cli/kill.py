@@ -49,7 +49,7 @@ def _snapshots_are_whole(results):
             check((results / entry["name"]).exists(), f"{entry['name']} is listed and missing")
 
 
-def a_run_that_is_killed_leaves_every_finished_step():
+def the_files_of_a_killed_run_contain_every_completed_step():
     deck(DECK)
     begin = time.monotonic()
     run("deck.yaml", "--output", "whole", "--quiet")

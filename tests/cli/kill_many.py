@@ -23,7 +23,7 @@ def _largest_difference(one, other):
     return max(numpy.max(numpy.abs(series(one, name) - series(other, name))) / max(1, numpy.max(numpy.abs(series(one, name)))) for name in SERIES)
 
 
-def what_is_killed_goes_on():
+def a_killed_run_is_resumed():
     whole, seconds = {}, {}
     for ranks in (1, 2):
         begin = time.monotonic()

@@ -43,7 +43,7 @@ def _with(**lists):
     return "\n".join(lines + [f"  {name}: {text}" for name, text in lists.items() if text]) + "\n"
 
 
-def the_same_lattice_by_other_cells_is_the_same():
+def results_do_not_depend_on_the_cell_that_describes_a_lattice():
     one = _row("one")
     tilted = _row("tilted", Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, 2.8, 0, 2.8]}")
     check(abs(tilted - one).max() < 1e-9, "a whole period of tilt:", tilted - one)
@@ -54,7 +54,7 @@ def the_same_lattice_by_other_cells_is_the_same():
     check(abs(beyond - one).max() < 1e-8, "in another cell:", beyond - one)
 
 
-def one_particle_is_a_list_of_one():
+def a_single_particle_equals_a_list_of_one_particle():
     """A deck with the section Particle gives the same run as a deck with the section Particles and one particle. Only
     the names of series differ, by the prefix of the particle. The runs agree to round-off, because the order of Eigen's
     sums depends on the alignment of vectors in memory."""
@@ -79,7 +79,7 @@ def one_particle_is_a_list_of_one():
                 check(difference(found[name][:], column[:], name) < 1e-13, kind, name, found[name][:], column[:])
 
 
-def gaps_reach_beyond_the_nearest_cells():
+def gaps_to_images_beyond_the_nearest_cells_are_found():
     """The long axis of the body points to its image one cell along x1 and two cells along x3. Up to the discretisation
     error at the tips, the tips have the distance |[2, 0, 4]| - 2 x 2.1 = 0.272. The smallest gap to an image in an
     adjacent cell is 0.532."""
@@ -101,7 +101,7 @@ def ranks_agree():
     check(abs(two - one).max() < 1e-10, two - one)
 
 
-def a_tilt_that_is_put_back_leaves_no_trace():
+def reducing_the_tilt_by_a_period_does_not_change_the_result():
     fine = "--set", "Quadrature/tolerance=1e-8", "--set", "Time/final time=0.06"
     # the tilt of the cell is reduced by one period at time 0.05
     before = _row("before", *fine, Domain="{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, 1.26, 0, 2.8]}")
@@ -110,7 +110,7 @@ def a_tilt_that_is_put_back_leaves_no_trace():
     check(abs(before - after).max() < 1e-8, before - after)
 
 
-def what_has_left_its_cell_is_told_with_what_takes_it_back():
+def snapshots_contain_the_lattice_vector_that_moves_a_particle_into_the_cell():
     _row("left", "--set", "Particles/one/center=[0.3, 5.8, -2.7]")
     cell = numpy.array([[series("left", f"cell_{k}_x{i}")[-1] for i in (1, 2, 3)] for k in (1, 2, 3)])
     check(abs(cell - [[2.8, 0, 0], [0, 2.8, 0], [0.04 * 2.8, 0, 2.8]]).max() < 1e-12, "not the sheared cell", cell)
@@ -121,7 +121,7 @@ def what_has_left_its_cell_is_told_with_what_takes_it_back():
     check(abs(middle[1] - 5.8) < 0.1 and (abs((middle + shift[0]) @ numpy.linalg.inv(cell)) < 0.51).all(), "not taken into the cell", middle, shift[0])
 
 
-def a_run_is_resumed_with_its_lattice_where_it_was():
+def a_resumed_run_has_the_lattice_of_its_checkpoint():
     run(deck(DECK), "--output", "whole", "--quiet", "--set", "Output/interval=0.02")
     run(deck(DECK), "--output", "parts", "--quiet", "--set", "Output/interval=0.02", "--set", "Time/final time=0.02")
     run("--resume", "parts", "--quiet", "--set", "Time/final time=0.04")
@@ -129,7 +129,7 @@ def a_run_is_resumed_with_its_lattice_where_it_was():
         check(abs(series("whole", name) - series("parts", name)).max() < 1e-12, name)
 
 
-def a_lattice_follows_a_flow_that_turns():
+def a_lattice_follows_a_rotating_flow():
     """A shear flow whose axes rotate at a constant rate about x2 is a steady flow in the rotating frame, where the
     rotation is subtracted from its gradient. The two particles differ in size, so that nothing is equal by symmetry.
     Both runs use the same steps; they differ by the time integration error of bs3 in the two frames."""
@@ -151,7 +151,7 @@ def a_lattice_follows_a_flow_that_turns():
         check(off < 1e-5 * max(1, abs(series("steady", name)).max()), name, off)
 
 
-def a_lattice_goes_to_and_fro_with_its_flow():
+def a_lattice_follows_an_oscillating_flow():
     """The position of a rigid body and the lattice depend only on the time integral of the amplitude. It is 0.04 in all
     three runs, which therefore end at the same state."""
     spheroid = "{motion: free, shape: spheroid, semi-axes: [1.2, 0.8, 0.8], center: [0.3, 0.2, 0.1]}"
@@ -167,7 +167,7 @@ def a_lattice_goes_to_and_fro_with_its_flow():
     check(numpy.isnan(viscosity[-1]) and numpy.isfinite(viscosity[:-1]).all(), "not undefined where the flow rests:", viscosity)
 
 
-def a_parabolic_flow_goes_along_its_periods():
+def a_parabolic_flow_has_the_periods_of_its_lattice():
     """A particle that is shifted by a lattice vector has the same velocity. For a long period, the velocity tends to
     that of a single particle in unbounded fluid."""
     names = "one/velocity_x1", "one/velocity_x3", "one/energy", "one/stresslet_13"
@@ -183,7 +183,7 @@ def a_parabolic_flow_goes_along_its_periods():
     check(far[1] < 1e-2 and far[0] > 3 * far[1], "a long period is not that of one particle:", far)
 
 
-def a_steady_shape_on_a_lattice_is_where_a_run_ends():
+def a_steady_shape_on_a_lattice_is_the_final_shape_of_a_run():
     """In a shear along the plane of a lattice with two periods, the cell does not deform. The search for a steady shape
     finds the shape that a run in time approaches. They differ by 6e-4, because their control points are at different
     positions, and by the time integration error."""
@@ -222,7 +222,7 @@ Tanktread:
     check(abs(gap - gap[0]).max() < 1e-9, "the gap changes:", gap)
 
 
-def what_no_lattice_can_do_is_refused():
+def decks_that_are_impossible_on_a_lattice_are_rejected():
     for lists, words in (
         ({"Flow": "{type: parabolic, half width: 3.0}"}, ["Domain", "parabolic", "same in every cell"]),
         ({"Flow": "{type: parabolic, profile: plane, half width: 3.0, history: {times: [0, 1], angles: [0, 9], axis: x2}}",

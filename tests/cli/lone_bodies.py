@@ -33,9 +33,9 @@ def a_spheroid_aligns_with_an_extension():
     close(series("found", "leading_rate")[-1], 0, 2e-3, "of a rotation about the axis")
 
 
-def pressure_drops_in_ducts_superpose():
+def pressure_drops_in_ducts_are_additive():
     """Stokes flow is linear: a body that moves in fluid at rest, and the body at rest in the flow, together are the body
-    that moves in the flow. A free body under a force is the body that is told to move as it does."""
+    that moves in the flow. A free body under a force behaves like a body with a prescribed equal velocity."""
     moves = "velocity: [1, 0.2, 0.1], angular velocity: [0.1, 0.3, 0.2]"
     text = """Tanktread:
   Flow: {type: %s}
@@ -61,7 +61,7 @@ def pressure_drops_in_ducts_superpose():
             check(abs(free - told) < 1e-8 * abs(told), f"{duct}, {flow}: {free} if free, {told} if prescribed")
 
 
-def a_channel_at_rest_has_no_pressure_drop_of_its_own():
+def errors_in_a_channel_at_rest_do_not_depend_on_the_unit_of_time():
     """Measures of error refer to a speed of the scene: they do not depend on the unit of time."""
     text = """Tanktread:
   Flow: {type: quiescent, viscosity: %g}
@@ -124,7 +124,7 @@ def a_wall_pushes_a_body():
         check(series("found", f"velocity_x{component}")[0] < 0, "it moves towards the wall")
 
 
-def what_is_told_of_a_body_holds_in_a_flow_that_changes():
+def series_of_a_prescribed_body_refer_to_the_current_flow():
     """The torque on a sphere at rest in a simple shear of rate a(t) is 8 pi mu R^3 a(t)/2."""
     told = "type: simple shear, history: {type: sine, mean: 1, amplitude: 0.5, frequency: 1}"
     run(deck(ALONE % (told, "prescribed", "")), "--output", "found", "--quiet")

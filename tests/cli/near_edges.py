@@ -21,28 +21,28 @@ def _said(*settings, code=0):
     return told, summary("out")["warnings"] if code == 0 else None
 
 
-def a_healthy_run_is_silent():
+def a_normal_run_gives_no_warning():
     check(_said() == ([], []), _said())
 
 
-def compression_without_bending_is_told_once_with_the_cure():
+def compression_without_bending_stiffness_is_reported_once_with_advice():
     told, kept = _said(*LOW)
     check(len(told) == 1 and len(kept) == 1 and kept[0] in told[0] and "Membrane/bending modulus" in told[0], told, kept)
 
 
-def bending_or_inflation_silences_it():
+def bending_stiffness_or_pre_inflation_avoids_the_warning():
     for cure in "Membrane/bending modulus=2.0", "Membrane/pre-inflation=0.05":
         told, kept = _said(*LOW, cure)
         check(told == [] and kept == [], cure, told, kept)
 
 
-def a_whole_area_that_makes_steps_many_is_told():
+def a_total_area_modulus_that_needs_many_steps_is_reported():
     few, many = (_said("Membrane/global area dilatation=" + k, "Time/final time=0.01") for k in ("1e4", "1e5"))
     check(few == ([], []), few)
     check(len(many[0]) == len(many[1]) == 1 and "of 1e4" in many[0][0], many)
 
 
-def a_fixed_step_beyond_the_limit_is_told_before_the_run_fails():
+def a_fixed_step_beyond_the_stability_limit_is_reported_before_the_run_fails():
     told, _ = _said("Time/scheme=bs3", "Time/fixed step=0.3", "Membrane/capillary number=0.1", "Time/final time=30", code=3)
     check(any("Time/scheme" in line for line in told), told)
 

@@ -96,7 +96,7 @@ def a_virtual_environment_imports_the_package_from_another_folder():
     check("deformation" in _done(pathlib.Path.cwd() / "V/bin/tanktread-figure", "--list", cwd="/"), "the commands")
 
 
-def positions_are_those_of_the_nodes_and_of_the_sphere():
+def positions_are_exact_at_nodes_and_on_a_sphere():
     errors = []
     for n in 3, 6:
         shot = _run(f"sphere{n}", CAPSULE.replace("per side: 3", f"per side: {n}").replace("final time: 0.2", "final time: 1.0e-3")).snapshots()[0]
@@ -131,7 +131,7 @@ def particles_have_names_and_series_whether_one_or_several():
         check("no particle nobody" in str(mistake), mistake)
 
 
-def series_go_to_pandas_and_xarray_with_units():
+def series_are_converted_to_pandas_and_xarray_with_units():
     runs = [_run("one", CAPSULE), _run("two", PAIR), _run("tube", TUBE), _run("lattice", PAIR + "  Domain: { lattice vectors: [6, 0, 0, 0, 4, 0, 0, 0, 4] }\n")]
     for found in runs:
         if _has("pandas"):
@@ -221,7 +221,7 @@ def _all_figures():
 ELSEWHERE = {"growth_rates", "step", "viscosity", "tweezers", "treading", "recovery"}
 
 
-def every_figure_is_drawn_and_takes_axes():
+def every_figure_is_drawn_and_accepts_axes():
     made = list(_all_figures())
     check({name for name, *_ in made} | ELSEWHERE == set(figures.FIGURES), "figures without a test", set(figures.FIGURES) - {name for name, *_ in made})
     for name, given, options in made:
@@ -265,7 +265,7 @@ def settings_may_be_arrays_of_numpy():
     check("Particle/semi-axes" in _mistake(lambda: tanktread.run(path, {"Particle/semi-axes": numpy.eye(3)})), "a matrix")
 
 
-def wrong_arguments_of_the_package_are_one_sentence():
+def wrong_arguments_of_the_package_are_reported_in_one_sentence():
     from tanktread.studies import fit, sweep
     deck("deck: deck.yaml\nrecord: [area]\n", "study.yaml")
     for jobs in 0, -1, 1.5, "2", None:
@@ -308,7 +308,7 @@ def the_name_of_a_run_is_found_by_reading_each_deck_once():
     check(tanktread.Study.name(paths, {}).startswith("other_"), "a deck that is not YAML")
 
 
-def the_command_below_a_chart_starts_from_the_source_directory():
+def the_command_below_a_chart_is_relative_to_the_source_directory():
     from tanktread.studies import common
     said = common.command_of(SOURCE / "tests/benchmark/atlas.py", "--map", "fixed step")
     check(said == "tests/benchmark/atlas.py --map 'fixed step'" and (SOURCE / said.split()[0]).is_file(), said)
@@ -325,7 +325,7 @@ def figures_of_experiments_are_drawn_from_their_runs():
     check(pathlib.Path("tweezers.png").exists(), "tweezers")
 
 
-def the_list_has_each_figure_with_its_caption():
+def the_list_of_figures_contains_each_figure_with_its_caption():
     words = " ".join(_done(SOURCE / "postproc/tanktread-figure", "--list").split())
     for name, function in figures.FIGURES.items():
         check(f"{name.replace('_', '-')} {figures.caption(function)}" in words, name, words)
@@ -334,7 +334,7 @@ def the_list_has_each_figure_with_its_caption():
         check("positional" in figures.parser_of(name).format_help(), name)
 
 
-def types_are_right():
+def type_annotations_are_correct():
     if shutil.which("mypy"):
         _done("mypy", "--cache-dir", pathlib.Path("cache").resolve(), cwd=SOURCE / "postproc")
     else:

@@ -109,7 +109,7 @@ def _check_order(grid):
                 check(upward @ normals[cell[j, i]] > 0, "a cell that is seen clockwise from outside")
 
 
-def snapshots_are_laid_out_as_the_format_says():
+def snapshots_satisfy_the_specification_of_the_format():
     for name, text in ("fixed", FIXED), ("refined", REFINED):
         run(deck(text), "--output", name, "--quiet")
         numbers = set()
@@ -120,7 +120,7 @@ def snapshots_are_laid_out_as_the_format_says():
         check((len(numbers) > 1) == (name == "refined"), numbers)
 
 
-def neighbours_share_the_points_of_their_sides():
+def adjacent_cells_share_the_points_of_their_common_side():
     run(deck(FIXED), "--output", "run", "--quiet")
     for grid in _grids("run"):
         sides = [tuple(side) for c in _cells(grid) for side in (c[0], c[:, -1], c[-1, ::-1], c[::-1, 0])]

@@ -15,7 +15,7 @@ DRIVEN = """Tanktread:
 SEARCH = "Periodic: {period: 2, tolerance: 1.0e-4}"
 
 
-def a_driven_motion_is_that_which_a_run_settles_to():
+def the_periodic_motion_is_the_limit_of_a_run_in_time():
     run(deck(DRIVEN % ("simple shear", "", SEARCH)), "--output", "found", "--quiet")
     run(deck(DRIVEN % ("simple shear", ", final time: 12", "Output: {interval: 12}")), "--output", "run", "--quiet")
     close(series("found", "period")[-1], 2, 0, "period")
@@ -23,18 +23,18 @@ def a_driven_motion_is_that_which_a_run_settles_to():
         close(series("found", name)[-1], series("run", name)[-1], 1e-3, name)  # ten times Periodic/tolerance
 
 
-def its_period_is_that_of_the_flow():
+def the_period_is_that_of_the_flow():
     refused(["Periodic/period", "multiple", "Flow/history"], deck(DRIVEN % ("simple shear", "", "Periodic: {period: 3.1}")), "--check")
 
 
-def its_unit_of_time_is_that_of_the_deck():
+def the_period_is_in_the_unit_of_time_of_the_deck():
     fast = DRIVEN.replace("type: %s,", "type: %s, shear rate: 1.0e+11,").replace("frequency: 0.5", "frequency: 0.5e+11")
     run(deck(DRIVEN % ("simple shear", "", SEARCH)), "--output", "slow", "--quiet")
     run(deck(fast % ("simple shear", "", SEARCH.replace("period: 2,", "period: 2.0e-11,"))), "--output", "fast", "--quiet")
     close(series("fast", "taylor_inertia")[-1], series("slow", "taylor_inertia")[-1], 1e-6, "D")
 
 
-def its_exponents_are_decay_rates_where_the_flow_is_weak():
+def floquet_exponents_in_a_weak_flow_are_decay_rates():
     """In a weak flow, the Floquet exponents are the decay rates of a sphere at rest, for disturbances with the parity
     of the motion and with another parity."""
     weak = DRIVEN.replace("amplitude: 1,", "amplitude: 1.0e-3,")
@@ -55,7 +55,7 @@ def its_exponents_are_decay_rates_where_the_flow_is_weak():
             check(min(abs(rate - other) for other in driven) < 5e-3, parity, rate, driven)
 
 
-def a_mesh_is_adapted_to_the_shape_that_comes_back():
+def the_mesh_is_adapted_to_the_periodic_shape():
     more = SEARCH + "\n  Adaptation: {enabled: true, surface tolerance: 2.0e-4}"
     run(deck(DRIVEN % ("simple shear", "", more)), "--output", "found", "--quiet")
     run(deck(DRIVEN % ("simple shear", "", SEARCH)), "--set", "Surface/elements per side=8", "--output", "fine", "--quiet")
@@ -75,7 +75,7 @@ PULSATING = """Tanktread:
 """
 
 
-def its_exponents_are_growth_rates_of_a_drop_where_the_flow_hardly_pulsates():
+def floquet_exponents_in_a_weakly_pulsating_flow_are_growth_rates_of_the_steady_drop():
     """The tangential motion of mesh points along the interface is not a change of the shape."""
     surfactant = "Interface: {%s, surfactant: {equation of state: Langmuir, elasticity number: 0.2, coverage: 0.5, Peclet number: 10}}"
     for interface in "Interface: {relaxation: 0.5}", "Interface: {relaxation: 2}", surfactant % "relaxation: 0.5":
@@ -92,7 +92,7 @@ def its_exponents_are_growth_rates_of_a_drop_where_the_flow_hardly_pulsates():
         check("surfactant" in interface or math.isnan(rates[-1]), "all modes of a drop are above the errors of the steps")
 
 
-def a_drop_in_a_shear_flow_that_pulsates_returns():
+def a_drop_in_pulsating_shear_has_a_periodic_motion():
     """Its mesh points slide along the interface, so that they do not return. Shape, surfactant and growth rates do."""
     surfactant = "Interface: {surfactant: {equation of state: Langmuir, elasticity number: 0.2, coverage: 0.5, Peclet number: 10}}"
     for interface, names in ("", ["taylor_inertia", "area"]), (surfactant, ["taylor_inertia", "area", "largest_concentration"]):
@@ -109,7 +109,7 @@ def a_drop_in_a_shear_flow_that_pulsates_returns():
     close(series("slow", "leading_rate")[-1], series("steady", "leading_rate")[-1], 0.02, "leading rate")
 
 
-def a_drop_in_a_pulsating_tube_returns_further_along_it():
+def a_drop_in_a_pulsating_tube_flow_has_a_periodic_shape_further_along_the_tube():
     """The search finds the shape and the mean velocity to which a run settles."""
     text = PULSATING % ("duct", "0.5", "Tube: {section: circle, periodic length: 6.0}", "6.0", "Particle: {shape: sphere, radius: 0.6}", 3, "1.0e-3",
                         "%s", "%s")

@@ -38,7 +38,7 @@ def _command(name, *arguments, code=0):
     return result.stdout + result.stderr
 
 
-def a_run_is_drawn():
+def all_figures_of_a_run_are_drawn():
     deck(DECK)
     run("deck.yaml", "--output", "results", "--quiet")
     pathlib.Path("curve.csv").write_text("t,taylor_inertia\n" + "".join(f"{0.05 * k},{0.05 * k}\n" for k in range(5)))
@@ -55,7 +55,7 @@ def a_run_is_drawn():
     check("colour" in said and "load" in said, said)
 
 
-def nothing_is_cut_off_at_the_edges_of_a_picture():
+def nothing_is_cut_off_at_the_edges_of_a_figure():
     tall = DECK.replace("shape: sphere }", "shape: ellipsoid, semi-axes: [0.4, 0.4, 2.0], motion: free }").replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n", "")
     run(deck(tall.replace("final time: 0.2", "final time: 0.001")), "--output", "tall", "--quiet")
     for name in "shape", "meshes":
@@ -119,7 +119,7 @@ def points_of_a_branch_are_named_by_their_numbers():
     style.plt.close("all")
 
 
-def a_suspension_that_ends_before_the_averages_begin_says_so():
+def a_suspension_that_ends_before_the_averages_begin_is_reported():
     deck("""
 Tanktread:
   Flow: { type: simple shear }
@@ -134,14 +134,14 @@ Tanktread:
     check("μ_eff/μ = 1." in _command("suspension", "lattice", "--from", "0.05"), "averages")
 
 
-def options_are_read_as_what_they_choose_from():
+def options_are_converted_to_the_type_of_their_choices():
     """An option with a few allowed numbers is read as a number. An option that is on by default can be switched off."""
     of = lambda name, *words: register.parser_of(name).parse_args(["results", *words])
     check(of("channel", "--across", "3").across == 3, "the section across a channel")
     check(of("work").parts and not of("work", "--no-parts").parts, "the parts of the error")
 
 
-def axis_and_label_of_time_agree():
+def the_axis_of_time_is_dimensionless_as_its_label_says():
     deck(DECK.replace("simple shear", "simple shear, shear rate: 500").replace("final time: 0.2", "final time: 0.0004").replace("interval: 0.1", "interval: 0.0002"))
     run("deck.yaml", "--output", "fast", "--quiet")
     close(tanktread.run("fast").time[-1], 0.2, 1e-12, "time times rate at the end")
@@ -159,7 +159,7 @@ def inclination_is_drawn_only_if_the_flow_has_no_axis_of_symmetry():
     check(labels == [both, both[:1], both], labels)
 
 
-def pictures_are_without_units():
+def figures_are_dimensionless():
     run(deck(DECK), "--output", "plain", "--quiet")
     micrometres = DECK.replace("simple shear", "simple shear, shear rate: 40, viscosity: 2.0e-2").replace("sphere", "sphere, radius: 3.0e-6")
     run(deck(micrometres.replace("final time: 0.2", "final time: 5.0e-3").replace("interval: 0.1", "interval: 2.5e-3")), "--output", "si", "--quiet")
@@ -187,7 +187,7 @@ def pictures_are_without_units():
         close(traction.mean(), {"drop": 2, "body": 1.5}[name], 0.02, name)
 
 
-def what_is_hidden_stays_hidden_and_colours_are_those_of_the_bar():
+def hidden_surfaces_are_hidden_and_colours_agree_with_the_colour_bar():
     deck(DECK.replace("shape: sphere", "shape: red cell").replace("final time: 0.2", "final time: 0.001"))
     run("deck.yaml", "--output", "cell", "--quiet")
     shot = tanktread.run("cell").snapshot_at(0)
@@ -208,7 +208,7 @@ def what_is_hidden_stays_hidden_and_colours_are_those_of_the_bar():
     check((abs(solid - [0.2, 0.4, 0.6]).max(axis=1) < render.RIM * 0.6).mean() > 0.75, "most of the surface has other colours than the bar")
 
 
-def an_axis_that_turns_over_is_no_vertical_line():
+def an_angle_that_jumps_is_not_drawn_as_a_vertical_line():
     t, angle = unbroken(numpy.arange(4.0), numpy.array([-80.0, -89.0, 88.0, 80.0]))
     check(numpy.isnan(angle[2]) and numpy.isnan(t[2]) and len(angle) == 5, angle)
 
@@ -237,13 +237,13 @@ def a_deck_is_run_when_it_has_no_results():
         check(pathlib.Path("results/deck/run.h5").stat().st_mtime_ns == before, "a run that is there is made again")
 
 
-def a_python_without_numpy_is_told_which_one_to_use():
+def a_python_without_numpy_gets_a_message_which_python_to_use():
     for script in "postproc/tanktread-figure", "postproc/tanktread-read", "tests/benchmark/atlas.py":
         result = subprocess.run(["/usr/bin/python3", "-S", SOURCE / script, "nowhere"], capture_output=True, text=True)
         check(result.returncode == 1 and "/usr/bin/python3" in result.stderr and result.stderr.count("\n") == 1, result.stderr)
 
 
-def a_rigid_particle_is_drawn_and_what_it_does_not_have_is_named():
+def a_rigid_particle_is_drawn_and_missing_series_are_named():
     deck(DECK.replace("sphere }", "spheroid, semi-axes: [1.0, 1.0, 0.5], motion: free }").replace("  Membrane: { law: neo-Hookean, capillary number: 0.3 }\n", ""))
     run("deck.yaml", "--output", "rigid", "--quiet")
     _command("shape", "rigid")
@@ -276,7 +276,7 @@ Tanktread:
     check("two particles" in _command("encounter", _alone(), code=2), "an encounter of one")
 
 
-def one_particle_of_a_list_is_drawn():
+def one_of_several_particles_is_drawn():
     deck("""
 Tanktread:
   Flow: { type: simple shear }
@@ -294,7 +294,7 @@ def _alone():
     return "alone"
 
 
-def the_readme_names_every_figure_and_its_commands_name_what_is_there():
+def the_manual_names_every_figure_and_all_files_it_names_exist():
     text = (SOURCE / "README.md").read_text() + (SOURCE / "inputs/manual/figures.md").read_text()
     named = set(re.findall(r"tanktread-figure ([\w-]+)", text))
     drawn = {name.replace("_", "-") for name in figures.FIGURES}
@@ -303,7 +303,7 @@ def the_readme_names_every_figure_and_its_commands_name_what_is_there():
         check((SOURCE / path).exists(), f"a document names {path}, which is not there")
 
 
-def a_vesicle_is_drawn_beside_an_axisymmetric_shape_and_another_particle_is_refused():
+def a_vesicle_is_compared_with_an_axisymmetric_shape_and_other_particles_are_rejected():
     vesicle = DECK.replace("simple shear", "quiescent").replace("law: neo-Hookean, capillary number: 0.3",
                                                                 "law: surface tension, surface tension: 1, bending modulus: 1, bending reference: flat")
     deck(vesicle, "vesicle.yaml")
@@ -317,7 +317,7 @@ def a_vesicle_is_drawn_beside_an_axisymmetric_shape_and_another_particle_is_refu
         check(words in said.splitlines()[-1], said)
 
 
-def pictures_and_curves_that_cannot_be_are_one_sentence():
+def impossible_figures_are_rejected_in_one_sentence():
     name, folder = _alone(), pathlib.Path("not_a_folder")
     folder.write_text("")
     pathlib.Path("curve.csv").write_text("nothing\nof,a,table\n")
@@ -330,7 +330,7 @@ def pictures_and_curves_that_cannot_be_are_one_sentence():
     check(pathlib.Path("new/folder/shape.png").exists(), "a folder is made, and a name without ending is of a PNG")
 
 
-def help_is_there_and_absent_results_are_named():
+def help_is_printed_and_missing_results_are_named():
     for name in "deformation", "shape.py", "read", "animation", "growth", "work-precision", "tweezers":
         check("usage" in _command(name, "--help"), name)
         said = _command(name, "nowhere", code=2)

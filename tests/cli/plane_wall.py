@@ -40,7 +40,7 @@ def _last(name, *more, names=OF_CAPSULE, ranks=1, text=CAPSULE, **lists):
     return numpy.array([series(name, key)[-1] for key in names])
 
 
-def a_held_sphere_takes_the_force_that_is_known():
+def the_force_on_a_fixed_sphere_is_the_known_one():
     """The exact values are from Brenner (1961) and Goldman, Cox & Brenner (1967)."""
     towards = _last("towards", "--set", "Particle/velocity=[0, 0, -1]", names=["drag_x3"], text=SPHERE)[0]
     close(towards / (6 * numpy.pi), 11.45915720, 2e-5 * 11.46, "drag across")
@@ -54,7 +54,7 @@ def a_held_sphere_takes_the_force_that_is_known():
     close(held[3], 0.1, 1e-6, "its place")
 
 
-def a_side_of_a_wide_channel_is_a_plane_wall():
+def a_side_of_a_wide_channel_acts_like_a_plane_wall():
     """Compares a drop that is pulled along one side of a square channel of side L, at the distance h = 1, with a drop
     at the same distance from a plane wall. Next to a wall, the far field of a force decays like h/r^2, and the
     disturbance that the other sides reflect changes the drop's velocity by a further factor h/L. The difference
@@ -84,7 +84,7 @@ Tanktread:
     check(abs(extrapolated - 3) < 0.1, f"the power goes to {extrapolated}: {powers} between {sides}")
 
 
-def a_free_sphere_moves_as_is_known():
+def a_free_sphere_moves_with_the_known_velocity():
     free = _last("alone", names=["velocity_x1", "angular_velocity_x2", "velocity_x3"], Flow="{type: simple shear}", Time="{scheme: bs3, fixed step: 0.001, final time: 0.001}", Output="{interval: 0.001}",
                  text=SPHERE.replace("prescribed", "free"))
     close(free[0] / 1.1, 0.73889120, 1e-5, "velocity")
@@ -92,7 +92,7 @@ def a_free_sphere_moves_as_is_known():
     close(free[2], 0, 1e-6, "velocity across")
 
 
-def the_wall_may_be_anywhere():
+def the_position_of_the_wall_does_not_matter():
     """Shifts the wall together with the particle, and rotates both by half a turn about x2, which maps the flow onto
     itself."""
     one = _last("one")
@@ -112,7 +112,7 @@ def ranks_agree():
     check(abs(two - one).max() < 1e-10, two - one)
 
 
-def a_run_is_resumed_beside_its_wall():
+def a_run_next_to_a_wall_is_resumed():
     run(deck(CAPSULE), "--output", "whole", "--quiet", "--set", "Output/interval=0.04")
     run(deck(CAPSULE), "--output", "parts", "--quiet", "--set", "Output/interval=0.04", "--set", "Time/final time=0.04")
     run("--resume", "parts", "--quiet", "--set", "Time/final time=0.08")
@@ -129,13 +129,13 @@ def units_do_not_matter():
     check(abs(other * [1, 0.4, 4] - one).max() < 1e-9, other, one)
 
 
-def a_sphere_that_comes_too_close_stops():
+def a_run_ends_if_a_sphere_comes_too_close_to_the_wall():
     text = _with(SPHERE.replace("motion: prescribed", "motion: free, force: [0, 0, -20]"), Wall="{contact gap: 0.09}", Surface="{elements per side: 3}", Time="{final time: 5.0}")
     error = run(deck(text), "--output", "close", "--quiet", code=3).stderr
     check(all(word in error for word in ("touches the wall", "Wall/contact gap", "checkpoint")), error)
 
 
-def what_no_wall_can_do_is_refused():
+def decks_that_are_impossible_with_a_wall_are_rejected():
     for lists, words in (
         ({"Flow": "{type: planar hyperbolic}"}, ["Wall", "planar hyperbolic", "along the wall"]),
         ({"Flow": "{type: uniaxial extension}"}, ["Wall", "along the wall"]),

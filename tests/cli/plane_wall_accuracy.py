@@ -59,7 +59,7 @@ def _row(gap, film, tolerance):
     return numpy.array(found)
 
 
-def a_sphere_feels_the_wall_as_is_known():
+def the_influence_of_the_wall_on_a_sphere_is_the_known_one():
     for gap, film, tolerance, asked in (1, 0.7, 1e-6, 1e-6), (0.1, 0.35, 1e-7, 1e-6), (0.01, 0.5, 1e-7, 1e-4):
         off = _row(gap, film, tolerance) / KNOWN[gap] - 1
         check(numpy.abs(off).max() < asked, f"a gap of {gap}: {off}")
@@ -77,7 +77,7 @@ def a_film_of_0_003_is_resolved():
     check(numpy.abs(found / finer - 1).max() < 1e-4, f"{found}, {finer} on a finer mesh")
 
 
-def a_capsule_is_driven_away_as_its_stresslet_says():
+def a_capsule_far_from_the_wall_migrates_with_the_velocity_of_its_stresslet():
     """Far from the wall the migration velocity is -9 S33/(64 pi z^2). Its relative error decreases like z^-2."""
     run(deck(CAPSULE.replace("HEIGHT", "0")), "--output", "alone", "--quiet")
     stresslet, ratios, heights = series("alone", "stresslet_33")[-1], [], []

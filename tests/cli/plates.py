@@ -47,7 +47,7 @@ def _first(name, text, *settings, names, ranks=1):
     return numpy.array([series(name, key)[0] for key in names])
 
 
-def a_sphere_midway_takes_the_force_and_torque_that_are_known():
+def the_force_and_torque_on_a_sphere_midway_between_plates_are_exact():
     """The exact Green's function of the slit and point sources."""
     across = _first("across", SPHERE, "Particles/sphere/velocity=[0, 0, 1]", names=["sphere/drag_x3", "wall_force_x3", "second_wall_force_x3"])
     close(across[0] / (-6 * math.pi), 2.789204, 5e-4, "drag across")
@@ -62,7 +62,7 @@ def a_sphere_midway_takes_the_force_and_torque_that_are_known():
     close(shear[0], spin, 1e-10, "spin with plates that move with the flow")
 
 
-def empty_plates_and_a_small_sphere_carry_poiseuilles_flow():
+def between_plates_the_flow_is_poiseuilles_with_and_without_a_small_sphere():
     """For a pressure gradient of 0.5 and a distance of 4, the mean velocity is 2/3. The sphere, whose volume fraction
     is 1e-4, changes it by less than the tolerance."""
     settings = ("Flow/pressure gradient=[-0.5, 0, 0]", "Particles/sphere/motion=free", "Particles/sphere/radius=0.3", "Wall/elements per period=8")
@@ -74,7 +74,7 @@ def empty_plates_and_a_small_sphere_carry_poiseuilles_flow():
     close(permeability, 2 * mean, 1e-12, "permeability")
 
 
-def a_capsule_does_the_same_on_two_ranks_and_resumed():
+def a_capsule_between_plates_on_two_ranks_and_resumed():
     names = ["velocity_x1", "velocity_x3", "energy", "taylor_inertia", "gap", "wall_force_x1", "second_wall_force_x3", "mean_velocity_x2", "power_residual"]
     run(deck(CAPSULE), "--output", "one", "--quiet")
     run(deck(CAPSULE), "--output", "two", "--quiet", ranks=2)
@@ -89,7 +89,7 @@ def a_capsule_does_the_same_on_two_ranks_and_resumed():
     check(abs(total - 60).max() < 1e-4 * 60, f"the plates take {total}, the pressure gives 60")
 
 
-def the_place_along_plates_does_not_matter():
+def the_position_along_the_plates_does_not_matter():
     names = ["velocity_x1", "velocity_x3", "wall_force_x1", "mean_velocity_x1", "gap"]
     here = _first("here", CAPSULE, names=names)
     there = _first("there", CAPSULE, "Particle/center=[12.3, -7.9, 0.3]", names=names)
@@ -148,7 +148,7 @@ Tanktread:
     check(abs(many - alone).max() < 5e-3, f"{many} and {alone}")
 
 
-def posts_of_a_square_array_take_the_force_that_is_known():
+def the_force_on_posts_of_a_square_array_is_the_known_one():
     """Across the posts, F/(mu U) = 24.83 per unit length at the area fraction 0.1 (Sangani & Acrivos 1982), and two
     meshes agree. The permeability along the posts is also known."""
     names = ["permeability", "post_force_x1", "mean_velocity_x2"]
@@ -186,7 +186,7 @@ Tanktread:
     close(gradient, -1, 1e-12, "pressure gradient")
 
 
-def a_drop_among_posts_is_carried_by_the_flow():
+def a_drop_between_posts_moves_with_the_flow():
     """The drop itself has all mirror planes. The post and the flow break these symmetries, so the run must not use
     them."""
     text = """
@@ -203,7 +203,7 @@ Tanktread:
     refused(["Steady", "posts"], deck(text, "steady.yaml"), "--set", "Steady/tolerance=1e-6")
 
 
-def a_flow_that_changes_in_time_is_the_flow_of_that_time():
+def in_a_flow_that_varies_in_time_series_refer_to_the_current_flow():
     """An amplitude of -1 reverses velocities and the pressure gradient. An angle of 90 degrees about the normal of the
     plates rotates them."""
     names = ["velocity_x1", "velocity_x2", "wall_force_x1", "wall_force_x2", "mean_velocity_x1", "permeability", "flow_power", "power_residual"]
@@ -258,14 +258,14 @@ Tanktread:
         close(series("steady", name)[-1], series("other", name)[-1], 1e-5, name)
 
 
-def a_plate_that_alone_moves_makes_a_flow():
+def a_single_moving_plate_causes_a_flow():
     moves = CAPSULE.replace(", pressure gradient: [-1.0, 0.3, 0.0]", "").replace("shear modulus: 5.0", "capillary number: 0.2")
     for given in ("second velocity: [1.0, 0.5, 0.0]", "velocity: [1.0, 0.5, 0.0]"):
         alone = moves.replace("velocity: [0.2, 0.0, 0.0], second velocity: [1.0, 0.5, 0.0]", given)
         check(_first("alone", alone, names=["normal_velocity"])[0] > 0, given)
 
 
-def what_no_deck_may_ask_for():
+def impossible_decks_are_rejected():
     refused(["Wall/distance", "Domain"], deck(SPHERE.replace("  Domain: {periodic: x1 x2, side lengths: [16.0, 16.0, 1.0]}\n", "")))
     refused(["Wall and Domain", "normal"], deck(SPHERE.replace("x1 x2", "x1 x3").replace("16.0, 1.0]", "16.0, 16.0]")))
     refused(["Wall/velocity", "along the wall"], deck(SPHERE), "--set", "Wall/velocity=[0, 0, 1]")

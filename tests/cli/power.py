@@ -16,7 +16,7 @@ Tanktread:
 """
 
 
-def a_sphere_without_tension_takes_the_power_of_its_stresslet():
+def the_power_of_a_sphere_without_tension_is_that_of_its_stresslet():
     deck(CAPSULE)
     run("deck.yaml", "--output", "drop", "--quiet")
     power = 2 * (4 * numpy.pi / 3) * 0.5 * 5 * (5 - 1) / (2 * 5 + 3)  # Taylor 1932, spherical drop
@@ -24,7 +24,7 @@ def a_sphere_without_tension_takes_the_power_of_its_stresslet():
     close(series("drop", "fluid_dissipation")[0], power, 2e-4 * power, "all of which is dissipated")
 
 
-def what_is_not_dissipated_is_stored():
+def power_that_is_not_dissipated_is_stored():
     deck(CAPSULE)
     errors = []
     for n in (4, 8):
@@ -64,7 +64,7 @@ Tanktread:
 """
 
 
-def the_pressure_drop_does_the_work_in_a_tube():
+def in_a_tube_the_pressure_drop_supplies_the_power():
     deck(TUBE, "tube.yaml")
     errors = []
     for n in (4, 8):
@@ -86,7 +86,7 @@ Tanktread:
 """
 
 
-def the_large_pressure_in_a_drop_counts_for_nothing():
+def a_large_pressure_in_a_drop_does_not_change_the_power_balance():
     deck(COUETTE, "couette.yaml")
     # the pressure is a hundred times the viscous stress; its integrals have a relative error of 1e-4
     run("couette.yaml", "--output", "couette", "--quiet")
@@ -145,7 +145,7 @@ Tanktread:
 """
 
 
-def a_mesh_that_has_changed_has_a_velocity_of_its_own():
+def after_a_change_of_the_mesh_the_power_uses_the_new_velocity():
     deck(SPINDLE, "spindle.yaml")
     run("spindle.yaml", "--output", "spindle", "--quiet")
     points, lacks = series("spindle", "n_control_points"), numpy.abs(series("spindle", "power_residual"))
@@ -154,7 +154,7 @@ def a_mesh_that_has_changed_has_a_velocity_of_its_own():
     check(lacks.max() < 1e-3, "a row has the loads of one mesh and the velocity of another", lacks)
 
 
-def mistakes_are_named():
+def mistakes_are_reported():
     deck(CAPSULE)
     refused(["Output/power balance", "strong"], "deck.yaml", "--set", "Membrane/load=strong")
 

@@ -38,7 +38,7 @@ def a_skalak_membrane_in_explicit_steps():
     _relax("Membrane/law=Skalak", "Membrane/area dilatation=2.0", "Time/scheme=bs3", "Time/maximum step=0.1")
 
 
-def velocities_are_relative_to_relaxation_in_every_unit_of_time():
+def the_scale_of_velocities_does_not_depend_on_the_unit_of_time():
     path = deck(DECK.replace("20.0", "0.5, steady tolerance: 1.0e-9"))
     run(path, "--output", "one", "--quiet")
     # this doubles the relaxation time

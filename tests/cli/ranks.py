@@ -89,7 +89,7 @@ def explicit_steps():
     _compare("Time/scheme=bs3")
 
 
-def the_paper_s_scheme_quadrature_and_load():
+def the_scheme_quadrature_and_load_of_the_paper():
     _compare("Time/scheme=crank-nicolson", "Quadrature/rule=fixed", "Membrane/load measure=current", "Volume/constraint=flux",
              "Time/final time=0.2", "Time/initial step=0.01")
 

@@ -64,7 +64,7 @@ def _content(path):
 
 
 def _used(path):
-    """Returns what the page does in a browser; None where there is none."""
+    """Returns values that the page computes in a browser; None if no browser is available."""
     page = pathlib.Path("used.html")
     page.write_text(pathlib.Path(path).read_text().replace("</body>", USE + "</body>"))
     document, errors = shown(page.resolve().as_uri())
@@ -98,7 +98,7 @@ def a_run_is_one_page_with_its_shapes_and_curves():
     check(told is None or {"time · shear rate", "taylor_inertia"} <= set(told["texts"]), told)
 
 
-def last_values_have_their_errors_also_where_there_is_one_row():
+def last_values_have_errors_even_with_one_row():
     deck(DECK)
     run("deck.yaml", "--accuracy", "taylor_inertia=50%", "--output", "asked", "--quiet", "--set", "Accuracy/levels=3", code=None)
     text = DECK.replace("simple shear", "uniaxial extension").replace("number: 0.3", "number: 0.05")
@@ -123,7 +123,7 @@ def axes_have_the_units_of_the_deck():
     check(told is None or {"time, ms", "taylor_inertia"} <= set(told["texts"]), told)
 
 
-def a_run_that_is_not_finished_says_so():
+def an_unfinished_run_is_marked_in_its_report():
     deck(DECK)
     run("deck.yaml", "--output", "results", "--quiet", code=1)
     pathlib.Path("results/summary.yaml").unlink()
@@ -169,7 +169,7 @@ def unknowns_of_a_fit_have_the_units_of_the_deck():
     check(yaml.safe_load(pathlib.Path("results/experiment/fit.yaml").read_text())["the deck's law"]["unknown"]["Membrane/shear modulus"]["unit"] == "nN/µm", "fit.yaml")
 
 
-def what_is_no_result_is_said():
+def a_directory_without_results_is_reported():
     pathlib.Path("empty").mkdir()
     said = _script("report", "empty", code=2)
     check("empty holds no run, sweep or fit" in said and said.count("\n") == 1, said)

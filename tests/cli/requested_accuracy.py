@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 2
-"""Accuracy on request: levels, estimated errors, their files, resumption, and what is said if a request is not met."""
+"""Accuracy on request: levels, estimated errors, their files, resumption, and the message if a request is not met."""
 import math
 import os
 import pathlib
@@ -118,7 +118,7 @@ def a_series_that_vanishes_has_no_relative_error():
     check(found["met"] and 0 < found["allowed"] < 1e-7, found)
 
 
-def what_is_not_met_is_said():
+def a_request_that_is_not_met_is_reported():
     deck(DROP)
     result = run("deck.yaml", "--accuracy", "taylor_inertia=1e-12", "--set", "Accuracy/levels=3", "--quiet", "--output", "few", code=1)
     lines = result.stderr.splitlines()
@@ -137,7 +137,7 @@ def points_of_a_branch_have_no_error_of_position():
         check("position error" not in shot.fields, sorted(shot.fields))
 
 
-def levels_that_a_deck_does_not_allow_are_failed_levels():
+def levels_that_the_deck_does_not_allow_count_as_failed():
     deck(DROP.replace("final time: 1.0", "final time: 0.1") + "  Surface: {elements per side: 3}\n  Adaptation: {enabled: true, largest number of points: 100}\n")
     words = ("--accuracy", "taylor_inertia=5%", "--set", "Accuracy/levels=3", "--quiet", "--output", "few")
     said = run("deck.yaml", *words, code=1).stderr.splitlines()[-1]  # the levels have meshes of 56, 98 and 152 points
@@ -159,7 +159,7 @@ def a_signal_in_a_search_stops_the_levels_and_the_finished_ones_are_published():
     check(summary("levels")["status"] == "stopped: by a signal", summary("levels")["status"])
 
 
-def a_plain_run_does_not_become_a_ladder():
+def an_existing_run_cannot_be_resumed_with_a_request():
     deck(DROP)
     run("deck.yaml", "--set", "Time/final time=0.1", "--quiet", "--output", "plain")
     before = sorted(pathlib.Path("plain").iterdir())
@@ -168,7 +168,7 @@ def a_plain_run_does_not_become_a_ladder():
     check(sorted(pathlib.Path("plain").iterdir()) == before, "results were deleted")
 
 
-def the_wall_clock_limit_is_honoured_and_said():
+def the_wall_clock_limit_is_respected_and_reported():
     deck(DROP)
     result = run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/wall-clock limit=0.6", "--quiet", "--output", "short",
                  code=4, timeout=60)
@@ -301,7 +301,7 @@ def tables_reports_and_bands_have_errors():
     close(weighted, 0.1 - one.series["taylor_inertia"][-1], 1e-6, "residual divided by the discretisation error")
 
 
-def a_run_without_a_request_states_what_it_knows():
+def a_run_without_a_request_states_its_known_errors():
     deck(DROP)
     run("deck.yaml", "--quiet", "--output", "plain")
     known = summary("plain")["estimated errors"]
@@ -332,7 +332,7 @@ def wrinkles_are_reported_instead_of_an_error():
     check("position error" not in tanktread.run("wrinkled").snapshots()[-1].fields, "an error of position in spite of wrinkles")
 
 
-def wrong_requests_are_refused():
+def wrong_requests_are_rejected():
     deck(DROP)
     for request, words in (("taylor_inertai=1e-3", ["taylor_inertia meant"]), ("taylor_inertia", ["no value"]),
                            ("taylor_inertia=-1", ["positive"]), ("taylor_inertia@start=1", ["@end"]), ("wall_seconds=1", ["no error"]),

@@ -74,7 +74,7 @@ def _kill_when(holds, *arguments):
     check(process.returncode == -signal.SIGKILL, f"the run ended before it was to be killed: {said}")
 
 
-def a_killed_run_goes_on_to_the_same_last_bit_under_every_scheme():
+def a_killed_run_is_resumed_bitwise_equal_with_every_scheme():
     for scheme in "auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson":
         text = DECK.replace("Time: {", f"Time: {{ scheme: {scheme},")
         deck(text.replace("interval: 0.25", "interval: 0.2"))
@@ -84,7 +84,7 @@ def a_killed_run_goes_on_to_the_same_last_bit_under_every_scheme():
         _same_bits(f"whole_{scheme}", f"killed_{scheme}")
 
 
-def a_run_that_is_killed_again_and_again_arrives_at_the_same_end():
+def a_run_that_is_killed_repeatedly_has_the_same_end():
     deck(DECK)
     begin = time.monotonic()
     run("deck.yaml", "--output", "whole", "--quiet")
@@ -100,7 +100,7 @@ def a_run_that_is_killed_again_and_again_arrives_at_the_same_end():
     _same_bits("whole", "killed")
 
 
-def what_solvers_start_from_belongs_to_the_checkpoint():
+def the_checkpoint_contains_initial_guesses_of_solvers():
     """Tests scenes whose solutions depend on earlier solves, which give the initial guess or the recycled subspace: a
     free body in a tube, and a capsule with the preconditioner `recycled`. Snapshots are written between two steps."""
     body = "Particle: {motion: free, radius: 0.5, center: [0, 0.2, 0.1]}\n  Surface: {elements per side: 3}"
@@ -123,7 +123,7 @@ Tanktread:
         _same_bits(f"whole_{name}", snapshots)
 
 
-def other_ranks_go_on_to_the_same_end_within_1e_10():
+def a_run_resumed_on_other_ranks_agrees_to_1e_10():
     deck(DECK)
     run("deck.yaml", "--output", "whole", "--quiet")
     _kill_after("killed", 6, "deck.yaml", "--output", "killed", "--quiet")
@@ -135,7 +135,7 @@ def other_ranks_go_on_to_the_same_end_within_1e_10():
         check(worst <= 1e-10, f"{name} differs by {worst:.3g}")
 
 
-def sigterm_stops_with_a_checkpoint_at_the_last_step():
+def sigterm_ends_the_run_with_a_checkpoint_of_the_last_step():
     deck(DECK)
     run("deck.yaml", "--output", "whole", "--quiet")
     process = start("deck.yaml", "--output", "stopped", "--quiet")
@@ -150,7 +150,7 @@ def sigterm_stops_with_a_checkpoint_at_the_last_step():
     _same_bits("whole", "stopped")
 
 
-def what_a_run_has_said_and_counted_is_that_of_all_its_parts():
+def warnings_and_counters_include_all_parts_of_a_resumed_run():
     strong = ["--set", "Membrane/load=strong", "--set", "Time/final time=0.5"]
     said = run(deck(DECK), *strong, "--output", "whole", "--quiet").stderr
     check("strong form" in said, "nothing to warn of", said)
@@ -162,7 +162,7 @@ def what_a_run_has_said_and_counted_is_that_of_all_its_parts():
     check(parts["counts"] == whole["counts"], parts["counts"], whole["counts"])
 
 
-def a_held_particle_makes_no_scheme_s_steps_shorter():
+def holding_the_centroid_does_not_shorten_steps():
     held = ["--set", "Particle/drift=held", "--set", "Particle/center=[0, 0, 1]", "--set", "Time/final time=1", "--set", "Time/tolerance=1e-4"]
     steps = {}
     for name, more in ("held", held), ("centred", held[4:]):
@@ -171,7 +171,7 @@ def a_held_particle_makes_no_scheme_s_steps_shorter():
     check(steps["held"] <= 1.2 * steps["centred"], steps)
 
 
-def a_damaged_newest_checkpoint_is_passed_over():
+def a_damaged_newest_checkpoint_is_skipped():
     deck(DECK)
     run("deck.yaml", "--output", "whole", "--quiet")
     run("deck.yaml", "--output", "damaged", "--quiet")
@@ -183,7 +183,7 @@ def a_damaged_newest_checkpoint_is_passed_over():
     _same_bits("whole", "damaged")
 
 
-def another_scheme_goes_on_from_the_shape():
+def another_scheme_continues_from_the_shape():
     end = "Time/final time=0.6"
     run(deck(DECK), "--set", end, "--output", "whole", "--quiet")
     d = series("whole", "taylor_inertia")[-1]
@@ -204,7 +204,7 @@ def the_final_time_may_change_and_the_membrane_may_not():
     check("Membrane/capillary number" in result.stderr, result.stderr)
 
 
-def what_the_series_depend_on_may_not_change():
+def keys_that_series_depend_on_may_not_change():
     deck(DECK)
     for setting in "Output/power balance=true", "Contact/limiter=true":
         more = ["--set", "Contact/limit=0.01"] if "Contact" in setting else []

@@ -34,7 +34,7 @@ def every_key_of_the_manual_has_a_type_and_a_meaning():
     check(count > 100, f"{count} keys")
 
 
-def bounds_and_choices_are_those_of_the_rules():
+def bounds_and_choices_of_the_schema_are_those_of_the_program():
     properties = _schema_once["properties"]
     side = properties["Surface"]["properties"]["elements per side"]
     check((side["type"], side["minimum"], side["maximum"]) == ("integer", 3, 200), side)
@@ -66,7 +66,7 @@ def _errors(value, schema, path=""):
         yield f"{path}: {value}"
 
 
-def every_deck_that_ships_is_accepted_and_a_wrong_one_is_not():
+def every_shipped_deck_is_accepted_and_a_wrong_one_is_not():
     for path in sorted((SOURCE / "inputs").glob("*.yaml")):
         found = list(_errors(yaml.safe_load(path.read_text())["Tanktread"], _schema_once))
         check(not found, path.name, found)
@@ -74,7 +74,7 @@ def every_deck_that_ships_is_accepted_and_a_wrong_one_is_not():
         check(list(_errors(wrong, _schema_once)), wrong, "is accepted")
 
 
-def a_new_deck_is_one_whatever_its_kind():
+def every_deck_of_new_is_valid():
     kinds = re.search(r"commented deck of this kind: (.*?) --", re.sub(r"\s+", " ", run("--help").stdout))[1]
     kinds = re.findall(r"[\w-]+", kinds.replace(" or ", " "))
     check(len(kinds) >= 5, kinds)

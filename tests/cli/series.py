@@ -34,7 +34,7 @@ def _finished(text, *settings):
     run(deck(text), *_settings(*settings), "--output", "run", "--quiet")
 
 
-def a_shear_in_another_plane_gives_the_same_numbers():
+def a_shear_in_another_plane_gives_the_same_results():
     names = ["taylor_inertia", "taylor_surface", "inclination", "tank_treading_velocity", "tank_treading_frequency", "phase", "axis_1", "axis_3",
              "intrinsic_viscosity"]
     _finished(SHEAR)
@@ -49,14 +49,14 @@ def a_shear_in_another_plane_gives_the_same_numbers():
     check(there["taylor_inertia"][-1] > 0.2, there)
 
 
-def a_flow_that_is_not_planar_is_measured_along_the_longest_and_shortest_axis():
+def in_a_nonplanar_flow_d_refers_to_the_longest_and_shortest_axis():
     _finished(SHEAR, "Flow/type=linear", "Flow/gradient=[-0.5, 0, 0, 0, 1, 0, 0, 0, -0.5]", "Time/final time=0.3")
     a, b = series("run", "axis_1")[-1], series("run", "axis_3")[-1]
     close(series("run", "taylor_inertia")[-1], (a - b) / (a + b), 1e-12, "D")
     check(a > 1.05 > series("run", "axis_2")[-1], a)
 
 
-def a_free_sphere_turns_at_half_the_rate_and_thickens_as_einstein_says():
+def a_free_sphere_rotates_at_half_the_rate_and_has_einsteins_viscosity():
     _finished(RIGID)
     close(series("run", "tank_treading_frequency")[-1], 0.5, 1e-6, "frequency")
     # error of the polygon on which it is measured
@@ -65,7 +65,7 @@ def a_free_sphere_turns_at_half_the_rate_and_thickens_as_einstein_says():
     close(series("run", "intrinsic_viscosity")[-1], 2.5, 0.01, "intrinsic viscosity")  # the coarse mesh
 
 
-def the_phase_of_a_capsule_is_what_its_frequency_adds_up_to():
+def the_phase_of_a_capsule_is_the_integral_of_its_frequency():
     _finished(SHEAR, "Time/final time=14")
     time, phase, frequency = (series("run", name) for name in ("time", "phase", "tank_treading_frequency"))
     start = numpy.searchsorted(time, 4.0)  # steady
@@ -79,7 +79,7 @@ def the_phase_of_a_capsule_is_what_its_frequency_adds_up_to():
     check(5.5 < perimeter < 8, f"the curve is {perimeter} long")
 
 
-def the_phase_goes_on_through_refinement_and_resume():
+def the_phase_is_continuous_at_refinement_and_resumption():
     adapted = SHEAR + "  Adaptation: { enabled: true, surface tolerance: 2.0e-4, levels: 2 }\n  Output: { interval: 0.1 }\n"
     _finished(adapted, "Time/final time=0.9", "Surface/extraordinary points=catmull-clark")
     check(len(set(series("run", "n_control_points"))) > 1, "the mesh never changed")
@@ -93,7 +93,7 @@ def the_phase_goes_on_through_refinement_and_resume():
         check(series("part", name).tobytes() == series("run", name).tobytes(), f"{name} differs")
 
 
-def a_drop_thickens_as_taylor_says_and_its_fluid_treads():
+def a_drop_has_taylors_viscosity_and_its_interface_tank_treads():
     _finished(SHEAR, "Membrane/law=surface tension", "Membrane/capillary number=0.03", "Particle/viscosity ratio=2")
     # tolerance: terms of order Ca^2, and the discretisation error
     close(series("run", "intrinsic_viscosity")[-1], (1 + 2.5 * 2) / (1 + 2), 0.02, "intrinsic viscosity")
@@ -103,7 +103,7 @@ def a_drop_thickens_as_taylor_says_and_its_fluid_treads():
     close(series("run", "phase")[-1], numpy.degrees(numpy.trapz(frequency, time)), 1e-9, "phase")
 
 
-def a_drop_costs_no_more_evaluations_for_its_series():
+def series_of_a_drop_need_no_additional_evaluations():
     _finished(SHEAR, "Membrane/law=surface tension", "Membrane/capillary number=0.1")
     counts = summary("run")["counts"]
     check(series("run", "evaluations")[-1] < 12 * counts["steps"], counts)
@@ -147,7 +147,7 @@ def directions_of_equal_semi_axes_are_undefined():
     check(all(isinstance(final[name], float) and numpy.isnan(final[name]) for name in directions) and final["phase"] > 5, final)
 
 
-def the_manual_of_the_results_names_all_that_comes_out():
+def the_manual_names_all_files_and_series():
     manual = run("--reference-series").stdout
     flat = SHEAR.replace("final time: 0.5", "final time: 0.02").replace("side: 4", "side: 3")
     prescribed = ["Flow/type=quiescent", "Particle/motion=prescribed", "Particle/shape=spheroid", "Particle/semi-axes=[2, 1, 1]",

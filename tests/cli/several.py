@@ -84,7 +84,7 @@ def meshes_that_change_resume_on_other_ranks():
         check(len(set(series("whole", f"{name}/n_control_points"))) > 1, "the mesh of", name, "never changed")
 
 
-def the_order_is_of_no_consequence():
+def the_order_of_particles_does_not_matter():
     deck(MIXED, "one.yaml")
     lines = MIXED.splitlines()
     capsule = next(k for k, line in enumerate(lines) if line.startswith("    capsule:"))
@@ -100,7 +100,7 @@ def the_order_is_of_no_consequence():
         check(off <= 1e-10, name, "is off by", off)
 
 
-def rows_of_a_body_that_comes_first_are_of_the_shape_of_the_row():
+def series_of_a_body_that_is_listed_first_refer_to_the_accepted_shape():
     """With a coarse tolerance, the shapes during the iteration of a step differ from the accepted shape. The series of
     the body must belong to the accepted shape."""
     body = "    ball: {center: [0.0, 0.3, 1.9], radius: 0.6, motion: free}\n"
@@ -115,7 +115,7 @@ def rows_of_a_body_that_comes_first_are_of_the_shape_of_the_row():
             check(difference(a[name], b[name], name) <= 1e-10, name)
 
 
-def membranes_of_others_do_not_concern_a_rigid_body():
+def membranes_of_other_particles_do_not_act_on_a_rigid_body():
     plain = """
 Tanktread:
   Flow: {type: quiescent}
@@ -132,7 +132,7 @@ Tanktread:
     _same("plain", "inflated", 1e-13)
 
 
-def a_rigid_body_that_comes_first_hides_no_warning():
+def a_rigid_body_that_is_listed_first_hides_no_warning():
     """With these long steps and the constraint `flux`, the drop loses more than 1e-3 of its volume."""
     text = """
 Tanktread:
@@ -147,7 +147,7 @@ Tanktread:
     check("of the volume is lost" in said, said)
 
 
-def one_far_away_changes_nothing():
+def a_distant_particle_has_no_influence():
     alone = """
 Tanktread:
   Flow: {type: planar hyperbolic}
@@ -195,7 +195,7 @@ Tanktread:
         close(series("own_beside", f"here/{name}")[-1], one.get(f"here/{name}", one.get(name)), 1e-9, name)
 
 
-def pairs_are_symmetric_and_their_gap_is_true():
+def pairs_are_symmetric_and_their_gap_is_exact():
     deck("""
 Tanktread:
   Flow: {type: simple shear}
@@ -216,7 +216,7 @@ Tanktread:
     check(found["status"] == "done" and "first/taylor_inertia" in found["final"], found)
 
 
-def a_run_ends_where_particles_touch_and_goes_on_with_a_smaller_limit():
+def a_run_ends_at_contact_and_continues_with_a_smaller_limit():
     deck("""
 Tanktread:
   Flow: {type: planar hyperbolic}
@@ -252,7 +252,7 @@ Tanktread:
         check(numpy.abs(series("one", name) - series("ranks", name)).max() < 1e-10, name, series("one", name), series("ranks", name))
 
 
-def of_equal_gaps_one_is_reported_on_any_ranks():
+def among_equal_gaps_the_same_one_is_reported_on_any_ranks():
     """Two spheres on a cubic lattice. The gap to the other sphere equals the gaps to its images along x1 and x3."""
     spheres = "\n".join(f"    s{k}: {{center: [0.3, {2.3 * k}, 0.2]}}" for k in range(2))
     deck(f"""
@@ -297,7 +297,7 @@ def a_mixture_in_a_tube_resumes_on_other_ranks_and_balances():
         check(off < 5e-2, route, "is off by", off)  # tolerance for three elements per side
 
 
-def a_ball_in_a_tube_moves_as_the_first_kind_equation_says():
+def a_ball_in_a_tube_moves_as_by_the_first_kind_equation():
     words = "{motion: free, radius: 0.5, center: [0.0, 0.0, 0.2]%s}"
     deck("""
 Tanktread:
@@ -318,7 +318,7 @@ Tanktread:
     close(series("second", "disturbed_pressure_drop")[0], series("first", "disturbed_pressure_drop")[0], 2e-4, "pressure drop")  # the second's error
 
 
-def meshes_get_fine_beside_films():
+def meshes_are_refined_next_to_films():
     deck("""
 Tanktread:
   Flow: {type: quiescent}
@@ -342,7 +342,7 @@ Tanktread:
     check(abs(series("ranks", "one/drag_x1") - series("tractions", "one/drag_x1")).max() < 1e-9, "ranks")
 
 
-def pictures_tell_particles_apart():
+def figures_distinguish_particles():
     import h5py
 
     deck(MIXED)
@@ -371,7 +371,7 @@ def _centres(results, kind="many "):
     return numpy.array([[found[f"{name}/centroid_x{k}"][0] for k in (1, 2, 3)] for name in names])
 
 
-def copies_are_where_they_are_told_to_be():
+def copies_are_at_the_given_positions():
     deck("x1, x2, x3\n0, 0, 0\n1.5, 0, 0.5, 0, 90, 0\n", "places.csv")
     deck("0, 0, 0\n1.5, 0, 0.5\n", "short.csv")
     for name, how in (("file", "file: places.csv"), ("lattice", "lattice: [2, 1, 3], spacing: [2.0, 1.0, 1.5]")):
@@ -382,7 +382,7 @@ def copies_are_where_they_are_told_to_be():
     check(numpy.abs(_centres("lattice") - expected).max() < 1e-12, _centres("lattice"))
 
 
-def copies_at_random_keep_clear_of_each_other_and_come_again():
+def random_copies_do_not_overlap_and_are_reproducible():
     deck(COPIES % "volume fraction: 0.1, box: [4.0, 4.0, 4.0], seed: 7, least gap: 0.1")
     for name in ("one", "other"):
         run("deck.yaml", "--output", name, "--quiet")
@@ -451,7 +451,7 @@ def mistakes_of_copies_are_named():
     check("Particles/many 2 has the name of copy 2 of Particles/many" in error, error)
 
 
-def mistakes_are_named():
+def mistakes_are_reported():
     deck(MIXED)
     for setting, words in (
         ("Particles/small/center=[1.5, 0, 0]", ["Particles/drop and Particles/small overlap", "near ["]),
@@ -477,7 +477,7 @@ def mistakes_are_named():
     check(re.search("drop/taylor", error), error)
 
 
-def a_body_at_rest_does_not_keep_a_drop_from_becoming_steady():
+def a_run_with_a_body_at_rest_ends_when_the_drop_is_steady():
     run(deck("""Tanktread:
   Flow: {type: uniaxial extension}
   Particles:

@@ -32,7 +32,7 @@ def _pictures(results):
     return found
 
 
-def steps_of_a_fixed_size_keep_it_and_pictures_are_of_the_times_asked_for():
+def fixed_steps_keep_their_size_and_snapshots_are_at_the_requested_times():
     deck(DECK)
     run("deck.yaml", "--output", "fixed", "--quiet", "--set", "Time/fixed step=0.1", "--set", "Time/tolerance=1e-6")
     check(numpy.ptp(_series("fixed", "time_step")[1:]) < 1e-12, _series("fixed", "time_step"))
@@ -44,7 +44,7 @@ def steps_of_a_fixed_size_keep_it_and_pictures_are_of_the_times_asked_for():
         check(worst < 2e-3, f"at {time} the surface is off by {worst}")
 
 
-def the_first_step_is_no_longer_than_the_time_between_two_pictures():
+def the_first_step_is_not_longer_than_the_interval_between_snapshots():
     deck(DECK.replace("interval: 0.25", "interval: 0.05, between steps: interpolate"))
     run("deck.yaml", "--output", "long", "--quiet", "--set", "Time/initial step=0.22", "--set", "Time/final time=0.5")
     times = [time for time, _ in _pictures("long")]
@@ -53,7 +53,7 @@ def the_first_step_is_no_longer_than_the_time_between_two_pictures():
     check(_series("least", "time_step").max() < 0.0401, _series("least", "time_step"))
 
 
-def a_run_with_pictures_between_steps_goes_on_to_the_same_end():
+def a_run_with_snapshots_between_steps_is_resumed_to_the_same_end():
     deck(DECK.replace("interval: 0.25", "interval: 0.15, between steps: interpolate"))
     run("deck.yaml", "--output", "whole", "--quiet")
     run("deck.yaml", "--output", "cut", "--quiet")

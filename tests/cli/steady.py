@@ -12,7 +12,7 @@ Tanktread:
 """
 
 
-def a_capsule_that_treads_is_found_steady_where_its_deformation_is():
+def a_tank_treading_capsule_is_steady_when_its_deformation_is():
     said = run(deck(DECK), "--output", "out", "--quiet").stderr
     check("steady at time" in said and summary("out")["status"] == "steady", said)
     times, d = series("out", "time"), series("out", "taylor_inertia")
@@ -22,7 +22,7 @@ def a_capsule_that_treads_is_found_steady_where_its_deformation_is():
     check(series("out", "normal_velocity")[-1] > 5e-3, "the largest normal velocity would have told as well")
 
 
-def a_run_is_not_steady_before_its_flow_has_begun():
+def a_run_is_not_steady_before_its_flow_starts():
     begins = "history: {times: [0, 0.5, 0.5], amplitudes: [0, 0, 1]}"
     text = DECK.replace("type: simple shear", f"type: simple shear, {begins}").replace("final time: 15", "final time: 1")
     run(deck(text), "--output", "late", "--quiet")
@@ -32,7 +32,8 @@ def a_run_is_not_steady_before_its_flow_has_begun():
 
 
 def a_shape_that_is_not_found_from_rest_is_approached_through_weaker_flows():
-    """Near the fold of a capsule in extension, at Ca 0.52 on this mesh. The way says where steady shapes end."""
+    """The capsule is in extension near the fold, which is at Ca = 0.52 on this mesh. The message lists the weaker flows that
+    were used."""
     text = """
 Tanktread:
   Flow: {type: uniaxial extension}

@@ -47,7 +47,7 @@ Tanktread:
 """
 
 
-def it_is_the_shape_that_a_run_in_time_comes_to_in_a_fourth_of_the_evaluations():
+def the_search_finds_the_final_shape_of_a_run_with_a_fourth_of_the_evaluations():
     run(deck(DECK), "--output", "steady", "--quiet")
     run(deck(IN_TIME, "in_time.yaml"), "--output", "in_time", "--quiet")
     close(series("steady", "taylor_surface")[-1], series("in_time", "taylor_surface")[-1], 1e-6)
@@ -55,14 +55,14 @@ def it_is_the_shape_that_a_run_in_time_comes_to_in_a_fourth_of_the_evaluations()
     check(4 * mine <= others, mine, others)
 
 
-def two_ranks_find_the_same():
+def two_ranks_find_the_same_shape():
     for projection in "collocation", "least squares":
         for name, ranks in ("one", 1), ("two", 2):
             run(deck(DECK), "--set", f"Solvers/projection={projection}", "--output", name, "--quiet", "--overwrite", ranks=ranks)
         close(series("two", "taylor_surface")[-1], series("one", "taylor_surface")[-1], 1e-10)
 
 
-def a_drop_in_shear_is_found_however_its_mesh_is_labelled():
+def a_drop_in_shear_is_found_for_any_rotation_of_its_mesh():
     """The surface of the drop tank-treads. In the run in time, the mesh has rotated with the shape. On a mesh with four
     elements per side, this rotation of the mesh changes D by 1.3e-3."""
     shear = ["--set", "Flow/type=simple shear", "--set", "Membrane/capillary number=0.2", "--set", "Surface/elements per side=5"]
@@ -72,7 +72,7 @@ def a_drop_in_shear_is_found_however_its_mesh_is_labelled():
         close(series("shear", name)[-1], series("shear_in_time", name)[-1], digits)
 
 
-def a_branch_goes_round_its_fold_where_a_mode_begins_to_grow():
+def a_branch_passes_its_fold_where_a_mode_becomes_unstable():
     run(deck(DECK), deck(BRANCH, "branch.yaml"), "--output", "branch", "--quiet", "--no-expect")
     parameter, fold, rate = (series("branch", name) for name in ("parameter", "fold", "leading_rate"))
     at = fold.argmax()
@@ -81,7 +81,7 @@ def a_branch_goes_round_its_fold_where_a_mode_begins_to_grow():
     check(abs(rate[at]) < 1e-3, rate[at])  # for any mesh, because the mesh follows the mode
 
 
-def a_branch_of_too_few_points_says_so():
+def a_branch_with_too_few_points_is_reported():
     said = run(deck(DECK), deck(BRANCH, "branch.yaml"), "--set", "Continuation/points=2", "--output", "short", "--quiet", "--no-expect").stderr
     check("Continuation/points ended the branch before" in said, said)
 
@@ -97,7 +97,7 @@ def a_branch_that_turns_back_ends_where_it_began():
     check((numpy.diff(d) > 0).all() and d[-1] > d[fold.argmax()] + 0.02, d)
 
 
-def a_fold_goes_on_in_a_second_parameter_to_where_a_branch_of_its_own_has_it():
+def a_fold_continued_in_a_second_parameter_agrees_with_a_separate_branch():
     coarse = ["--set", "Surface/elements per side=4", "--quiet", "--no-expect"]
     second = ["--set", "Continuation/second parameter=Particle/viscosity ratio", "--set", "Continuation/second values=[1.4, 2]"]
     run(deck(DECK), deck(BRANCH, "branch.yaml"), *coarse, *second, "--output", "folds")
@@ -181,7 +181,7 @@ Tanktread:
     check(abs(sizes / sizes[0] - 1).max() < 1e-5, sizes)  # tolerance: search
 
 
-def a_branch_without_a_fold_says_so():
+def a_branch_without_a_fold_is_reported():
     said = run(deck(DECK), "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.09", "--set",
                "Continuation/second parameter=Particle/viscosity ratio", "--set", "Continuation/second values=[2]", "--output", "no_fold", "--quiet",
                code=3).stderr
@@ -210,7 +210,7 @@ def a_run_in_time_from_a_mode_grows_at_its_rate():
     close(numpy.log(apart[1.0] / apart[0.5]) / 0.5, rate, 0.01 * rate)
 
 
-def a_mode_needs_the_run_that_has_it():
+def a_mode_as_initial_shape_needs_a_run_with_modes():
     run(deck(DECK), "--output", "bare", "--quiet")
     for settings, word in (["Particle/initial shape/mode=1", "Particle/initial shape/stretch=[1, 1, 1]"], "run"), \
                           (["Particle/initial shape/mode=1", "Particle/initial shape/run=bare"], "no mode 1"):
@@ -218,7 +218,7 @@ def a_mode_needs_the_run_that_has_it():
         check(len(said.splitlines()) == 1 and word in said, said)
 
 
-def modes_of_all_parities_are_those_of_the_whole():
+def modes_of_all_parities_are_the_modes_without_symmetry():
     """The union of the modes of all parities is the set of modes without symmetry: for a drop, whose modes are compared
     by normal displacements, and for a capsule."""
     for law, projection in ("surface tension", "collocation"), ("surface tension", "least squares"), ("neo-Hookean", "collocation"):
@@ -242,7 +242,7 @@ def a_parity_needs_a_symmetry_and_signs():
         check(len(said.splitlines()) == 1 and word in said, said)
 
 
-def above_the_fold_nothing_is_found_and_what_was_reached_is_kept():
+def above_the_fold_no_shape_is_found_and_the_last_shape_is_written():
     said = run(deck(DECK), "--set", "Membrane/capillary number=0.3", "--set", "Steady/iterations=20", "--output", "none", "--quiet", code=3).stderr
     check(len(said.splitlines()) == 1 and "not found" in said and "the results so far" in said, said)
     check(summary("none")["status"].startswith("failed"), summary("none")["status"])
@@ -264,7 +264,7 @@ def the_mesh_of_a_shape_and_of_a_branch_adapts():
     close(series("branch_cut", "taylor_surface")[-1], 0.3038398, 5e-3)
 
 
-def a_capsule_that_a_pressure_drop_does_not_push_through_a_constriction_rests():
+def a_capsule_stuck_in_a_constriction_is_a_steady_state():
     """At a prescribed flow rate, the capsule would be pushed through, so that no shape is at rest."""
     search = ["--set", "Steady/tolerance=1e-7", "--set", "Steady/step=7", "--quiet"]
     run(deck(STUCK), *search, "--output", "stuck")
@@ -285,7 +285,7 @@ Tanktread:
 """
 
 
-def an_oblate_capsule_that_swings_comes_back():
+def an_oblate_capsule_swings_periodically():
     """A run in time returns to this state after one period, rotated by half a turn. `Steady` is rejected for this
     scene, and a search that starts from a wrong period fails."""
     run(deck(SWINGS), "--set", "Periodic/period=9", "--set", "Periodic/turn=180", "--set", "Periodic/tolerance=1e-4", "--set", "Time/tolerance=1e-5",
@@ -305,7 +305,7 @@ def an_oblate_capsule_that_swings_comes_back():
     check(len(said.splitlines()) == 1 and "did not recur" in said, said)
 
 
-def a_membrane_that_treads_is_found_and_its_decay_is_that_of_a_run():
+def a_tank_treading_state_is_found_and_its_decay_rate_is_that_of_a_run():
     shear = ["--set", "Flow/type=simple shear", "--set", "Membrane/law=neo-Hookean", "--set", "Membrane/capillary number=0.3", "--set",
              "Surface/elements per side=4"]
     run(deck(DECK), *shear, "--set", "Steady/tolerance=1e-7", "--set", "Spectrum/number=8", "--output", "tread", "--quiet")

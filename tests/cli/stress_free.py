@@ -26,7 +26,7 @@ def a_spheroid_relaxes_towards_its_stress_free_sphere():
     check(series("relaxed", "normal_velocity")[-1] < 1e-3, "it comes to rest")
 
 
-def a_shape_is_without_stress_on_its_own_file():
+def a_shape_read_as_stress_free_has_no_stress():
     """If the stress-free shape is read from the surface file of a spheroid, a stretched spheroid has the same energy as
     if the spheroid itself is the stress-free shape."""
     run(deck(DECK), "--set", "Membrane/stress-free shape=resting", "--set", "Time/final time=0.01", "--output", "own", "--quiet")
@@ -40,7 +40,7 @@ def a_shape_is_without_stress_on_its_own_file():
     run("--resume", "filed", "--quiet", "--set", "Time/final time=0.02")
 
 
-def two_processes_do_what_one_does():
+def two_ranks_agree_with_one():
     words = ["--set", "Time/fixed step=0.1", "--set", "Time/final time=0.3", "--set", "Output/interval=0.3", "--quiet"]
     words += ["--set", "Particle/shape=red cell", "--set", "Particle/radius=1", "--set", "Membrane/stress-free shape=spheroid"]
     words += ["--set", "Membrane/stress-free reduced volume=0.95", "--set", "Membrane/bending number=0.01", "--set", "Membrane/spontaneous curvature=1.5"]
@@ -52,7 +52,7 @@ def two_processes_do_what_one_does():
         check(numpy.max(abs(one - two)) <= 1e-10 * numpy.max(abs(one)), f"{name} differs by {numpy.max(abs(one - two))}")
 
 
-def a_deck_that_makes_no_sense_is_refused():
+def contradictory_decks_are_rejected():
     spheroid = "Membrane/stress-free shape=spheroid"
     for settings, sentence in (
         ([spheroid, "Membrane/stress-free reduced volume=1.2"], "Membrane/stress-free reduced volume"),

@@ -26,7 +26,7 @@ def _close(one, other, tolerance):
         check(len(a) == len(b) and numpy.max(abs(a - b)) <= tolerance * numpy.max(abs(a)), f"{name} differs by {numpy.max(abs(a - b))}")
 
 
-def two_processes_do_what_one_does_and_the_mass_is_kept():
+def two_ranks_agree_with_one_and_the_mass_is_conserved():
     for ranks in 1, 2:
         run(deck(DECK), "--output", f"on_{ranks}", "--quiet", ranks=ranks)
         mass = series(f"on_{ranks}", "surfactant_mass")
@@ -46,14 +46,14 @@ def implicit_steps_do_not_depend_on_the_unit_of_time():
         check(off < 1e-12, name, "differs by", off)
 
 
-def a_run_goes_on_as_if_it_had_not_stopped():
+def a_resumed_run_agrees_with_an_uninterrupted_one():
     run(deck(DECK), "--output", "whole", "--quiet")
     run(deck(DECK), "--set", "Time/final time=0.4", "--output", "parts", "--quiet")
     run("--resume", "parts", "--set", "Time/final time=0.8", "--quiet")
     _close("whole", "parts", 1e-13)  # the time 0.4 is reached by different sums of steps
 
 
-def a_mesh_that_slides_and_one_that_goes_with_the_fluid_carry_it_alike():
+def the_concentration_does_not_depend_on_the_motion_of_the_mesh():
     for motion in "relaxed", "material":
         words = ["--set", "Flow/type=uniaxial extension", "--set", f"Interface/motion={motion}", "--set", "Surface/elements per side=8"]
         words += ["--set", "Membrane/capillary number=0.05", "--set", "Time/scheme=rkc2"]
@@ -64,7 +64,7 @@ def a_mesh_that_slides_and_one_that_goes_with_the_fluid_carry_it_alike():
     check(largest > 1.2, f"hardly anything is swept to the poles: {largest}")
 
 
-def a_run_without_tension_left_says_so_and_leaves_a_checkpoint():
+def a_run_whose_tension_vanishes_reports_this_and_writes_a_checkpoint():
     words = ["--set", "Interface/surfactant/elasticity number=0.9", "--set", "Flow/type=uniaxial extension", "--set", "Membrane/capillary number=0.5"]
     told = run(deck(DECK), *words, "--output", "spent", "--quiet", code=3).stderr
     check("the surface tension vanishes where the surfactant concentration is 1." in told, told)

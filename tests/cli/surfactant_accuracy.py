@@ -54,7 +54,7 @@ def implicit_schemes_have_their_orders_and_agree_with_the_explicit_one():
         check(mass < 1e-12, f"the mass of {scheme} is off by {mass}")
 
 
-def a_steady_search_finds_what_a_run_comes_to():
+def a_steady_search_finds_the_final_shape_of_a_run():
     """In shear, the mesh of the run in time has rotated slightly with the drop, and the mesh of the search has not. The
     two results therefore differ by discretisation errors."""
     for flow, capillary, most in ("uniaxial extension", 0.05, (1e-6, 1e-6)), ("simple shear", 0.1, (1e-4, 1e-4)):
@@ -67,7 +67,7 @@ def a_steady_search_finds_what_a_run_comes_to():
             check(off < tolerance, f"{name} in {flow} differs by {off}")
 
 
-def branches_pass_through_what_searches_find():
+def branches_agree_with_separate_searches():
     ends = {"Interface/surfactant/elasticity number": (0.4, {"Interface": {"surfactant": {"elasticity number": 0.4}}}),
             "Membrane/capillary number": (0.055, {"Membrane": {"capillary number": 0.055}})}
     # difference of the concentration; in shear it is the discretisation error explained above
@@ -83,7 +83,7 @@ def branches_pass_through_what_searches_find():
             check(mass < 1e-12, f"the mass is off by {mass}")
 
 
-def a_mesh_that_adapts_does_what_a_finer_one_does_with_fewer_points():
+def an_adaptive_mesh_has_the_accuracy_of_a_finer_one_with_fewer_points():
     """Until D = 0.41, on a mesh with the motion `relaxed`. The points of the finer mesh move with the fluid, so that
     they gather where the surfactant gathers. The estimated error is of one interpolation, 3e-5 of the mean
     concentration. The measured errors of the largest concentration accumulate in time, up to 1.8e-4."""
@@ -109,7 +109,7 @@ def _pair(n, centers, **more):
     return deck(yaml.safe_dump({"Tanktread": _merged(scene, more)}))
 
 
-def two_drops_do_the_same_on_finer_meshes():
+def two_drops_agree_with_finer_meshes():
     apart, time = [[-1.25, 0, 0.25], [1.25, 0, -0.25]], {"tolerance": 1e-5, "final time": 0.5}
     scenes = {"in shear": (apart, {}), "in a lattice": (apart, {"Domain": {"side lengths": [5, 4, 4]}}),
               "in a tube": ([[-0.6, 0, 0.1], [0.6, 0, 0]],
@@ -122,7 +122,7 @@ def two_drops_do_the_same_on_finer_meshes():
             check(off < 1e-3, f"{name} {where} differs by {off}")
 
 
-def two_cells_of_a_lattice_do_what_one_does():
+def two_cells_of_a_lattice_agree_with_one():
     time, tolerance = {"scheme": "bs3", "fixed step": 0.02, "final time": 0.2}, {"tolerance": 1e-6}
     run(_pair(4, [[0, 0, 0]], Time=time, Quadrature=tolerance, Domain={"side lengths": [3.2, 3.2, 3.2]}), "--output", "one", "--quiet")
     run(_pair(4, [[-1.6, 0, 0], [1.6, 0, 0]], Time=time, Quadrature=tolerance, Domain={"side lengths": [6.4, 3.2, 3.2]}), "--output", "two", "--quiet")

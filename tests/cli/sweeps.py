@@ -47,7 +47,7 @@ def _rows(path="results/study/table.csv"):
         return list(csv.DictReader(file))
 
 
-def what_stays_in_a_constriction_is_told_from_what_creeps():
+def particles_that_are_stuck_are_distinguished_from_slow_ones():
     from tanktread.studies import critical
     t = numpy.linspace(0, 30, 301)
     check(critical.stays(t, 1 - numpy.exp(-t), 1, 1), "it came to rest")
@@ -60,7 +60,7 @@ def what_stays_in_a_constriction_is_told_from_what_creeps():
     check(refused.returncode == 2 and "ascend" in refused.stderr, refused.stderr)
 
 
-def both_ends_of_a_critical_value_were_run():
+def both_bounds_of_a_critical_value_are_runs():
     from tanktread.studies import critical
     runs = []
     with mock.patch.object(critical, "stays_at", lambda parsed, study, value: runs.append(value) or value < 1.2):
@@ -84,7 +84,7 @@ def the_atlas_finds_the_largest_step_of_a_scheme():
         check(how == expected and step in steps and (expected != "edge" or step <= 1.5 * limit < 1.1 * step), stable, step / limit, how)
 
 
-def tumbling_is_told_from_treading_by_shape_and_membrane():
+def tumbling_and_tank_treading_are_distinguished_by_shape_and_membrane():
     from tanktread.studies import phases
     t = numpy.linspace(0, 40, 801)
     shape = 360 * t / 22  # the shape makes half a turn in a time of 11, in the same sense as the phase
@@ -105,7 +105,7 @@ def tumbling_is_told_from_treading_by_shape_and_membrane():
     check(told(numpy.nan * t, shape) is None, "it stays a sphere")
 
 
-def slipping_is_told_from_a_parachute_by_how_askew_a_cell_is():
+def slipping_and_parachutes_are_distinguished_by_the_asymmetry_of_the_cell():
     from tanktread.studies import phases
     t = numpy.linspace(0, 160, 81)
     fading, growing = numpy.exp(-0.02 * t), numpy.exp(0.02 * t)
@@ -130,7 +130,7 @@ def slipping_is_told_from_a_parachute_by_how_askew_a_cell_is():
         close(askew, 0.03 * numpy.exp(-0.02 * after), 2e-4, "the largest one in the first and the last third of the rest")
 
 
-def a_border_is_found_about_the_last_one_and_where_it_is_not():
+def a_border_is_found_near_the_previous_one_and_elsewhere():
     from tanktread.studies import phases
     deck(DECK)
     deck("""
@@ -168,7 +168,7 @@ curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}
         check(refused.returncode == 2 and said in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
 
 
-def a_phase_diagram_without_a_border_is_a_table_and_a_sentence():
+def a_phase_diagram_without_a_border_gives_a_table_and_a_sentence():
     deck(DECK)
     deck("deck: deck.yaml\nalong: {key: Flow/shear rat, from: 1, to: 2, within: 1.1}\nacross: {Particle/radius: [1]}\ncurves: {one: {}}\n", "phases.yaml")
     ended = package("phases", "phases.yaml")
@@ -186,7 +186,7 @@ def a_diagram_over_values_that_are_not_positive_is_drawn():
     check(axes.get_xscale() == "linear" and axes.get_xlim()[0] < -1, axes.get_xlim())
 
 
-def what_drifts_over_many_turns_is_told_from_what_swings():
+def drift_over_many_turns_is_distinguished_from_swinging():
     from tanktread.figures import suspensions as drift
     t = numpy.linspace(0, 100, 20001)
     phase = 360 * t / 2 + 10 * numpy.sin(numpy.pi * t)
@@ -196,7 +196,7 @@ def what_drifts_over_many_turns_is_told_from_what_swings():
     check(abs(change - 1e-3 * 2 * 44) < 1e-6 and error < 1e-6, f"{change} {error}")
 
 
-def what_sharp_edges_do_is_told_from_two_roundings():
+def results_for_sharp_edges_are_extrapolated_from_two_radii():
     from tanktread.figures import accuracy as step
     q = step.power() / 2
     close(numpy.sin(1.5 * numpy.pi * q), q, 1e-14, "the velocity beside an edge of 90 degrees")
@@ -209,7 +209,7 @@ def what_sharp_edges_do_is_told_from_two_roundings():
     check(refused.returncode == 2 and "no such deck" in refused.stderr, refused.stderr)
 
 
-def a_deck_with_keys_changed_is_run_once_and_a_surface_is_evaluated_anywhere():
+def a_deck_with_changed_keys_is_run_once_and_its_surface_is_evaluated():
     path = deck(DECK).resolve()
     found = tanktread.run(path, {"Particle/semi-axes": [1.0, 1.0, 0.8], "Particle/shape": "spheroid"})
     check(found.value("Particle/shape") == "spheroid" and found.series["time"][-1] == 0.5, "another run")
@@ -226,7 +226,7 @@ def a_deck_with_keys_changed_is_run_once_and_a_surface_is_evaluated_anywhere():
     close(abs(shot.evaluate(shot.points, cells, s, t, ds=1) - slope).max(), 0, 1e-7, "a derivative")
 
 
-def a_run_is_made_again_where_a_file_that_its_deck_names_has_changed():
+def a_run_is_repeated_if_a_file_named_in_its_deck_has_changed():
     deck(DECK.replace("simple shear", "simple shear, history: { file: history.csv }"))
     ends = []
     for factor in 1, 2:
@@ -247,7 +247,7 @@ def a_run_is_made_again_where_a_file_that_its_deck_names_has_changed():
     check(name(["a/deck.yaml"], {}) != name(["b/deck.yaml"], {}), "a file beside the deck")
 
 
-def a_column_at_a_time_is_as_exact_as_the_run_and_one_outside_it_is_said():
+def a_column_at_a_given_time_is_interpolated_exactly_and_times_outside_the_run_are_reported():
     deck(DECK)
     pathlib.Path("study.yaml").write_text("deck: deck.yaml\ngrid: {Time/final time: [0.5, 0.3]}\nrecord: {D: {series: taylor_inertia, at: 0.37},\n"
                                           "  end: {series: taylor_inertia, at: 0.3}}\n")
@@ -310,7 +310,7 @@ def values_with_units_are_numbers_in_the_unit_of_the_deck():
     check(tanktread.runs.Study(PROGRAM).dimension("Particles/cell/radius") == "length", "a key of one of several particles")
 
 
-def random_values_come_again_and_lists_go_together():
+def random_values_are_reproducible_and_lists_are_combined_in_order():
     deck(DECK)
     deck("deck: deck.yaml\nrecord: [taylor_inertia]\ntogether: {A/x: [1, 2], A/y: [3, 4]}\n"
          "random: {number: 3, seed: 7, keys: {B/z: {from: 0.01, to: 100.0, spacing: logarithmic}}}\n", "study.yaml")
@@ -319,7 +319,7 @@ def random_values_come_again_and_lists_go_together():
     check("A/x=1, A/y=3" in said and "A/x=2, A/y=4" in said and "A/x=1, A/y=4" not in said, said)
 
 
-def one_that_fails_does_not_stop_the_others_and_none_at_all_is_said():
+def a_failed_run_does_not_stop_the_sweep_and_a_sweep_of_failures_is_reported():
     deck(DECK)
     deck(STUDY.replace("[bs3, tr-bdf2]", "[bs3, nonsense]"), "study.yaml")
     _sweep("study.yaml")
@@ -329,7 +329,7 @@ def one_that_fails_does_not_stop_the_others_and_none_at_all_is_said():
     check("none of the runs" in _sweep("study.yaml", code=1), "a sweep of failures")
 
 
-def a_run_that_reached_its_limit_is_made_again_with_a_larger_one():
+def a_run_that_reached_its_limit_is_repeated_with_a_larger_limit():
     deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "scheme: bs3, final time: 40.0"))  # two processor seconds
     ends, times = [], []
     for limit in "limit: 1", "limit: 1", "":
@@ -358,7 +358,7 @@ def a_limit_is_not_rounded_to_seconds():
         check("limit must be a number above 0" in said and words in said and said.count("\n") == 1, said)
 
 
-def a_sweep_that_is_killed_goes_on():
+def a_killed_sweep_continues():
     deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "final time: 8.0"))
     deck(STUDY, "study.yaml")
     for number in signal.SIGTERM, signal.SIGKILL:
@@ -379,7 +379,7 @@ def a_sweep_that_is_killed_goes_on():
     check(all(path.stat().st_mtime_ns == when for path, when in kept.items()), "a run that was there is made again")
 
 
-def mistakes_are_one_sentence():
+def mistakes_are_reported_in_one_sentence():
     deck(DECK)
     for text, words in (("deck: nowhere.yaml\nrecord: [a]", "no deck nowhere.yaml"), ("deck: deck.yaml", "records nothing"),
                         ("deck: deck.yaml\nkeys: {}", "keys is not known"), ("deck: deck.yaml\nrecord: {D: {take: most}}", "take most"),

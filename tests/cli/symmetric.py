@@ -32,7 +32,7 @@ def a_capsule_in_planar_hyperbolic_flow():
     check(_compare("Flow/type=planar hyperbolic", "Membrane/law=Skalak", "Membrane/capillary number=0.6") >= 3.5, "hardly less work")
 
 
-def an_ellipsoid_with_a_viscous_inside():
+def an_ellipsoid_with_a_viscous_interior():
     # the tolerance of the solver for the velocity must be below the tolerance of the comparison
     check(_compare("Particle/viscosity ratio=3", "Particle/shape=ellipsoid", "Particle/semi-axes=[1.2, 1.0, 0.9]", "Surface/elements per side=4",
                    "Time/final time=0.5", "Solvers/tolerance=1e-12") >= 2.5, "hardly less work")

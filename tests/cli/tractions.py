@@ -37,7 +37,7 @@ def _same(one, other):
         check(off <= 1e-10, one, other, name, off)
 
 
-def ranks_and_a_pause_change_nothing():
+def results_do_not_depend_on_ranks_and_resumption():
     for ratio, scheme in ("1.0", ""), ("5.0", ", scheme: tr-bdf2"):
         deck(SCENE % (ratio, scheme))
         run("deck.yaml", "--output", "one", "--quiet", "--overwrite")

@@ -36,7 +36,7 @@ def _one(*settings, viscosity_ratio=1, ranks=1, at=-1):
     return {name: series("one", name)[at] for name in NAMES}
 
 
-def several_periods_do_what_one_does():
+def several_periods_agree_with_one():
     """The runs agree up to the accuracy of rounding and of the lattice sums, also after explicit steps."""
     steps = ("Time/scheme=bs3", "Time/fixed step=0.01", "Time/final time=0.02")
     for ratio in (1, 4):
@@ -72,7 +72,7 @@ Tanktread:
         check(counts["velocity_solves"] == 7 * counts["evaluations"], f"solves are counted again: {counts}")
 
 
-def a_particle_that_has_overtaken_another_by_a_period_does_the_same():
+def a_particle_shifted_by_a_period_gives_the_same_result():
     _run(_several(2, 4), "here", "Time/scheme=bs3")
     _run(_several(2, 4, shift=4.0), "there", "Time/scheme=bs3")
     for name in ("p0/velocity_x1", "p1/velocity_x1", "p0/velocity_x3", "disturbed_pressure_drop"):
@@ -81,7 +81,7 @@ def a_particle_that_has_overtaken_another_by_a_period_does_the_same():
         check(abs(off).max() < 1e-6, f"{name}: {off}")
 
 
-def a_domain_along_the_tube_is_its_period():
+def a_domain_along_the_tube_sets_its_period():
     one = _one(viscosity_ratio=4)
     text = ONE.replace(", periodic length: 2.0", "").replace("  Time:", "  Domain: {periodic: x1, side lengths: [2.0]}\n  Time:")
     _run(text, "domain", "Particle/viscosity ratio=4")
@@ -89,7 +89,7 @@ def a_domain_along_the_tube_is_its_period():
         check(series("domain", name)[-1] == one[name], name)
 
 
-def a_body_is_solved_for_alike_as_particle_and_in_a_list():
+def a_body_in_particle_and_in_particles_gives_the_same_result():
     """The sections Particle and Particles with one particle describe the same scene. By default the unknown is the
     traction in both."""
     for motion in ("free", "prescribed"):
@@ -101,7 +101,7 @@ def a_body_is_solved_for_alike_as_particle_and_in_a_list():
         check(abs(series("particle", "disturbed_pressure_drop") - series("list", "disturbed_pressure_drop")).max() == 0, motion)
 
 
-def a_held_flow_rate_and_the_pressure_drop_that_gives_it_do_the_same():
+def a_prescribed_flow_rate_and_its_pressure_drop_give_the_same_result():
     """The pressure gradient of the empty tube is 8 mu V/R^2. An empty tube with the total pressure drop of the tube
     with the particle is therefore faster by Delta p^D/(8 L), for mu = V = R = 1."""
     for ratio in (1, 4):
@@ -128,7 +128,7 @@ Tanktread:
 """
 
 
-def a_channel_that_repeats_does_the_same_across_its_seam():
+def a_periodic_channel_gives_the_same_result_across_its_seam():
     _run(CHANNEL, "inside")
     _run(CHANNEL.replace("[-2.4,", "[2.6,"), "beyond")
     for name in ("velocity_x1", "disturbed_pressure_drop", "gap", "stresslet_13"):
@@ -140,7 +140,7 @@ def a_channel_that_repeats_does_the_same_across_its_seam():
     check(abs(by_force - drop).max() < 5e-3 * drop.max(), f"by force {by_force}, {drop}")
 
 
-def a_channel_that_repeats_has_the_same_balance_of_power_on_two_ranks():
+def the_power_balance_of_a_periodic_channel_is_the_same_on_two_ranks():
     # more than 64 points, so that ranks share the work
     short = ("Output/power balance=true", "Time/final time=0.05", "Surface/elements per side=4")
     for ranks in (1, 2):
@@ -167,7 +167,7 @@ Tanktread:
 """
 
 
-def spheres_by_their_tractions_are_those_of_multipoles():
+def spheres_solved_for_by_tractions_agree_with_multipoles():
     run(deck(SPHERES), "--output", "spheres", "--quiet")
     for name, exact, within in (("sphere/velocity_x1", 1.67980599962, 1e-5), ("disturbed_pressure_drop", 0.521548970797, 5e-5)):
         found = series("spheres", name)[0]
@@ -191,19 +191,19 @@ def a_body_far_from_the_origin_moves_like_one_at_the_origin():
         check(off < 1e-6, f"radius {radius}: {off}")  # Solvers/tolerance limits the agreement
 
 
-def ranks_give_the_same():
+def ranks_give_the_same_result():
     one, two = _one(viscosity_ratio=4), _one(viscosity_ratio=4, ranks=2)
     for name in one:
         check(abs(one[name] - two[name]) < 1e-9 * max(1, abs(one[name])), f"{name}: {one[name]} {two[name]}")
 
 
-def the_plan_says_what_is_around_several():
+def the_plan_states_the_periodic_tube_of_several_particles():
     pair = HEAD + "  Particles:\n    defaults: {radius: 0.4, %s}\n    one: {center: [-0.5, 0.0, 0.0]}\n    two: {center: [0.5, 0.0, 0.0]}\n" % BODY
     told = run(deck(pair, "pair.yaml"), "--check").stdout
     check(all(word in told for word in ("section `circle`", "one period of the wall", "unknowns of the traction")) and "unbounded" not in told, told)
 
 
-def mistakes_are_told():
+def mistakes_are_reported():
     refused(["Tube/images", "0"], deck(ONE), "--set", "Tube/images=0")
     refused(["1e+09", "memory"], deck(ONE.replace("axial elements: 8, ", "")), "--set", "Tube/periodic length=1e9")
     refused(["Tube/periodic length", "Domain"], deck(ONE.replace("  Time:", "  Domain: {periodic: x1, side lengths: [2.0]}\n  Time:")))

@@ -46,7 +46,7 @@ def _refused(words, *settings):
     refused(words, deck(DECK), *_words(settings))
 
 
-def what_contradicts_the_tube_is_refused():
+def decks_that_contradict_the_tube_are_rejected():
     _refused(["Tube", "planar hyperbolic", "duct", "simple shear"], "Flow/type=planar hyperbolic")
     _refused(["Flow/mean velocity", "simple shear"], "Flow/type=simple shear", "Flow/mean velocity=2")
     _refused(["Membrane/capillary number", "gradient"], "Flow/type=quiescent")
@@ -59,7 +59,7 @@ def what_contradicts_the_tube_is_refused():
     check("needs a section Tube" in run(without, "--check", code=2).stderr, "a duct without a tube")
 
 
-def a_particle_that_does_not_fit_is_refused_with_its_numbers():
+def a_particle_that_does_not_fit_is_rejected_with_its_dimensions():
     _refused(["does not fit", "beyond the wall", "0.357", "R_C = 1.2", "R_T = 1"], "Particle/radius=1.2")
     _refused(["Particle/center", "outside of the tube", "0.5"], "Particle/center=[0.0, 0.0, 1.5]")
     _refused(["too close", "gap is 0.00995", "0.02"], "Particle/center=[0.0, 0.0, 0.39]")
@@ -67,7 +67,7 @@ def a_particle_that_does_not_fit_is_refused_with_its_numbers():
     _refused(["Tube/length", "at least 5.6", "is 5"], "Tube/length=5.0", "Particle/initial shape/stretch=[1.8, 0.8, 0.7]")
 
 
-def a_wrong_outline_is_refused_with_its_numbers():
+def a_wrong_outline_is_rejected_with_its_values():
     as_file = ["Tube/section=file", "Tube/outline=outline.csv", "Flow/mean velocity=1"]
     _refused(["outline.csv"], *as_file)  # there is none
     _outline(_ellipse(way=-1))
@@ -88,7 +88,7 @@ def _compare(one, other, tolerance):
         check(off <= tolerance, f"{name} differs by {off:.2e}")
 
 
-def two_ranks_give_the_answer_of_one():
+def two_ranks_give_the_result_of_one():
     for settings in ["Particle/viscosity ratio=1"], ["Particle/viscosity ratio=5", "Time/final time=0.1"]:
         for ranks in 1, 2:
             run(deck(DECK), *_words(settings), "--output", f"on_{ranks}", "--overwrite", "--quiet", ranks=ranks)
@@ -123,7 +123,7 @@ Tanktread:
 """
 
 
-def the_block_system_has_the_loads_that_depend_on_the_velocity_and_keeps_every_volume():
+def the_block_system_includes_velocity_dependent_loads_and_conserves_every_volume():
     """A prescribed body and a viscous membrane together with other particles, in a tube with ends and in a periodic
     tube."""
     viscous = DECK.replace("pre-inflation: 0.02", "pre-inflation: 0.02, shear viscosity: 1.0")
@@ -141,7 +141,7 @@ def the_block_system_has_the_loads_that_depend_on_the_velocity_and_keeps_every_v
         check(off < 1e-6, f"{name}: {found}")
 
 
-def a_run_ends_where_its_only_particle_gets_too_long_for_the_tube():
+def a_run_ends_when_its_only_particle_is_too_long_for_the_tube():
     needle = """
 Tanktread:
   Flow: {type: duct}
@@ -155,7 +155,7 @@ Tanktread:
     check("Tube/length = 3.72 is too short" in said and "the particle has become" in said, said)
 
 
-def a_run_goes_on_in_the_tube_to_the_same_last_bit():
+def a_run_in_a_tube_is_resumed_bitwise_equal():
     _outline(_ellipse())
     path = deck(DECK.replace("section: circle", "section: file, outline: outline.csv, flow elements: 24"))
     run(path, "--output", "whole", "--quiet")
@@ -167,13 +167,13 @@ def a_run_goes_on_in_the_tube_to_the_same_last_bit():
         check(a.tobytes() == b.tobytes(), f"{name} differs")
 
 
-def a_strong_load_acts_in_a_tube_as_well():
+def the_strong_form_of_the_load_acts_in_a_tube():
     run(deck(DECK), "--set", "Membrane/load=strong", "--set", "Time/final time=0.01", "--output", "out", "--quiet")
     # tolerance for this coarse mesh
     check(abs(series("out", "disturbance_flux")).max() < 1e-2, series("out", "disturbance_flux"))
 
 
-def contact_stops_the_run_with_a_checkpoint_to_go_on_from():
+def contact_ends_the_run_with_a_checkpoint_that_can_be_resumed():
     capillary = ["Tube/section=file", f"Tube/outline={SOURCE}/inputs/capillary_outline.csv", "Tube/flow elements=48", "Particle/center=[0.0, 0.2, 0.0]"]
     said = run(deck(DECK), *_words(capillary + ["Tube/contact gap=0.195"]), "--output", "out", "--quiet", code=3).stderr
     for word in "touches the wall", "gap is 0.11", "0.195 R_C = 0.117", "at time", "checkpoint", "out":

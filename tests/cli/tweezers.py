@@ -34,7 +34,7 @@ def _harmonics(force, radius, degree):
 
 
 def _stretch(force, radius, degree=60):
-    """Half lengths along and across two opposite forces, less 1, of a sphere of shear modulus 1 and area modulus 3.
+    """Returns the half lengths along and across two opposite forces, minus 1, of a sphere with shear modulus 1 and area modulus 3.
 
     Displacements a Y r + b grad Y balance a load of harmonic l by 2 K (2a - L b) = p_r and G (L - 2) b - K (2a - L b) = p_t, L = l (l + 1)."""
     along = across = 0.0
@@ -55,7 +55,7 @@ def _drift(force, radius):
     return 2 / 3 * (radial + 2 * tangential) / 3 - 2 / 15 * (tangential - radial) / 3
 
 
-def a_sphere_stretches_as_linear_theory_says():
+def a_sphere_is_stretched_as_in_linear_theory():
     run(deck(DECK), "--output", "pulled", "--quiet")
     along, across = _stretch(0.001, 0.8)
     for name, expected in ("length_x1", along), ("length_x2", across), ("length_x3", across):
@@ -66,14 +66,14 @@ def a_sphere_stretches_as_linear_theory_says():
     check(series("pulled", "normal_velocity")[-1] < 1e-5, "it still moves")
 
 
-def one_force_drives_the_centroid():
+def a_single_force_moves_the_centroid():
     words = ["--set", "Membrane/forces/left/force=[0, 0, 0]", "--set", "Time/final time=1e-3", "--set", "Time/tolerance=1e-4"]
     run(deck(DECK), *words, "--output", "towed", "--quiet")
     found, expected = series("towed", "velocity_x1")[0], _drift(0.001, 0.8)
     check(abs(found - expected) < 1e-3 * expected, f"the centroid moves at {found} where the load gives {expected}")
 
 
-def a_deck_that_makes_no_sense_is_refused():
+def contradictory_decks_are_rejected():
     for setting, sentence in (
         ("Membrane/forces/left/direction=[0, 0, 0]", "must not be zero"),
         ("Membrane/forces/left/direction=[2, 0, 0]", "act on the same point"),

@@ -51,11 +51,11 @@ def _is_the_same_in_other_units(scene, **words):
     return one, remarks, other_remarks
 
 
-def a_membrane_that_resists_bending():
+def a_membrane_with_bending_stiffness():
     _is_the_same_in_other_units(SHEAR)
 
 
-def meshes_that_refine_themselves():
+def adaptive_meshes():
     for indicator in "error", "variation":
         one, *moved = _is_the_same_in_other_units(REFINED, indicator=indicator)
         check(moved[0] == moved[1] and len(moved[0]) == 1, "how far the surface was moved:", moved)

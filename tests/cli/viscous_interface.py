@@ -32,7 +32,7 @@ def _deformation(capillary, ratio, shear, dilatational):
     return capillary / 8 * (5 + (3 + 4.5 * ratio + 6 * dilatational) * w)
 
 
-def shapes_at_rest_in_slow_flows_are_those_of_small_deformation():
+def steady_shapes_in_slow_flows_agree_with_small_deformation_theory():
     """In shear, D/Ca is an even function of Ca, because reversing the flow mirrors the shape; one value, Ca = 1e-3, is
     therefore enough. In extension, the limit is extrapolated from three values. The discretisation error is 5e-5 to
     9e-5."""
@@ -52,7 +52,7 @@ def shapes_at_rest_in_slow_flows_are_those_of_small_deformation():
         check(abs(found / (1.5 * exact) - 1) < 1e-4, f"D/Ca is {found} in extension where theory gives {1.5 * exact}")
 
 
-def what_flows_in_becomes_heat_in_fluids_and_interface():
+def the_power_of_the_flow_is_dissipated_in_fluids_and_interface():
     """With 6 elements per side, the residual of the power balance is below 1e-4. It decreases with the fourth power of
     the element size."""
     residuals = []
@@ -67,7 +67,7 @@ def what_flows_in_becomes_heat_in_fluids_and_interface():
     check(abs((fluids + interface) / flow - 1) < 1e-4, f"{fluids} and {interface} become heat of {flow}")
 
 
-def implicit_schemes_do_what_explicit_ones_do():
+def implicit_and_explicit_schemes_agree():
     """The mesh has the motion `relaxed` or `material`. The dissipation in the interface must be computed from the
     velocity of the fluid. The error of each scheme is below three times Time/tolerance."""
     found = {}
@@ -83,7 +83,7 @@ def implicit_schemes_do_what_explicit_ones_do():
             check(abs(one / other - 1) < 1e-3, f"{name}: {one} where bs3 has {other}")
 
 
-def a_surfactant_flows_on_a_viscous_interface():
+def a_surfactant_on_a_viscous_interface():
     words = ["--set", "Interface/surfactant={elasticity number: 0.3, Peclet number: 10}"]
     words += _set(Time__scheme="rkc2", Output__power_balance="true")
     run(deck(RUN), *words, "--output", "laden", "--quiet")
@@ -91,7 +91,7 @@ def a_surfactant_flows_on_a_viscous_interface():
     check(_last("largest_concentration", "laden") > 1.02, "hardly any surfactant is swept away")
 
 
-def loads_of_viscous_membranes_may_be_measured_on_the_present_surface():
+def loads_of_viscous_membranes_per_current_area_agree_with_those_per_reference_area():
     """Both measures give the same load up to the discretisation error."""
     found = []
     for measure in "reference", "current":
@@ -115,7 +115,7 @@ Tanktread:
 """
 
 
-def two_processes_do_what_one_does_and_a_run_goes_on():
+def two_ranks_agree_with_one_and_a_run_is_resumed():
     for ranks in 1, 2:
         run(deck(SEVERAL), "--output", f"on_{ranks}", "--quiet", ranks=ranks)
     run(deck(SEVERAL), *_set(Time__final_time=0.05), "--output", "parts", "--quiet")
@@ -126,7 +126,7 @@ def two_processes_do_what_one_does_and_a_run_goes_on():
             check(abs(_last(name, other) / whole - 1) < 1e-10, f"{name} is {_last(name, other)} in {other} and {whole}")
 
 
-def a_deck_that_makes_no_sense_is_refused():
+def contradictory_decks_are_rejected():
     for setting, sentence in (
         ("Membrane/load=strong", "implemented in the form `weak` only"),
         ("Membrane/relaxation time=1", "the interface has no stress-free shape"),

@@ -36,7 +36,7 @@ def a_sphere_relaxes_at_the_rate_of_linear_theory():
         check(abs(found - expected) < 2e-5, f"rate {found:.6f} where theory gives {expected:.6f}")
 
 
-def what_the_membrane_dissipates_comes_from_its_energy():
+def the_dissipation_in_the_membrane_is_the_loss_of_its_energy():
     """In a fluid at rest, the energy decreases by the dissipation in the fluids and in the membrane. The surface shear
     viscosity is 1000, so that the dissipation in the fluids is only a thousandth of the total."""
     words = ["--set", "Membrane/shear viscosity=1000", "--set", "Membrane/dilatational viscosity=3000", "--set", "Time/final time=1500"]
@@ -63,7 +63,7 @@ def _linear_rates(viscosity, relaxation, dilatational=0.0, harmonic=2):
     return sorted(-numpy.linalg.eigvals(numpy.block([[pull(1, 3) + springs, -springs], [forget, -forget]])).real)
 
 
-def a_membrane_with_a_memory_relaxes_at_the_rate_of_linear_theory():
+def a_viscoelastic_membrane_relaxes_at_the_rate_of_linear_theory():
     for relaxation in 0.2, 2.0:
         words = ["--set", f"Membrane/relaxation time={relaxation}", "--set", "Time/scheme=bs3", "--set", "Time/tolerance=1e-8"]
         run(deck(DECK), *words, "--set", "Time/final time=28", "--output", f"memory_{relaxation}", "--quiet")
@@ -73,7 +73,7 @@ def a_membrane_with_a_memory_relaxes_at_the_rate_of_linear_theory():
         check(abs(found - expected) < 1e-4, f"rate {found:.6f} where theory gives {expected:.6f}")
 
 
-def modes_of_a_membrane_with_a_memory_are_those_of_linear_theory():
+def modes_of_a_viscoelastic_membrane_are_those_of_linear_theory():
     """The modes of the second harmonic have four different rates. They lie among modes with the rate -1/T. Of the five
     modes with the same rate, two are symmetric about all mirror planes, and three are antisymmetric about two of the
     planes."""
@@ -93,7 +93,7 @@ def modes_of_a_membrane_with_a_memory_are_those_of_linear_theory():
         check((found < 1e-2).sum() == n, parity, exact, found)
 
 
-def what_flows_into_a_membrane_with_a_memory_is_stored_or_heat():
+def the_power_of_the_flow_is_stored_or_dissipated_in_a_viscoelastic_membrane():
     """The power balance holds up to the discretisation error of this coarse mesh. In the end, almost all power is
     dissipated, because the energy of the springs no longer changes."""
     words = ["--set", "Membrane/relaxation time=0.5", "--set", "Membrane/dilatational viscosity=0.5", "--set", "Time/scheme=bs3"]
@@ -114,7 +114,7 @@ def _agree(one, other, tolerance):
         check(abs(a - b) <= tolerance * abs(a), f"{name} is {a} and {b}")
 
 
-def two_processes_do_what_one_does_and_a_run_goes_on():
+def two_ranks_agree_with_one_and_a_run_is_resumed():
     words = ["--set", "Time/fixed step=0.05", "--set", "Particle/viscosity ratio=2", "--set", "Solvers/tolerance=1e-12", "--set", "Output/interval=0.1"]
     words += ["--set", "Flow/type=simple shear", "--set", "Surface/elements per side=3", "--set", "Time/newton tolerance=1e-3", "--quiet"]
     for kind, more in ("flows", []), ("forgets", ["--set", "Membrane/relaxation time=0.5", "--set", "Time/scheme=bs3"]):
@@ -126,7 +126,7 @@ def two_processes_do_what_one_does_and_a_run_goes_on():
         _agree(f"{kind}_on_1", f"{kind}_in_parts", 1e-12)
 
 
-def a_deck_that_makes_no_sense_is_refused():
+def contradictory_decks_are_rejected():
     for setting, sentence in (
         ("Membrane/shear viscosity=-1", "shear viscosity"),
         ("Membrane/load=strong", "implemented in the form `weak` only"),

@@ -16,9 +16,9 @@ GOOD = """Tanktread:
   Time: {final time: 0.01}
 """
 
-# (settings over the good deck, what the sentence must hold: path, rule, value; how many mistakes, if not one)
+# (settings added to the valid deck, words that the message must contain: path, rule, value; number of mistakes, if not one)
 SETTINGS = [
-    # unknown keys, with a guess
+    # unknown keys; the message suggests a key
     (["Flow/shaer rate=1"], ["Flow/shaer rate", "not a key", "Flow/shear rate"]),
     (["Flwo/type=linear"], ["Flwo", "not a key", "Flow"]),
     (["Membrane/Capillary Number=0.3"], ["Membrane/Capillary Number", "Membrane/capillary number"]),
@@ -48,7 +48,7 @@ SETTINGS = [
     (["Adaptation/film resolution=0.5"], ["Adaptation/film resolution", "several"]),
     (["Domain/periodic=true"], ["Domain", "periodic"]),
     (["Zebra/stripes=1"], ["Tube"]),
-    # unknown words
+    # values that are not among the choices
     (["Surface/axial elements=8"], ["Surface/axial elements", "`cylinder`"]),
     (["Surface/mesh=icosahedron"], ["Surface/mesh", "cube", "icosahedron"]),
     (["Flow/type=waterfall"], ["Flow/type", "simple shear", "waterfall"]),
@@ -66,7 +66,7 @@ SETTINGS = [
     (["Time/final time/value=3"], ["Time/final time", "a number", "a section of keys"]),
     (["Quadrature/far precision=single", "Quadrature/tolerance=1e-8"], ["Quadrature/far precision", "1e-08", "`double`"]),
     (["Quadrature/tolerance=nan"], ["Quadrature/tolerance", "a number", "nan"]),
-    # values outside their rule
+    # values outside the allowed range
     (["Membrane/shear modulus=-1"], ["Membrane/shear modulus", "positive", "force/length", "-1"]),
     (["Membrane/capillary number=0"], ["Membrane/capillary number", "positive", "0"]),
     (["Membrane/law=Hooke"], ["Membrane/law", "Skalak", "Hooke"]),
@@ -96,7 +96,7 @@ SETTINGS = [
     (["Output/wall-clock limit=-5"], ["Output/wall-clock limit", "positive", "seconds", "-5"]),
     (["Adaptation/enabled=true", "Adaptation/minimum length=0.6"], ["Adaptation/minimum length", "below", "0.482", "0.6"]),
     (["Adaptation/enabled=true", "Adaptation/largest number of points=56"], ["Adaptation/largest number of points", "above", "56"]),
-    # values beyond what can be computed with
+    # values too large or too small for floating-point arithmetic
     (["Particle/radius=1e300"], ["Particle/radius", "between 1e-75 and 1e75", "1e+300"]),
     (["Flow/shear rate=1e-300"], ["Flow/shear rate", "between 1e-75 and 1e75", "1e-300"]),
     (["Particle/center=[0, 0, 1e300]"], ["Particle/center", "between 1e-75 and 1e75", "1.0e+300"]),
@@ -145,9 +145,9 @@ SETTINGS = [
     (["Expect/energy/value=1"], ["Expect/energy/tolerance", "missing"]),
     (["Expect/volum/value=1", "Expect/volum/tolerance=1"], ["Expect/volum", "no series", "was volume meant?"]),
     (["Expect/V/series=volum", "Expect/V/value=1", "Expect/V/tolerance=1"], ["Expect/V/series", "no series volum", "was volume meant?"]),
-    # what rounding forbids
+    # values that rounding errors make unsolvable
     (["Particle/viscosity ratio=1e9"], ["Particle/viscosity ratio", "at most 1e+06", "Solvers/tolerance", "1e+09", "Particle/motion `free`"]),
-    # what the libraries that get a list know
+    # parameters that Trilinos packages do not accept
     (["Solvers/iterative solver=Foo"], ["Solvers/iterative solver", "GMRES", "Foo"]),
     (["Solvers/iterative solver=Hybrid Block GMRES"], ["Solvers/iterative solver", "BICGSTAB", "Hybrid Block GMRES"]),
     (["Solvers/iterative solver=Seed GMRES"], ["Solvers/iterative solver", "Seed GMRES"]),
@@ -166,11 +166,11 @@ SETTINGS = [
     (["Solvers/Belos/Maximum Iteration=30"], ["Solvers/Belos/Maximum Iteration", "was Solvers/Belos/Maximum Iterations meant?"]),
     (["Solvers/Belos/Maximum Iterations=many"], ["Solvers/Belos/Maximum Iterations", "whole number", "many"]),
     (["Solvers/Amesos2/Foo=1"], ["Solvers/Amesos2/Foo", "not a parameter"]),
-    # what Belos says is for the program; some of it needs MPI, which a process that no launcher started does not have
+    # output parameters of Belos, which the program sets itself
     (["Solvers/Belos/Verbosity=30"], ["Solvers/Belos/Verbosity", "cannot be set"]),
     (["Solvers/Belos/Num Blocks=30", "Solvers/Belos/Output Style=0"], ["Solvers/Belos/Output Style", "cannot be set"]),
     (["Solvers/iterative solver=GCRODR", "Solvers/Belos/Output Frequency=-1"], ["Solvers/Belos/Output Frequency", "cannot be set"]),
-    # numbers for lists and lists for numbers, in lists of others
+    # numbers instead of sections and sections instead of numbers, in the sections of Trilinos packages
     (["Solvers/Belos/Num Blocks/Verbosity=1"], ["Solvers/Belos/Num Blocks must be a whole number", "a section of keys"]),
     (["Solvers/Belos/Orthogonalization/Foo/Bar=1"], ["Solvers/Belos/Orthogonalization must be text", "a section of keys"]),
     (["Solvers/Belos/Output Stream/Foo=1"], ["Solvers/Belos/Output Stream", "a deck cannot contain"]),
@@ -187,7 +187,7 @@ SETTINGS = [
     (["Flow/shaer rate = 1"], ["Flow/shaer rate is not a key"]),
 ]
 
-# (text of the deck, what the sentence must hold)
+# (text of the deck, words that the message must contain)
 TEXTS = [
     ("", ["empty", "Tanktread"]),
     ("Tanktread:\n  Flow: {type: simple shear}\n", ["Time/final time", "missing"]),
@@ -227,15 +227,15 @@ def _imported(file):
                 f"  Particle: {{shape: file, file: {file}}}\n  Time: {{final time: 1}}\n", "imported.yaml")
 
 
-def wrong_settings_arerefused():
+def wrong_settings_are_rejected():
     path = deck(GOOD)
     check(len(SETTINGS) + len(TEXTS) >= 30, "fewer than thirty wrong decks")
     for settings, words, *mistakes in SETTINGS:
         refused(words, path, *[word for setting in settings for word in ("--set", setting)], mistakes=(*mistakes, 1)[0])
 
 
-def all_mistakes_are_told_at_once():
-    """A line each: wrong values, unknown keys, a list that is none; then, once these are mended, contradictions."""
+def all_mistakes_are_reported_together():
+    """One line per mistake: wrong values, unknown keys, a section with a value. When these are corrected, contradictions are reported."""
     def told(*settings):
         lines = run(deck(GOOD), *[word for setting in settings for word in ("--set", setting)], "--output", "refused", code=2).stderr.splitlines()
         check(all(line.startswith("tanktread: ") and line.endswith((".", "?")) for line in lines), lines)
@@ -260,7 +260,7 @@ def all_mistakes_are_told_at_once():
         refused([f"Particles/{name}", "name"], deck(shared.replace("radius: -1, colour: 3", "").replace("one:", f"'{name}':")))
 
 
-def solvers_and_their_lists_are_tried_before_a_run():
+def solvers_and_their_parameters_are_tested_before_a_run():
     for settings, words, *_ in [entry for entry in SETTINGS if "Solvers/" in entry[0][-1]]:
         refused(words, deck(GOOD), "--check", *[word for setting in settings for word in ("--set", setting)])
     for settings in (["Solvers/iterative solver=BICGSTAB"], ["Solvers/Belos/Num Blocks=30", "Solvers/Belos/Orthogonalization=ICGS"],
@@ -284,12 +284,12 @@ def suggested_keys_exist():
         check("not available" in said or "cannot be chosen" in said or "meant?" in said, said)
 
 
-def wrong_texts_arerefused():
+def wrong_deck_texts_are_rejected():
     for text, words in TEXTS:
         refused(words, deck(text))
 
 
-def wrong_files_arerefused():
+def wrong_files_are_rejected():
     refused(["missing.yaml", "does not exist"], "missing.yaml")
     os.mkdir("folder.yaml")
     refused(["folder.yaml", "directory"], "folder.yaml")
@@ -320,7 +320,7 @@ def wrong_files_arerefused():
         refused(["locked.yaml", "cannot be read"], "locked.yaml")
 
 
-def wrong_command_lines_arerefused():
+def wrong_command_lines_are_rejected():
     refused(["No deck", "--help"])
     refused(["--colour"], deck(GOOD), "--colour")
     check("--set" in run(deck(GOOD), "--set", code=2).stderr, "a setting without a value")
@@ -333,19 +333,19 @@ def wrong_command_lines_arerefused():
         check(not pathlib.Path("nowhere").exists(), "a directory was made")
 
 
-def several_ranks_speak_once():
+def several_ranks_print_one_message():
     result = run(deck(GOOD), "--set", "Flow/shaer rate=1", ranks=2, code=None)
     lines = [line for line in result.stderr.splitlines() if line.startswith("tanktread:")]
     check(result.returncode == 2, f"exit code {result.returncode}")
     check(len(lines) == 1, result.stderr)
 
 
-def the_good_deck_is_good():
+def the_unchanged_deck_is_valid():
     result = run(deck(GOOD), "--check")
     check("capillary number: 0.3" in result.stdout and "final time: 0.01" in result.stdout, result.stdout)
 
 
-def decks_of_other_editors_and_roomy_settings_are_good():
+def decks_of_other_editors_and_settings_with_spaces_are_valid():
     for text in ("\ufeff" + GOOD, GOOD.replace("\n", "\r\n")):
         pathlib.Path("other.yaml").write_text(text, encoding="utf-8", newline="")
         result = run("other.yaml", "--set", " Time/final time = 0.02", "--check")
@@ -355,9 +355,9 @@ def decks_of_other_editors_and_roomy_settings_are_good():
     run(_tube("outline.csv"), "--check")
 
 
-def shipped_decks_are_good_and_so_is_what_they_effectively_say():
+def shipped_decks_and_their_effective_decks_are_valid():
     for outline in (SOURCE / "inputs").glob("*.csv"):
-        shutil.copy(outline, ".")  # looked for beside the deck
+        shutil.copy(outline, ".")  # searched for next to the deck
     for path in sorted((SOURCE / "inputs").glob("*.yaml")):
         printed = run(path, "--check", "--quiet").stdout
         effective = printed.split("\n\n", 1)[0] + "\n"

@@ -1,4 +1,4 @@
-// A program that adds a field: a membrane that contracts after it was stretched.
+// A program that adds a field: a membrane that contracts after a stretch.
 
 #include <numeric>
 
@@ -64,7 +64,7 @@ class Reflex : public membrane::Field {
 
  private:
   ReflexOptions options_;
-  membrane::Membrane unit_;  // of the surface tension 1, whose energy is the area
+  membrane::Membrane unit_;  // membrane with the surface tension 1, whose energy is its area
   membrane::Tangent tangent_;
   std::vector<int> elements_;
   Net x_, gradient_;

@@ -1,4 +1,4 @@
-// A program that adds an ambient flow: a rotlet, the flow around a small body that turns.
+// A program that adds an ambient flow: a rotlet, the flow around a small rotating body.
 
 #include <Eigen/Geometry>
 

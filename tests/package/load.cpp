@@ -1,4 +1,4 @@
-// A program that adds a load: a trap that draws the membrane to a point, as optical tweezers do.
+// A program that adds a load: a trap that pulls the membrane to a point, like optical tweezers.
 
 #include <numeric>
 

@@ -14,7 +14,8 @@ struct SlipOptions {
 Vec3 mirrored(const Vec3& x, double height) { return {x[0], x[1], 2 * height - x[2]}; }
 Vec3 flipped(const Vec3& v) { return {v[0], v[1], -v[2]}; }
 
-/// The image of a force f at x is the force M f at the mirrored x, M = diag(1, 1, -1). Its velocity at x0 is M times that of f at the mirrored x0.
+/// The image of a force f at x is the force M f at the mirrored x, M = diag(1, 1, -1). The velocity at x0 due to
+/// the image is M times the velocity due to f at the mirrored x0.
 class SlipImages : public stokes::LayerMedium {
  public:
   explicit SlipImages(double height) : height_(height) {}

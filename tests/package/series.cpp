@@ -1,4 +1,4 @@
-// A program that adds series: of each particle how far it is stretched along a direction, of the run the largest speed of its particles' surfaces.
+// A program that adds two series: for each particle its length along a direction, and for the run the largest speed of the particles' surfaces.
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@ struct StretchOptions {
   void declare(deck::Section& section) { section.key("direction", direction, deck::any(), "1", "along which the extent is measured, of any length"); }
 };
 
-/// Extent of the control net.
+/// Computes the extent of the control net along `direction`.
 struct Stretch {
   Vec3 direction;
 

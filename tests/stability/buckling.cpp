@@ -1,7 +1,7 @@
-// Membrane under compression. Without resistance to bending, the fastest growing wave is the shortest one of the mesh; with it, the wave has a length
-// of its own. On a uniformly compressed sphere the wave is the lowest mode of the energy's second derivative H with respect to the mass matrix. A
-// flat membrane under the tension -T with bending modulus B has the eigenvalues -T k^2 + B k^4: not bounded below if B = 0, otherwise lowest at k^2 =
-// T/2B.
+// Membrane under compression. Without bending stiffness, the fastest growing wave is the shortest one of the mesh. With bending stiffness, its
+// wavelength does not depend on the mesh. On a uniformly compressed sphere the wave is the lowest mode of the energy's second derivative H with
+// respect to the mass matrix. A flat membrane under the tension -T with bending modulus B has the eigenvalues -T k^2 + B k^4: not bounded below if B
+// = 0, otherwise lowest at k^2 = T/2B.
 
 #include <cmath>
 
@@ -37,19 +37,19 @@ double lowest_wave(int n, double bending) {
   return std::sqrt(std::max(0.0, -u.dot(tense * u) / u.dot(m * u) / tension));
 }
 
-TEST(CompressedMembrane, WithoutBendingBucklesAsFinelyAsTheMeshAllows) {
+TEST(CompressedMembrane, WithoutBendingBucklesAtTheLengthOfTheElements) {
   const double coarse = lowest_wave(4, 0), fine = lowest_wave(5, 0);
   EXPECT_GT(fine, 1.25 * coarse);  // measured: 11.4 and 7.6, which is two elements per wave
   EXPECT_GT(coarse, 6);
 }
 
-TEST(CompressedMembrane, WithBendingBucklesInAWaveOfItsOwn) {
+TEST(CompressedMembrane, WithBendingBucklesAtAPhysicalWavelength) {
   const double coarse = lowest_wave(4, 2e-3), fine = lowest_wave(5, 2e-3);
   EXPECT_GT(coarse, 3);
   EXPECT_NEAR(fine / coarse, 1, 0.05);  // measured: 4.7 and 4.8
 }
 
-TEST(CompressedMembrane, WithMoreBendingBucklesInNoWaveShorterThanItself) { EXPECT_LT(lowest_wave(4, 0.1), 2); }
+TEST(CompressedMembrane, WithMoreBendingHasNoShortUnstableWave) { EXPECT_LT(lowest_wave(4, 0.1), 2); }
 
 }  // namespace
 }  // namespace tanktread

@@ -23,7 +23,7 @@ surface::Quality mesh_at(const std::string& motion, double time) {
   return surface::quality(map, run.state.x);
 }
 
-TEST(MeshOfADrop, CarriedWithTheFluidIsDrawnOutAndOnesThatAreNotKeepTheirShape) {
+TEST(MeshOfADrop, ConvectedWithTheFluidIsDistortedAndOtherMeshesAreNot) {
   const double carried = mesh_at("material", 2).aspect_ratio;
   for (const char* motion : {"normal", "relaxed"}) {
     const surface::Quality quality = mesh_at(motion, 2);

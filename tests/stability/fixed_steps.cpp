@@ -41,7 +41,7 @@ Settings capsule(double ca, int n, double dilatation = 1) {
 /// Returns 2.51/rho by (4.5), for elements of size pi/(2 n).
 double explicit_limit(double ca, int n, double dilatation = 1) { return 2.51 * ca / ((1 + dilatation) * n); }
 
-TEST(FixedStep, OfAnExplicitSchemeIsBoundByTheStiffnessWhateverCaAndC) {
+TEST(FixedStep, OfAnExplicitSchemeIsLimitedByTheStiffnessForAnyCaAndC) {
   for (const double ca : {0.05, 0.2}) {
     const double limit = explicit_limit(ca, 3);
     EXPECT_TRUE(follows(capsule(ca, 3), "bs3", 0.6 * limit, 30 * limit)) << ca;

@@ -22,13 +22,13 @@ double integral_error(double half_thickness, const std::vector<std::string>& rul
   return std::abs(drag(rule) / drag({"Quadrature/tolerance=1e-10"}) - 1);
 }
 
-TEST(Gap, IsLostByAFixedRuleWhosePointsAreFurtherApart) {
+TEST(Gap, IsNotResolvedByAFixedRuleWithASpacingLargerThanTheGap) {
   const std::vector<std::string> fixed{"Quadrature/rule=fixed", "Quadrature/points=4"};
   EXPECT_LT(integral_error(0.5, fixed), 1e-3);
   EXPECT_GT(integral_error(0.1, fixed), 5 * integral_error(0.5, fixed));  // measured: 2e-4 and 6e-6
 }
 
-TEST(Gap, IsKeptByRulesOfATolerance) {
+TEST(Gap, IsResolvedByRulesWithATolerance) {
   // the solution of the equation amplifies the quadrature error
   for (const double h : {0.5, 0.1}) EXPECT_LT(integral_error(h, {"Quadrature/tolerance=1e-7"}), 1e-5) << h;
 }

@@ -22,11 +22,11 @@ double reached(const std::string& load, const std::string& axis) {
   return run.state.time;
 }
 
-TEST(PoleAxes, StallTheStrongForm) {
+TEST(PoleAxes, StopRunsWithTheStrongForm) {
   for (const char* axis : {"x1", "x2"}) EXPECT_LT(reached("strong", axis), 2) << axis;  // measured: 1.8 and 1.5; with the poles on x3 it is later
 }
 
-TEST(PoleAxes, DoNotMatterToTheWeakForm) {
+TEST(PoleAxes, HaveNoInfluenceOnTheWeakForm) {
   for (const char* axis : {"x1", "x2", "x3"}) EXPECT_EQ(reached("weak", axis), 2) << axis;
 }
 

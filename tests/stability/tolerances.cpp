@@ -29,14 +29,14 @@ Outcome stiff(const std::string& scheme, const std::string& tolerance, const std
                  2);
 }
 
-TEST(Tolerances, OfAnExplicitSchemeAtItsStabilityLimitBuyNothingWhenLoose) {
+TEST(Tolerances, OfAnExplicitSchemeAtItsStabilityLimitSaveNothingWhenLarge) {
   const Outcome loose = stiff("bs3", "1e-2"), tight = stiff("bs3", "1e-5");
   EXPECT_NEAR(static_cast<double>(loose.evaluations) / tight.evaluations, 1, 0.1);
   EXPECT_GT(loose.volume_error, 100 * tight.volume_error);  // noise of the stiff modes makes the volume drift
   EXPECT_LT(stiff("tr-bdf2", "1e-2").evaluations, loose.evaluations / 4);
 }
 
-TEST(Tolerances, OfAStepDoNotReachTheVolumeUnderTheExactConstraint) {
+TEST(Tolerances, OfAStepDoNotAffectTheVolumeWithTheExactConstraint) {
   for (const char* scheme : {"bs3", "tr-bdf2"}) EXPECT_LT(stiff(scheme, "1e-2", "exact").volume_error, 1e-12) << scheme;
 }
 
@@ -47,7 +47,7 @@ Outcome unconstrained(const std::vector<std::string>& quadrature) {
   return outcome(settings, 2);
 }
 
-TEST(Tolerances, OfIntegralsLeakOnlyBelowThreePointsAnElement) {
+TEST(Tolerances, OfIntegralsAffectTheVolumeOnlyBelowThreePointsPerElement) {
   const Outcome tight = unconstrained({"Quadrature/tolerance=1e-8"});
   EXPECT_GT(unconstrained({"Quadrature/rule=fixed", "Quadrature/points=2"}).volume_error, 2 * tight.volume_error);
   const Outcome loose = unconstrained({"Quadrature/rule=fixed", "Quadrature/points=3"});
@@ -55,7 +55,7 @@ TEST(Tolerances, OfIntegralsLeakOnlyBelowThreePointsAnElement) {
   EXPECT_NEAR(loose.deformation, tight.deformation, 1e-4);
 }
 
-TEST(Tolerances, OfTheVolumeGrowInALongRunWithoutTheConstraint) {
+TEST(Tolerances, VolumeErrorsGrowInALongRunWithoutTheConstraint) {
   const std::vector<std::string> scene{"Volume/constraint=none", "Membrane/load measure=current", "Membrane/capillary number=0.6"};
   EXPECT_GT(outcome(scene, 6).volume_error, 2 * outcome(scene, 2).volume_error);
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every equation number cited in a comment stands in lib/README.md, and every file named in a comment or in lib/README.md exists.
+"""Checks that every equation number cited in a comment occurs in lib/README.md, and that every file named in a comment or in lib/README.md exists.
 
 Usage: equations.py <source directory>
 """
@@ -16,14 +16,14 @@ def numbers(text):
 
 
 def comments(path):
-    """(line number, text) of each comment line."""
+    """Yields (line number, text) of each comment line."""
     for number, line in enumerate(path.read_text().splitlines(), 1):
         if "//" in line:
             yield number, line.split("//", 1)[1]
 
 
 def exists(name, path, source):
-    """A name may be relative to the top, to lib/, or to the file that names it."""
+    """Returns whether a file exists. Its name may be relative to the source directory, to lib/, or to the file that names it."""
     return any((place / name).exists() for place in (source, source / "lib", path.parent))
 
 

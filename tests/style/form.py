@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What a reader expects of every file: lines of at most 150 characters in C++ (140 is the aim), #pragma once in headers, Debian's Python in scripts,
-scripts that can be started, bash that stops at the first error.
+"""Checks the form of all files: C++ lines of at most 150 characters (aim: 140), #pragma once in headers, Debian's Python in scripts, scripts that are
+executable, and bash scripts that stop at the first error.
 
 Usage: form.py <source directory>
 """

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""The functions that kernels compiled for several sets of instructions may give to the linker: those in the namespace of their set, none that another
-file may define as well. Otherwise a processor may meet instructions that it lacks, in any part of the program.
+"""Checks the functions that kernels compiled for several instruction sets export to the linker. Only functions in the namespace of the
+instruction set are allowed. Otherwise the linker may use a function compiled for one instruction set everywhere, also on a processor
+that does not have it.
 
 Usage: kernels.py <build directory>
 """

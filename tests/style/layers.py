@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The direction of dependencies: every #include in lib/ is one that the module's line in lib/CMakeLists.txt allows. Kernels are in
-the namespace of their set of instructions.
+"""Checks the dependencies of modules: the module's line in lib/CMakeLists.txt must allow every #include. Kernels must be in
+the namespace of their instruction set.
 
 Usage: layers.py <source directory>
 """
@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 
-# Whose headers these are. Eigen and the standard library are everybody's.
+# Libraries and patterns of their headers. Every module may include Eigen and the standard library.
 OWNERS = {
     "BOOST": r"boost/.+",
     "METIS": r"metis\.h",
@@ -18,14 +18,14 @@ OWNERS = {
     "TRILINOS": r"(Teuchos|Tpetra|Belos|Amesos2?|NOX|Thyra|Stratimikos|Kokkos|Xpetra|Ifpack2|MueLu|Teko|Piro)\w*\.(hpp|H)",
     "MPI": r"mpi\.h",
 }
-# A library that brings another with it.
+# Libraries that include others.
 BRINGS = {"TRILINOS": {"TRILINOS", "TEUCHOS", "MPI"}, "HDF5": {"HDF5", "MPI"}}
-# Trilinos in one file only: everything else of the module computes without it.
+# Files that alone may include a library: {(module, library): file}.
 ONLY_IN = {("membrane", "TRILINOS"): "direct_solver.cpp"}
 
 
 def allowed(source):
-    """module -> (modules, libraries) that it may use."""
+    """Returns {module: (modules, libraries) that it may use}."""
     modules = {}
     for line in (source / "lib/CMakeLists.txt").read_text().splitlines():
         match = re.fullmatch(r"module\(([\w/]+)(?: +USES +([a-z/ ]+?))?(?: +EXTERNAL +([A-Z0-9 ]+?))? *\)", line.strip())
@@ -41,7 +41,7 @@ def allowed(source):
 
 
 def order_errors(modules):
-    """A module uses only modules that stand above it; fluid and membrane never meet."""
+    """Yields errors of lib/CMakeLists.txt: a module may use only modules listed above it; stokes and membrane may not use each other."""
     names = list(modules)
     for position, name in enumerate(names):
         for used in modules[name][0] - {name}:
@@ -53,7 +53,7 @@ def order_errors(modules):
 
 
 def module_of(name, modules):
-    """The module of a file below lib/: the innermost of its folders that has a line."""
+    """Returns the module of a file in lib/: the innermost of its folders that has a line in lib/CMakeLists.txt."""
     return next((folder.as_posix() for folder in pathlib.PurePath(name).parents if folder.as_posix() in modules), None)
 
 
@@ -77,7 +77,7 @@ def include_errors(source, modules):
 
 
 def kernel_errors(source):
-    """What is compiled once for each set of instructions is in the namespace of its set, or the linker takes one of them by chance (kernels.py)."""
+    """Yields kernel files whose functions are not in the namespace of their instruction set. The linker would choose one arbitrarily."""
     for path in sorted((source / "lib").rglob("*_kernel.cpp")):
         if not re.search(r"^(inline )?namespace (\w+::)*INSTRUCTIONS {$", path.read_text(), re.MULTILINE):
             yield f"{path}: a file *_kernel.cpp has its functions in the namespace INSTRUCTIONS (base/kernel.hpp)"

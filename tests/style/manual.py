@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""inputs/REFERENCE.md, inputs/SERIES.md and the table of rejections are what the program prints of itself.
+"""Checks that inputs/REFERENCE.md, inputs/SERIES.md and the table of rejections agree with the output of the program.
 
 Usage: manual.py <source directory> <tanktread>
 """

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Limits of size in app and lib: .cpp files per folder, lines per file and function, data members per class; no cycle of includes; collective calls only
-in the files that exchange unknowns, sum and record. structure_exceptions.txt lists what exceeds a limit today. Its values may shrink and never grow.
+"""Checks limits of size in app and lib: .cpp files per folder, lines per file and function, data members per class.
+Checks that includes have no cycle, and that only files that exchange unknowns, sum or record make collective calls.
+structure_exceptions.txt lists exceptions; their values may only decrease.
 
-Usage: structure.py <source directory> [--shrink]     --shrink writes smaller values of exceptions, and never larger ones
+Usage: structure.py <source directory> [--shrink]     --shrink reduces the values of exceptions to the current sizes
 """
 import bisect
 import pathlib
@@ -10,7 +11,7 @@ import re
 import sys
 
 LIMITS = {"files": 25, "lines": 400, "members": 25, "function": 60, "collectives": 0}
-# Collectives are defined in ranks and agreement. Unknowns are exchanged by the layout and the block system; the system sums; results are recorded.
+# Files that may make collective calls: they define them, exchange unknowns (layout, block system), sum contributions, or record results.
 MAY_CALL = {"ranks", "agreement", "layout", "thyra_blocks", "system", "results", "record"}
 COLLECTIVE = re.compile(r"\branks_?(?:\(\))?(?:\.|->)(?:replicate|add|add_all|any|first|own)\(|\bdo(?:Import|Export)\(|\bcoupling::largest\("
                         r"|\b(?:error_of_any|take_first|of_first)\(|\bTeuchos::(?:reduceAll|gatherAll|broadcast|scan|barrier)\("
@@ -110,7 +111,7 @@ class Scopes:
 
 
 def measured(source, files):
-    """Returns {(limit, what): value} of everything that has a limit."""
+    """Returns {(limit, file, folder, function or class): value} for all limits."""
     values = {}
 
     def take(limit, what, value):

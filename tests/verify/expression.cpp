@@ -14,7 +14,7 @@ Net after_three_steps(std::vector<std::string> law) {
   return run.state.x;
 }
 
-TEST(Expression, MovesACapsuleAsTheBuiltInLawDoes) {
+TEST(Expression, GivesTheMotionOfTheBuiltInLaw) {
   const Net rubber = after_three_steps({"Membrane/law=neo-Hookean"});
   EXPECT_LT((after_three_steps({"Membrane/law=expression", "Membrane/energy=(I1 - 1 + 1/(I2 + 1))/2"}) - rubber).cwiseAbs().maxCoeff(), 1e-13);
   const Net skalak = after_three_steps({"Membrane/law=Skalak", "Membrane/area dilatation=2"});

@@ -95,7 +95,7 @@ class Drop {
 
 class ViscousInterface : public testing::TestWithParam<Case> {};
 
-TEST_P(ViscousInterface, OfADropInASlowFlowRestsAsBoussinesqAndScrivenHaveIt) {
+TEST_P(ViscousInterface, OfADropInASlowFlowHasTheSteadyShapeOfSmallDeformationTheory) {
   const Case& c = GetParam();
   const Mat3 strain = Drop::strain(Evolution({std::string("Flow/type=") + c.flow}));
   const Coefficients flow = Drop(c, c.flow, strain).at_rest(), shape = Drop(c, "quiescent", strain).response();

@@ -57,7 +57,7 @@ double work(const Body& on, const Body& from, int order) {
   return u.cwiseProduct(Eigen::Map<const Net>(strengths.front().data(), n, 3)).sum();
 }
 
-TEST(Reciprocity, SingleLayersOfTwoDeformedSurfacesWorkOnEachOtherAlike) {
+TEST(Reciprocity, SingleLayersOfTwoDeformedSurfacesHaveEqualMutualWork) {
   const Body one(3, {0, 0, 0}, 0.2), other(4, {0.5, 3.2, -0.4}, -0.15);
   const double there = work(other, one, 12), back = work(one, other, 12);
   EXPECT_GT(std::abs(there), 0.1);

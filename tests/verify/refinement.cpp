@@ -88,7 +88,7 @@ double error_of_return(const TMesh& base, unsigned seed, int steps, const SpaceO
   return mesh.edges == base.edges ? (net - original).cwiseAbs().maxCoeff() : HUGE_VAL;
 }
 
-TEST(Refinement, WhatWasRefinedSixLevelsDeepComesBackToTheOriginalControlPoints) {
+TEST(Refinement, CoarseningAfterSixLevelsRestoresTheControlPoints) {
   const TMesh cubes[2] = {cube(3, 6), cube(4, 6)}, globe = polar(8, 4, 6);
   double worst = 0;
   for (unsigned seed = 0; seed < 8; ++seed) {

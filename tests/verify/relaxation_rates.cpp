@@ -98,7 +98,7 @@ TEST_P(OfDrops, ConvergeToLambsSolution) {
   EXPECT_GT(std::log2(coarse / fine), 3);  // order 2.9 between n = 4 and 8, 3.4 between 6 and 12
 }
 
-TEST_P(OfDrops, ConvergeFasterWhereVelocitiesAreProjected) {
+TEST_P(OfDrops, ConvergeFasterWithLeastSquaresProjection) {
   const double lambda = GetParam(), exact = drop_rate(2, lambda);
   const std::vector<std::string> drop = {"Membrane/law=surface tension", "Membrane/surface tension=1", "Solvers/projection=least squares",
                                          "Particle/viscosity ratio=" + std::to_string(lambda)};

@@ -61,7 +61,7 @@ TEST(RigidSpheroid, ConvergesOnTheStructuredMesh) {
   }
 }
 
-TEST(RigidSpheroid, TurnsAgainstTheExactTorque) {
+TEST(RigidSpheroid, HasTheExactTorque) {
   const RigidSolution s = on_cube(6, {"Particle/velocity=[0, 0, 0]", "Particle/angular velocity=[0.3, -1, 0.5]", "Particle/center=[1, 2, -3]",
                                       "Particle/orientation=[20, 0, 40]"});
   EXPECT_LT(s.torque_error, 3e-7);  // three times the error of the drag, because the torque grows with the cube of the size
@@ -69,7 +69,7 @@ TEST(RigidSpheroid, TurnsAgainstTheExactTorque) {
   EXPECT_LT(s.force.norm(), 1e-7);  // zero by symmetry
 }
 
-TEST(RigidSpheroid, FeelsOnlyItsMotionRelativeToTheFlow) {
+TEST(RigidSpheroid, DependsOnlyOnItsMotionRelativeToTheFlow) {
   const RigidSolution moving = on_cube(3);
   const RigidSolution held =
       on_cube(3, {"Flow/type=uniform", "Flow/velocity=[0.7071067811865476, 0, 0.7071067811865476]", "Particle/velocity=[0, 0, 0]"});
@@ -106,7 +106,7 @@ std::pair<Vec3, Vec3> on_a_held_ellipsoid(const Vec3& semi_axes, const std::vect
   return {axes * force, axes * torque};
 }
 
-TEST(RigidBody, HeldInAParabolicFlowFeelsFaxensForce) {
+TEST(RigidBody, HeldInAParabolicFlowHasFaxensForce) {
   for (const Vec3& semi_axes : {Vec3(0.6, 0.6, 0.6), Vec3(0.5, 0.5, 0.75), Vec3(0.75, 0.5, 0.4)}) {
     const auto text = [](const Vec3& v) { return "[" + std::to_string(v[0]) + ", " + std::to_string(v[1]) + ", " + std::to_string(v[2]) + "]"; };
     const std::vector<std::string> settings = {"Flow/type=parabolic",          "Flow/half width=1.3",         "Particle/shape=ellipsoid",

@@ -42,7 +42,7 @@ double slope(const Case& c, double ca) {
 
 class SmallDeformation : public testing::TestWithParam<Case> {};
 
-TEST_P(SmallDeformation, GrowsWithTheCapillaryNumberAsTheoryHasIt) {
+TEST_P(SmallDeformation, GrowsWithTheCapillaryNumberAsInTheory) {
   const Case& c = GetParam();
   const double middle = slope(c, 0.01), fine = slope(c, 0.005);
   double limit = fine + (fine - middle) / 3;  // D/Ca is even in Ca because reversing the flow mirrors the shape

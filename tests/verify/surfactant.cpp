@@ -113,7 +113,7 @@ struct Case {
 
 class SurfactantOfASphere : public testing::TestWithParam<Case> {};
 
-TEST_P(SurfactantOfASphere, RelaxesAsTheTwoByTwoSystemHasIt) {
+TEST_P(SurfactantOfASphere, RelaxesAtTheRatesOfTheTwoByTwoSystem) {
   const auto [lambda, motion] = GetParam();
   Laden drop({"Flow/type=quiescent", "Membrane/surface tension=1", "Particle/viscosity ratio=" + std::to_string(lambda),
               "Interface/surfactant/elasticity number=0.4", std::string("Interface/motion=") + motion, "Surface/elements per side=8",
@@ -126,7 +126,7 @@ TEST_P(SurfactantOfASphere, RelaxesAsTheTwoByTwoSystemHasIt) {
 INSTANTIATE_TEST_SUITE_P(Surfactant, SurfactantOfASphere,
                          testing::Values(Case{1, "relaxed"}, Case{1, "material"}, Case{0.2, "relaxed"}, Case{5, "relaxed"}));
 
-TEST(Surfactant, TheFreeEnergyOfADropLeftAloneFalls) {
+TEST(Surfactant, TheFreeEnergyOfADropAtRestDecreases) {
   Laden drop({"Flow/type=quiescent", "Membrane/surface tension=1", "Interface/surfactant/elasticity number=0.4", "Particle/shape=spheroid",
               "Particle/semi-axes=[0.8, 0.8, 1.6]", "Surface/elements per side=4"},
              0.02);
@@ -166,7 +166,7 @@ double slope(double ca, double diffusivity, const std::vector<std::string>& equa
 
 class SurfactantInExtension : public testing::TestWithParam<double> {};
 
-TEST_P(SurfactantInExtension, DeformsADropAsTheoryOfSmallDeformationHasIt) {
+TEST_P(SurfactantInExtension, DeformsADropAsInSmallDeformationTheory) {
   const double diffusivity = GetParam(), elasticity = 0.4 / 0.6, tension = 0.6;
   const std::vector<std::string> linear = {"Interface/surfactant/elasticity number=0.4"};
   const double coarse = slope(0.01, diffusivity, linear), middle = slope(0.005, diffusivity, linear), fine = slope(0.0025, diffusivity, linear);

@@ -60,7 +60,7 @@ Interface interface(const Sphere& sphere, const Duct& duct, double ratio) {
   return result;
 }
 
-TEST(InterfaceInATube, HasOnePressureDropByThreeRoutes) {
+TEST(InterfaceInATube, HasTheSamePressureDropComputedInThreeWays) {
   const Duct duct = circular_duct();
   for (const double a : {0.5, 0.8}) {
     const Sphere sphere = tanktread::sphere(a, Vec3::Zero(), 6);

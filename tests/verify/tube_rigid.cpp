@@ -53,7 +53,7 @@ TEST(RigidSphereInATubeLong, IsTenTimesCloserOnAFinerWall) {
   expect_exact(s, exact[2], {3e-5, 1e-5, 1e-5});
 }
 
-TEST(RigidSphereInATube, DoesNotFeelWhereTheTubeEnds) {
+TEST(RigidSphereInATube, DoesNotDependOnTheLengthOfTheTube) {
   const Net place = coupling::placed(Vec3::Zero());
   for (const double a : {0.5, 0.8}) {
     const Sphere sphere = tanktread::sphere(a, Vec3::Zero(), 6);

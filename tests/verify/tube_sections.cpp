@@ -31,7 +31,7 @@ surface::TubeOptions options(int around, int along) {
   return o;
 }
 
-TEST(TubeSections, EllipseCarriesASphereOffItsAxis) {
+TEST(TubeSections, SphereOffTheAxisOfAnEllipse) {
   surface::TubeOptions o = options(24, 25);
   o.section = "ellipse";
   o.semi_axes = Eigen::Vector2d(1.2, 0.9);
@@ -41,7 +41,7 @@ TEST(TubeSections, EllipseCarriesASphereOffItsAxis) {
   EXPECT_NEAR(is.drop / 1.865526, 1, 2e-4);
 }
 
-TEST(TubeSections, TrilobeCarriesASphereOffItsAxis) {
+TEST(TubeSections, SphereOffTheAxisOfATrilobe) {
   surface::TubeOptions o = options(24, 25);
   std::vector<double> knots;
   std::vector<surface::Vec2> points;
@@ -58,7 +58,7 @@ TEST(TubeSections, TrilobeCarriesASphereOffItsAxis) {
   EXPECT_NEAR(is.drop / 0.826648, 1, 5e-4);
 }
 
-TEST(TubeSections, SquareWithItsFourCornersCarriesASphere) {
+TEST(TubeSections, SphereInASquareWithFourCorners) {
   surface::TubeOptions o = options(24, 25);
   o.section = "rectangle";
   o.sides = Eigen::Vector2d(2, 2);

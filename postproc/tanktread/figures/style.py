@@ -21,7 +21,7 @@ SIGNED = "RdBu_r"                                               # colour map of 
 TIME = "copper_r"                                               # colour map of times
 DASHES = (0, (4, 2))
 AXES = ("x₁", "x₂", "x₃")
-GUIDE = {"color": FAINT, "linestyle": (0, (4, 3))}              # a line to compare with, such as an order
+GUIDE = {"color": FAINT, "linestyle": (0, (4, 3))}              # guide line, for example a convergence order
 
 STYLE = {
     "figure.dpi": 150, "figure.constrained_layout.use": True, "font.size": 9.5, "text.color": INK,
@@ -70,7 +70,7 @@ def shaded(items, first=0.12, last=1.0):
 
 
 def dotted(figure):
-    """Returns a figure, in which lines of one point, which cannot be seen, have become dots."""
+    """Returns the figure. Lines of one point, which would be invisible, are replaced by dots."""
     lone = [line for axis in figure.axes for line in axis.lines if len(line.get_xdata()) == 1]
     plt.setp([line for line in lone if line.get_marker() == "None"], marker="o", clip_on=False)
     return figure

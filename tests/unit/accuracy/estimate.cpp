@@ -64,7 +64,7 @@ TEST(Estimate, IsNotTrustedIfDifferencesDoNotFallRegularly) {
   EXPECT_TRUE(std::isnan(of({1e-2, nan}).error));
 }
 
-TEST(Estimate, TakesTwoRatiosIfTheLastOneIsUnusual) {
+TEST(Estimate, UsesTwoRatiosIfTheLastOneIsUnusual) {
   EXPECT_TRUE(of({1.6e-2, 1.3e-3, 1e-3}).trusted());  // 16 in two levels
 }
 
@@ -92,7 +92,7 @@ TEST(Difference, InterpolatesIfThereAreTooFewSuchTimes) {
   for (const double value : found.values) EXPECT_NEAR(value, 0.1, 1e-12);  // cubics are exact
 }
 
-TEST(Difference, IsNanWhereACurveIs) {
+TEST(Difference, IsNanIfACurveIsNan) {
   const Curve a{{0, 1, 2}, {1, nan, 3}}, b{{0, 1, 2}, {1, 2, 3.5}};
   EXPECT_DOUBLE_EQ(largest(difference(a, b).values), 0.5);
   EXPECT_TRUE(std::isnan(largest({nan, nan})));
@@ -105,7 +105,7 @@ TEST(Average, IsTheIntegralDividedByTheTime) {
   EXPECT_DOUBLE_EQ(average({{0, 1, 1, 2}, {0, 0, 1, 1}}).value, 0.5);                 // an abscissa of two values is a jump
 }
 
-TEST(Average, KnowsTheErrorOfItsQuadrature) {
+TEST(Average, HasAnEstimateOfItsQuadratureError) {
   const auto sampled = [](int n, double (*f)(double)) {
     Curve curve;
     for (int k = 0; k <= n; ++k) curve.at.push_back(static_cast<double>(k) / n), curve.values.push_back(f(curve.at.back()));

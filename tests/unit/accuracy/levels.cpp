@@ -46,7 +46,7 @@ TEST(Levels, AreExpectedToHaveTheErrorsOfTheirMeshes) {
   EXPECT_NEAR(expected_error({5, 3, 7}), std::pow(4, -4.25), 1e-15);  // twelve elements per side instead of three
 }
 
-TEST(Levels, ChangeOnePartAlone) {
+TEST(Levels, ChangeOnePartOnly) {
   EXPECT_TRUE(sets(plain, {1, 3, 1}, "Surface/elements per side=4"));
   EXPECT_TRUE(sets(plain, {1, 3, 1}, "Time/tolerance=3.125e-05"));
   EXPECT_TRUE(sets(plain, {1, 3, 1}, "Quadrature/tolerance=5e-04"));
@@ -106,7 +106,7 @@ TEST(Levels, HalveFixedSteps) {
   EXPECT_FALSE(sets(deck, {3, 3, 3}, "Time/tolerance=3.125e-05"));
 }
 
-TEST(Levels, RefuseShapesOfOneMesh) {
+TEST(Levels, RejectShapesOfOneMesh) {
   EXPECT_NO_THROW(check_levels(plain));
   EXPECT_THROW(check_levels(with(plain, {{"Particle/initial shape/run", "results/a"}})), UserError);
 }

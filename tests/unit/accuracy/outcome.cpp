@@ -31,7 +31,7 @@ TEST(Errors, AreThoseOfTheLevelsWithoutARequest) {
 }
 
 /// The differences between the levels do not fall, so that they give no error. They are far below one of the two requests, which is met.
-TEST(Errors, AreThoseOfATrustedRequestWhateverTheOrderOfTheRequests) {
+TEST(Errors, AreThoseOfATrustedRequestForAnyOrderOfTheRequests) {
   const std::vector<Outcome> levels{level(2, 0), level(3, 1e-6), level(4, 2e-6)};
   EXPECT_NE(errors(levels)[0].untrusted, "");
   const Answer generous = answer(at_most(1e-3), levels), strict = answer(at_most(1e-9), levels);

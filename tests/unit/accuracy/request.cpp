@@ -24,7 +24,7 @@ TEST(Request, IsReadBackFromItsText) {
   for (const char* text : {"a=0.25", "b/a@end=1%", "a@mean=3e-05"}) EXPECT_EQ(request_of(text).text(), text);
 }
 
-TEST(Request, IsRefusedIfItHasAnotherForm) {
+TEST(Request, IsRejectedIfItHasAnotherForm) {
   for (const char* text : {"", "a", "a=", "=1", "a=-1", "a=0", "a=1x", "a@start=1", "a=1%%", "a=nan", "a=inf"})
     EXPECT_THROW(request_of(text), UserError) << text;
 }

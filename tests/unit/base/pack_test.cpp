@@ -35,7 +35,7 @@ TEST(Register, ALaneDoesNotDependOnItsNeighbours) {
   EXPECT_EQ(inverse_root(alone)[lanes - 1], inverse_root(together)[lanes - 1]);
 }
 
-TEST(Pack, HoldsRegistersOneBehindTheOther) {
+TEST(Pack, ContainsConsecutiveRegisters) {
   Pack packs[3] = {};
   EXPECT_EQ(most_lanes % pack_lanes(), 0);
   for (int k = 0; k < 3; ++k)

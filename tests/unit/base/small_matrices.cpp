@@ -12,7 +12,7 @@ Mat3 matrix(double a, double b, double c, double d, double e, double f, double g
   return (Mat3() << a, b, c, d, e, f, g, h, i).finished();
 }
 
-TEST(SmallMatrices, ExponentialOfASpinIsARotationAndOfAShearIsOne) {
+TEST(SmallMatrices, ExponentialOfASpinIsARotationAndThatOfAShearIsAShear) {
   const Mat3 spin = matrix(0, -0.7, 0, 0.7, 0, 0, 0, 0, 0);
   EXPECT_LT((exponential(spin) - Mat3(Eigen::AngleAxisd(0.7, Vec3::UnitZ()))).norm(), 1e-15);
   EXPECT_LT((exponential(matrix(0, 3, 0, 0, 0, 0, 0, 0, 0)) - matrix(1, 3, 0, 0, 1, 0, 0, 0, 1)).norm(), 1e-15);

@@ -36,7 +36,7 @@ TEST(Phases, CountsCallsAndKeepsTheOrderOfFirstEntry) {
   EXPECT_EQ(phases.all()[1].calls, 3);
 }
 
-TEST(Phases, AScopeMayHaveBegunEarlier) {
+TEST(Phases, AScopeMayStartAtAnEarlierTime) {
   Phases phases;
   const auto begin = Phases::Clock::now();
   work(20);
@@ -52,7 +52,7 @@ TEST(Phases, AScopeMayHaveBegunEarlier) {
 
 TEST(Phases, APhaseThatNeverRanHasNoSeconds) { EXPECT_EQ(Phases().seconds("absent"), 0); }
 
-TEST(Phases, SecondsOutsideEveryScopeAreNobodys) {
+TEST(Phases, SecondsOutsideEveryScopeAreNotCounted) {
   Phases phases;
   { const auto a = phases.time("a"); }
   work(20);

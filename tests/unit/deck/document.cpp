@@ -68,7 +68,7 @@ TEST(Overlays, MayChangeTheTypeOfAValue) {
   EXPECT_EQ(s.kinds.center[2], 4.0);
 }
 
-TEST(Settings, GoOverAllDecksAndAreReadAsYaml) {
+TEST(Settings, OverrideAllDecksAndAreReadAsYaml) {
   const Folder folder;
   const auto base = folder.file("base.yaml", "Tanktread:\n  Kinds:\n    count: 4\n");
   const Sample s =
@@ -84,20 +84,20 @@ TEST(Settings, GoOverAllDecksAndAreReadAsYaml) {
   EXPECT_EQ(s.kinds.rate, 3.0);
 }
 
-TEST(Settings, ThatAreNoSettingsAreRefused) {
+TEST(Settings, ThatAreNoSettingsAreRejected) {
   for (const char* setting : {"Kinds/count", "Kinds/count=", "=3", "count=3", "/count=3", "Kinds//count=3"})
     EXPECT_EQ(refused({}, {setting}), std::string("--set '") + setting + "' must be of the form Section/key=value.");
   EXPECT_EQ(refused({}, {"Kinds/count=[1, 2"}), "--set 'Kinds/count=[1, 2': the value is not valid YAML.");
   EXPECT_EQ(refused({}, {"Kinds/cuont=3"}), "Kinds/cuont is not a key of the deck; was Kinds/count meant?");
 }
 
-TEST(StoredDecks, LieUnderAllOthers) {
+TEST(StoredDecks, AreOverriddenByAllOthers) {
   const Sample s = sample({}, {"Kinds/count=5"}, "Tanktread:\n  Kinds:\n    count: 4\n    law: hard\n");
   EXPECT_EQ(s.kinds.count, 5);
   EXPECT_EQ(s.kinds.law, "hard");
 }
 
-TEST(Expectations, BindWhatTheyWereStatedFor) {
+TEST(Expectations, BindOnlyForTheKeysTheyWereStatedFor) {
   const Folder folder;
   const auto base = folder.file(
       "base.yaml",
@@ -145,7 +145,7 @@ TEST(Xml, IsReadByExtension) {
             (folder.path / "deep.xml").string() + ": its elements are nested more than 100 deep.");
 }
 
-TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
+TEST(Files, ThatAreNoDecksAreRejectedInOneSentence) {
   const Folder folder;
   const std::string missing = folder.path / "missing.yaml";
   EXPECT_EQ(refused({missing}), "The deck " + missing + " does not exist.");
@@ -176,7 +176,7 @@ TEST(EffectiveDecks, StateEveryKeyThatIsSet) {
   EXPECT_EQ(document.values().at("Kinds/Inner/depth"), "0.5");
 }
 
-TEST(EffectiveDecks, ReadAgainGiveTheSameSceneToTheLastBit) {
+TEST(EffectiveDecks, ReadAgainGiveABitwiseEqualScene) {
   std::mt19937_64 random(1);
   for (int trial = 0; trial < 200; ++trial) {
     const auto any_double = [&] { return std::ldexp(static_cast<double>(random()) + 1.0, static_cast<int>(random() % 400) - 260); };
@@ -213,7 +213,7 @@ TEST(EffectiveDecks, KeepForeignListsWithTheirTypes) {
   EXPECT_EQ(again.kinds.belos->get<std::string>("text"), "3");
 }
 
-TEST(ForeignLists, LieOverTheDefaultsOfTheirOwner) {
+TEST(ForeignLists, OverrideTheDefaultsOfTheirOwner) {
   Sample s;
   s.kinds.belos = std::make_shared<Teuchos::ParameterList>();
   s.kinds.belos->set("tolerance", 1e-6).set("iterations", 10);
@@ -225,7 +225,7 @@ TEST(ForeignLists, LieOverTheDefaultsOfTheirOwner) {
   EXPECT_EQ(defaults->get<int>("iterations"), 10) << "the defaults themselves stay";
 }
 
-TEST(Manual, HasOneRowAKey) {
+TEST(Manual, HasOneRowPerKey) {
   const std::string text = manual(Sample{});
   EXPECT_NE(text.find("## Kinds\n\nOne key of each type.\n"), std::string::npos);
   EXPECT_NE(text.find("| `shear rate` | `1.0` | positive | 1/time | rate of the flow |"), std::string::npos);

@@ -48,7 +48,7 @@ TEST(Expectations, NeedValueAndTolerance) {
             "Expect/volume/kind `relative` and the value 0 contradict each other: an error cannot be divided by 0. Give `absolute`.");
 }
 
-TEST(Expectations, AreOfSeriesThatThereAre) {
+TEST(Expectations, NameExistingSeries) {
   const auto refusal = [](const std::string& line, const std::vector<std::string>& names) -> std::string {
     try {
       check_series(expectations(line), names);
@@ -66,7 +66,7 @@ TEST(Expectations, AreOfSeriesThatThereAre) {
   EXPECT_EQ(refusal("    wellness: {value: 1, tolerance: 1, not binding: a key was changed}\n", {"time", "volume"}), "none");
 }
 
-TEST(Expectations, AfterTheEndAreSaidToBeMissed) {
+TEST(Expectations, AfterTheEndAreReportedAsMissed) {
   const auto late = [](double end) {
     return too_late(expectations("    volume: {value: 1, tolerance: 1, at: 0.3}\n    area: {value: 1, tolerance: 1}\n"), end);
   };
@@ -83,7 +83,7 @@ TEST(Interpolation, IsExactForCubicsAndAtTheRows) {
   EXPECT_EQ(interpolated({1.0}, {2.0}, 1.0), 2.0);
 }
 
-TEST(Verdicts, HoldTheLastRowOrAMoment) {
+TEST(Verdicts, ReferToTheLastRowOrToATime) {
   const auto all = verdicts(
       expectations(
           "    last: {series: volume, value: 3, tolerance: 1e-9}\n    half: {series: volume, value: 1.3, tolerance: 0.02, at: 0.5}\n"
@@ -109,7 +109,7 @@ TEST(Verdicts, AreNeverFewerThanDeclared) {
   EXPECT_EQ(all[1].reason, "the results do not reach the time 2.1");
 }
 
-TEST(Interpolation, LeavesOutWhatIsUndefined) {
+TEST(Interpolation, LeavesOutUndefinedValues) {
   const double nan = std::nan("");
   const std::vector<double> times = {0, 1, 2, 3, 4, 5, 6}, values = {nan, 1, 8, 27, nan, 125, 216};  // t^3
   EXPECT_TRUE(std::isnan(interpolated(times, values, 0)));
@@ -120,7 +120,7 @@ TEST(Interpolation, LeavesOutWhatIsUndefined) {
   EXPECT_NEAR(interpolated(times, values, 5.5), (125 + 216) / 2., 1e-13) << "a line through two";
 }
 
-TEST(Verdicts, SayWhereASeriesIsUndefined) {
+TEST(Verdicts, StateWhereASeriesIsUndefined) {
   const SeriesTable table = {{"time", {0, 1, 2}}, {"angle", {std::nan(""), 10, 20}}, {"gap", {1, 1, std::nan("")}}};
   const auto all = verdicts(
       expectations("    early: {series: angle, value: 1, tolerance: 1e70, at: 0.5}\n    late: {series: angle, value: 20, tolerance: 1}\n"
@@ -135,7 +135,7 @@ TEST(Verdicts, SayWhereASeriesIsUndefined) {
   EXPECT_EQ(all[2].reason, "gap is undefined at the end, because two bodies are none");
 }
 
-TEST(Verdicts, FailOnWhatIsNotANumber) {
+TEST(Verdicts, FailForNan) {
   EXPECT_FALSE(verdicts(expectations("    a: {value: 1, tolerance: 1e70}\n"), {{"time", {0.0}}, {"a", {std::nan("")}}})[0].passed);
 }
 

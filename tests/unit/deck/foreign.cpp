@@ -23,13 +23,13 @@ std::string refusal_of_list(const std::string& lines) {
   return {};
 }
 
-TEST(ForeignLists, OfKnownParametersPass) {
+TEST(ForeignLists, WithKnownParametersAreAccepted) {
   EXPECT_EQ(
       refusal_of_list("      Convergence Tolerance: 1e-6\n      Maximum Iterations: 5\n      Verbose: true\n      Inner: {Depth: 4}\n"),
       "");
 }
 
-TEST(ForeignLists, WithUnknownParametersAreRefusedWithAGuess) {
+TEST(ForeignLists, WithUnknownParametersAreRejectedWithASuggestion) {
   EXPECT_EQ(
       refusal_of_list("      Maximum Iteration: 5\n"),
       "Solvers/Belos/Maximum Iteration is not a parameter of the library that receives this section; was Solvers/Belos/Maximum Iterations meant?");
@@ -37,7 +37,7 @@ TEST(ForeignLists, WithUnknownParametersAreRefusedWithAGuess) {
             "Solvers/Belos/Inner/Zebra is not a parameter of the library that receives this section.");
 }
 
-TEST(ForeignLists, WithOtherTypesAreRefused) {
+TEST(ForeignLists, WithOtherTypesAreRejected) {
   EXPECT_EQ(refusal_of_list("      Convergence Tolerance: 1\n"),
             "Solvers/Belos/Convergence Tolerance must be a number with a point, but is 1.");
   EXPECT_EQ(refusal_of_list("      Maximum Iterations: 5.5\n"), "Solvers/Belos/Maximum Iterations must be a whole number, but is 5.5.");

@@ -43,7 +43,7 @@ std::vector<Functions::Chosen> read(const std::string& yaml) {
   return options.chosen;
 }
 
-TEST(Parts, AreThoseThatTheDeckHasWithKeysOfTheirOwn) {
+TEST(Parts, AreTheSubsectionsOfTheDeckWithTheirKeys) {
   EXPECT_TRUE(read("").empty());
   const auto both = read("functions: {root: {exponent: 3}, power: {}}");
   ASSERT_EQ(both.size(), 2u);

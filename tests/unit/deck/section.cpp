@@ -38,14 +38,14 @@ TEST(Keys, OfEveryTypeAreRead) {
   EXPECT_EQ(k.inner.depth, 0.25);
 }
 
-TEST(Keys, TakeAWholeNumberForANumberButNotText) {
+TEST(Keys, AcceptAWholeNumberAsANumberButNotText) {
   EXPECT_EQ(kinds("    shear rate: 2\n").rate, 2.0);
   EXPECT_EQ(refusal("    shear rate: \"2\"\n"), "Kinds/shear rate must be a number, positive (unit: 1/time), but is \"2\" (text).");
   EXPECT_EQ(kinds("    count: 4.0\n").count, 4);
   EXPECT_EQ(refusal("    count: 4.5\n"), "Kinds/count must be a whole number, between 1 and 9, but is 4.5.");
 }
 
-TEST(Keys, RefuseAValueOutsideTheirRuleWithPathRuleUnitAndValue) {
+TEST(Keys, RejectAValueOutsideTheirRangeWithPathRangeUnitAndValue) {
   EXPECT_EQ(refusal("    shear rate: -1\n"), "Kinds/shear rate must be a number, positive (unit: 1/time), but is -1.");
   EXPECT_EQ(refusal("    count: 10\n"), "Kinds/count must be a whole number, between 1 and 9, but is 10.");
   EXPECT_EQ(refusal("    Inner:\n      depth: 2.5\n"), "Kinds/Inner/depth must be a number, between 0 and 1 (unit: length), but is 2.5.");
@@ -55,7 +55,7 @@ TEST(Keys, RefuseAValueOutsideTheirRuleWithPathRuleUnitAndValue) {
             "Kinds/sides must be two numbers in brackets, each positive (unit: length), but is [1, 2, 3].");
 }
 
-TEST(Keys, RefuseWrongTypes) {
+TEST(Keys, RejectWrongTypes) {
   EXPECT_EQ(refusal("    enabled: 1\n"), "Kinds/enabled must be true or false, but is 1.");
   EXPECT_EQ(refusal("    note: 1\n"), "Kinds/note must be text (in quotes), but is 1.");
   EXPECT_EQ(refusal("    center: 1\n"), "Kinds/center must be three numbers in brackets (unit: length), but is 1.");
@@ -68,7 +68,7 @@ TEST(Keys, RefuseWrongTypes) {
   EXPECT_NE(refusal("    shear rate: nan\n"), "");
 }
 
-TEST(Choices, RefuseAnotherWordWithAGuess) {
+TEST(Choices, RejectAnotherWordWithASuggestion) {
   EXPECT_EQ(refusal("    law: sotf\n"), "Kinds/law must be soft, hard or very hard, but is \"sotf\" (text); was `soft` meant?");
   EXPECT_EQ(refusal("    law: SOFT\n"), "Kinds/law must be soft, hard or very hard, but is \"SOFT\" (text); was `soft` meant?");
   EXPECT_EQ(refusal("    law: glass\n"), "Kinds/law must be soft, hard or very hard, but is \"glass\" (text).");
@@ -105,7 +105,7 @@ TEST(KeysWithoutEffect, AreListedIfTheDeckChangesThem) {
             std::vector<std::string>{"Time/tolerance has no effect with Time/scheme `explicit`: remove the key."});
 }
 
-TEST(UnknownKeys, AreRefusedWithTheirPathAndAGuess) {
+TEST(UnknownKeys, AreRejectedWithTheirPathAndASuggestion) {
   EXPECT_EQ(refusal("    shaer rate: 1\n"), "Kinds/shaer rate is not a key of the deck; was Kinds/shear rate meant?");
   EXPECT_EQ(refusal("    Inner: {detph: 1}\n"), "Kinds/Inner/detph is not a key of the deck; was Kinds/Inner/depth meant?");
   EXPECT_EQ(refusal("    depth: 1\n"), "Kinds/depth is not a key of the deck; was Kinds/Inner/depth meant?") << "the key of another list";
@@ -114,7 +114,7 @@ TEST(UnknownKeys, AreRefusedWithTheirPathAndAGuess) {
   EXPECT_EQ(refusal("    Inner: {zebra: 1}\n"), "Kinds/Inner/zebra is not a key of the deck; Kinds/Inner has depth.");
 }
 
-TEST(GivenKeys, AreKnownAsGiven) {
+TEST(GivenKeys, AreDistinguishedFromDefaults) {
   struct Probe {
     bool given = false, other = true;
     std::string path;

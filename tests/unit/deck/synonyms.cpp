@@ -7,7 +7,7 @@
 namespace tanktread::deck {
 namespace {
 
-TEST(Synonyms, AreFoundHoweverTheyAreWritten) {
+TEST(Synonyms, AreFoundInAnySpelling) {
   for (const char* name : {"dt", "time_step", "Time-Step"}) EXPECT_EQ(synonym(name), "Time/fixed step or Time/initial step") << name;
   for (const char* name : {"tend", "t_end", "T end", "end time"}) EXPECT_EQ(synonym(name), "Time/final time") << name;
   for (const char* name : {"", "/", "|", "zebra", "shear rate"}) EXPECT_EQ(synonym(name), "") << name;
@@ -25,7 +25,7 @@ TEST(MissingFeatures, AreKnownByPathOrName) {
   EXPECT_EQ(missing_feature("Surfactant"), "");
 }
 
-TEST(UnknownKeys, AreRefusedWithWhatIsMissingOrMeant) {
+TEST(UnknownKeys, AreRejectedWithTheMissingFeatureOrASuggestion) {
   EXPECT_EQ(refusal("    Temperature: 1\n"),
             "Kinds/Temperature is not a key of the deck: Brownian motion is not available (README.md lists what the program can do).");
   EXPECT_EQ(refusal("    Surfactant: 1\n"), "Kinds/Surfactant is not a key of the deck; was the section Interface/surfactant meant?");

@@ -21,7 +21,7 @@ TEST(Units, TakeNumbersOfEveryKind) {
   EXPECT_DOUBLE_EQ(units.number("2 h", "seconds"), 7200);
 }
 
-TEST(Units, AreSaidInSI) {
+TEST(Units, AreStatedInSI) {
   const Units units({"2 um", "5 ms", "3 pN"});
   EXPECT_EQ(units.in_si("length/time"), "0.0004 m/s");
   EXPECT_EQ(units.in_si("force length", 10), "6e-17 N m");
@@ -29,7 +29,7 @@ TEST(Units, AreSaidInSI) {
   EXPECT_EQ(units.in_si("degree"), "");
 }
 
-TEST(Units, RefuseOtherKinds) {
+TEST(Units, RejectOtherDimensions) {
   const Units units({});
   for (const char* kind : {"length", "1/time", "1", "R_C", "that of the key"})
     EXPECT_THROW(units.number("1 uN", kind), std::invalid_argument) << kind;

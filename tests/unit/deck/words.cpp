@@ -20,7 +20,7 @@ TEST(Words, ThatYamlReadsOtherwiseAreNotPlain) {
     EXPECT_FALSE(is_plain(word)) << word;
 }
 
-TEST(Guesses, ForgiveATypoButNotAnotherWord) {
+TEST(Guesses, CorrectATypoButNotAnotherWord) {
   const std::vector<std::string> candidates{"type", "shear rate", "viscosity"};
   EXPECT_EQ(guess("typ", candidates), "type");
   EXPECT_EQ(guess("tpye", candidates), "type");

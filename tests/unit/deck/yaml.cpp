@@ -29,13 +29,13 @@ TEST(Texts, InDoubleQuotesKeepTheirEscapes) {
   }
 }
 
-TEST(Lines, ThatAreIndentedWronglyAreRefused) {
+TEST(Lines, ThatAreIndentedWronglyAreRejected) {
   EXPECT_EQ(refusal("    count: 1\n   law: soft\n"),
             "deck.yaml, line 4: this is not valid YAML (the indentation fits none of the lines above): `law: soft`.");
   EXPECT_EQ(refusal("\tcount: 1\n"), "deck.yaml, line 3: indent with spaces, not with tabs.");
 }
 
-TEST(Lists, LieOnlySoDeepAndHoldOnlySoMuch) {
+TEST(Lists, HaveALimitedDepthAndSize) {
   std::string deep = "Tanktread: ", laughs = "Tanktread:\n  Kinds:\n    a: &a0 {x: 1}\n";
   for (int i = 0; i < 30; ++i) deep += "{a: ";
   EXPECT_EQ(refusal_of(deep + "1" + std::string(30, '}')),
@@ -66,13 +66,13 @@ TEST(Sequences, HoldNumbersOrWords) {
             "sections with keys have names, such as Particles/<name>.");
 }
 
-TEST(Keys, WithoutAValueAreNothing) {
+TEST(Keys, WithoutAValueAreNull) {
   EXPECT_EQ(refusal("    law:\n"), "Kinds/law must be soft, hard or very hard, but is nothing.");
   EXPECT_EQ(refusal("    count: ~\n"), "Kinds/count must be a whole number, between 1 and 9, but is nothing.");
   EXPECT_EQ(kinds("    Inner:\n      # depth: 1\n").inner.depth, 0.5) << "a list whose keys are all commented out";
 }
 
-TEST(DuplicateKeys, AreRefusedWithBothLines) {
+TEST(DuplicateKeys, AreRejectedWithBothLines) {
   EXPECT_EQ(refusal("    count: 1\n    law: soft\n    count: 2\n"),
             "deck.yaml, line 5: Kinds/count is set twice; it was first set in line 3.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Kinds:\n    count: 1\n  Kinds:\n    law: soft\n"),
@@ -84,14 +84,14 @@ TEST(DuplicateKeys, AreRefusedWithBothLines) {
   EXPECT_EQ(refusal("    Inner:\n      depth: 0.1\n    Belos:\n      depth: 0.1\n"), "") << "the same name in two lists";
 }
 
-TEST(BrokenYaml, IsShownWithItsLine) {
+TEST(BrokenYaml, IsReportedWithItsLine) {
   EXPECT_EQ(refusal("    center: [1, 2\n    count: 1\n"),
             "deck.yaml, line 4: this is not valid YAML (end of sequence flow not found): `count: 1`.");
   EXPECT_EQ(refusal("    law: soft: hard\n"),
             "deck.yaml, line 3: this is not valid YAML (illegal map value): `law: soft: hard`.");
 }
 
-TEST(RootLists, AreNamedAndAlone) {
+TEST(RootLists, AreUniqueAndNamedTanktread) {
   EXPECT_EQ(refusal_of("Tanktraed:\n  Kinds: {}\n"),
             "deck.yaml: the outermost section must be `Tanktread`, and the only one, but there is `Tanktraed`.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Kinds: {}\nOther:\n  a: 1\n"),

@@ -33,7 +33,7 @@ TEST(AreaConstraint, InvertsTheStiffPartOfTheTangent) {
   }
 }
 
-TEST(AreaConstraint, BringsTensionsToThoseOfAnotherShape) {
+TEST(AreaConstraint, TransfersTensionsToAnotherShape) {
   const Sphere& s = sphere(3);
   const Net &like = s.net, start = like + 1e-3 * random_net(like.rows(), 6);
   for (const Law& law : laws) {
@@ -45,7 +45,7 @@ TEST(AreaConstraint, BringsTensionsToThoseOfAnotherShape) {
   }
 }
 
-TEST(AreaConstraint, IsNotThereWithoutOnePointOfItsOwnPerElement) {
+TEST(AreaConstraint, ExistsOnlyWithOneSeparatePointPerElement) {
   const Sphere& s = sphere(3);
   EXPECT_TRUE(AreaConstraint(Membrane(s.space, s.net, laws[0]), mobility(s.net.rows())).empty());
   EXPECT_TRUE(AreaConstraint(with_points(s, NeoHookean{}), mobility(s.net.rows())).empty());

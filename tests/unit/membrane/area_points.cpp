@@ -32,7 +32,8 @@ TEST(AreaPoints, AsManyAsForTheRestAreTheWholeLaw) {
     EXPECT_NEAR(parts.energy(x) / whole.energy(x), 1, 1e-13);
     EXPECT_LT((parts.load(x) - whole.load(x)).norm(), 1e-12 * whole.load(x).norm());
     EXPECT_NEAR(parts.tension_summary(x).smallest, whole.tension_summary(x).smallest, 1e-12);
-    EXPECT_GE(with_points(s, law, 1).tension_summary(x).area_change, whole.tension_summary(x).area_change);  // changes between its points count too
+    // The reported change of area includes points at which the law with one point is not evaluated.
+    EXPECT_GE(with_points(s, law, 1).tension_summary(x).area_change, whole.tension_summary(x).area_change);
   }
 }
 
@@ -47,7 +48,7 @@ TEST(AreaPoints, LoadIsTheGradientOfTheEnergyAndTangentThatOfTheLoad) {
 }
 
 /// A sphere sheared without area change. A membrane that locks is stiffer in proportion to its C.
-TEST(AreaPoints, OneAnElementLeavesAMeshFreeToShear) {
+TEST(AreaPoints, OnePerElementAvoidsLocking) {
   const double c = 1e4;
   std::vector<double> whole, one;
   for (const int n : {4, 8}) {

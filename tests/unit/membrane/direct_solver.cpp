@@ -40,7 +40,7 @@ DirectSolverOptions by(const std::string& way) {
   return options;
 }
 
-TEST(DirectSolver, IterationGivesWhatFactorsGive) {
+TEST(DirectSolver, IterationAgreesWithFactorisation) {
   for (const double skew : {0., 0.3}) {
     const auto a = banded(1000, 5, skew);
     const Net b = right_hand_side(1000);
@@ -116,7 +116,7 @@ TEST(DirectSolver, FactorsAgainWithNewEntriesAndWithANewPattern) {
   }
 }
 
-TEST(DirectSolver, TachoSolvesSymmetricSystemsAndIsRefusedForOthers) {
+TEST(DirectSolver, TachoSolvesSymmetricSystemsAndIsRejectedForOthers) {
   DirectSolver solver(named("Tacho"));
   solver.factor(banded(60, 6, 0));
   const Net b = right_hand_side(60);
@@ -124,7 +124,7 @@ TEST(DirectSolver, TachoSolvesSymmetricSystemsAndIsRefusedForOthers) {
   EXPECT_THROW(solver.factor(banded(60, 6, 0.4)), UserError);
 }
 
-TEST(DirectSolver, NamesWhatItHasWhenAskedForWhatItHasNot) {
+TEST(DirectSolver, NamesTheAvailableSolversIfAnUnknownOneIsRequested) {
   try {
     DirectSolver solver(named("Kaiser"));
     FAIL();
@@ -141,7 +141,7 @@ TEST(DirectSolver, StopsAtASingularMatrix) {
   EXPECT_THROW(solver.factor(a), RunFailure);
 }
 
-TEST(DirectSolver, RefusesAListThatAmesos2DoesNotKnow) {
+TEST(DirectSolver, RejectsParametersThatAmesos2DoesNotKnow) {
   DirectSolverOptions options;
   options.amesos2 = std::make_shared<Teuchos::ParameterList>();
   options.amesos2->sublist("KLU2").set("Transposee", true);

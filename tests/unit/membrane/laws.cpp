@@ -12,7 +12,7 @@ namespace {
 const Law neo_hookean = NeoHookean{1.3}, skalak = Skalak{1.3, 2.5}, mooney = MooneyRivlin{1.3, 0.4}, evans = EvansSkalak{1.3, 2.5},
           interface = SurfaceTension{1.3}, spring = MaxwellSpring{1.3, 2.5};
 
-TEST(Laws, AnUnstretchedMembraneStoresNothingAndPullsNowhere) {
+TEST(Laws, AnUnstretchedMembraneHasNoEnergyAndNoTension) {
   for (const Law& law : {neo_hookean, skalak, mooney, evans}) {
     EXPECT_EQ(energy(law, 1, 1), 0);
     EXPECT_EQ(principal_tensions(law, 1, 1)[0], 0);
@@ -55,7 +55,7 @@ TEST(Laws, AreaModulusIsTheTensionOfASmallChangeOfArea) {
     EXPECT_NEAR((principal_tensions(law, 1 + pull, 1 + pull)[0] - principal_tensions(law, 1, 1)[0]) / (2 * pull), area_modulus(law), 1e-4);
 }
 
-TEST(Laws, AFluidInterfacePullsAlikeEverywhere) {
+TEST(Laws, AFluidInterfaceHasAUniformTension) {
   EXPECT_NEAR(principal_tensions(interface, 1.7, 0.4)[0], 1.3, 1e-15);  // round-off
   EXPECT_NEAR(principal_tensions(interface, 1.7, 0.4)[1], 1.3, 1e-15);
 }

@@ -23,7 +23,7 @@ TEST(MassSolver, SolvesOnADeformedSurfaceWithTheFactorsOfTheUnstressedOne) {
   EXPECT_EQ(solver.solve(now, d).col(1).norm(), 0);
 }
 
-TEST(MassSolver, FactorsAgainWhereTheUnstressedSurfaceIsNoGuide) {
+TEST(MassSolver, FactorsAgainIfTheUnstressedSurfaceIsTooDifferent) {
   const Sphere& s = sphere(3);
   MassMatrix mass(s.space);
   MassSolver solver;

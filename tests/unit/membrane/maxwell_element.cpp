@@ -47,7 +47,7 @@ TEST(MaxwellElement, GivesRefinementTheLogarithmOfItsStrainInSpace) {
 }
 
 /// At small strains its law has the energy E = int (G |dev e|^2 + K/2 (tr e)^2) dG, like every law with the same moduli.
-TEST(MaxwellElement, IsAnElasticMembraneBeforeItForgets) {
+TEST(MaxwellElement, IsAnElasticMembraneForShortTimes) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
   const double c = (dilatation / shear - 1) / 2, small = 1e-4;  // K = (1 + 2 C) G of Evans and Skalak
@@ -73,7 +73,7 @@ TEST(MaxwellElement, LoadIsTheGradientOfTheEnergy) {
   EXPECT_NEAR((at(h) - at(-h)) / (2 * h) / expected, 1, 1e-8);
 }
 
-TEST(MaxwellElement, TurnsIntoHeatWhatItsSpringsLoseAtRest) {
+TEST(MaxwellElement, DissipatesTheEnergyOfItsSpringsAtRest) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
   const Net x = stretched(s.net);
@@ -90,7 +90,7 @@ TEST(MaxwellElement, TurnsIntoHeatWhatItsSpringsLoseAtRest) {
 }
 
 /// If a sphere is inflated, J - 1 decays like exp(-t/T), and the energy is K/2 (J - 1)^2 times its area.
-TEST(MaxwellElement, ForgetsAnAreaExponentially) {
+TEST(MaxwellElement, RelaxesAChangeOfAreaExponentially) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
   const Net x = 1.1 * s.net;
@@ -107,7 +107,7 @@ TEST(MaxwellElement, ForgetsAnAreaExponentially) {
 }
 
 /// If the surface moves steadily for many T, the stress is the viscous stress (3.10) with eta_s and kappa_s.
-TEST(MaxwellElement, IsViscousWhereItForgetsFast) {
+TEST(MaxwellElement, IsViscousForShortRelaxationTimes) {
   const Sphere& s = sphere(3);
   const double fast = 1e-5;
   MaxwellElement springs(s.space, s.net, 4, {eta, kappa}, fast);

@@ -30,7 +30,7 @@ TEST(Membrane, TangentIsTheGradientOfTheLoad) {
   for (const Law& law : laws) EXPECT_LT(tangent_error(Membrane(s.space, s.net, law), s, x, u), 1e-9);
 }
 
-TEST(Membrane, TangentIsSymmetricAndKnowsRigidMotions) {
+TEST(Membrane, TangentIsSymmetricAndInvariantUnderRigidMotions) {
   const Sphere& s = sphere(3);
   const Net x = deformed(s.net), u = random_net(x.rows(), 3), v = random_net(x.rows(), 4);
   for (const Law& law : laws) {
@@ -142,7 +142,7 @@ TEST(Membrane, IsUnstressedAtRest) {
   }
 }
 
-TEST(Membrane, InflationStretchesAlikeEverywhere) {
+TEST(Membrane, InflationStretchesUniformly) {
   const Sphere& s = sphere(3);
   const double area = surface::measures(s.space, s.net).area;
   for (double stretch : {0.9, 1.1, 1.6})
@@ -157,7 +157,7 @@ TEST(Membrane, InflationStretchesAlikeEverywhere) {
     }
 }
 
-TEST(Membrane, PreInflationLeavesTheStretchOneToOnePlusAlpha) {
+TEST(Membrane, PreInflationGivesTheStretchOnePlusAlpha) {
   const Sphere& s = sphere(3);
   const Vec3 centre(0.2, -0.1, 0.4);
   const Net rest = s.net.rowwise() + centre.transpose(), x = unstressed(rest, centre, 0.05);

@@ -48,7 +48,7 @@ TEST(PatchForces, HaveTheSameMomentsOnEveryMesh) {
   EXPECT_LT((moments[0] - moments[1]).norm(), 2e-4 * moments[0].norm());
 }
 
-TEST(PatchForces, NeedAPlaceOfTheirOwn) {
+TEST(PatchForces, MustHaveDifferentDirections) {
   EXPECT_THROW(PatchForces({{{"one", {1, 0, 0}, 0.1, {}}, {"other", {2, 0, 0}, 0.3, {}}}}).check(), UserError);
   EXPECT_THROW(PatchForces({{{"one", {0, 0, 0}, 0.1, {}}}}).check(), UserError);
   EXPECT_NO_THROW(PatchForces({{{"one", {1, 0, 0}, 0.1, {}}, {"other", {-2, 0, 0}, 0.3, {}}}}).check());

@@ -83,7 +83,7 @@ TEST(StrainEnergy, TheStrongLoadIsThatOfTheBuiltInLaw) {
   EXPECT_LT((expression.strong_load(x, site) - law.strong_load(x, site)).norm(), 1e-12 * law.strong_load(x, site).norm());
 }
 
-TEST(StrainEnergy, WhatIsNoEnergyIsRefusedWithItsNumbers) {
+TEST(StrainEnergy, AWrongEnergyIsRejectedWithItsValues) {
   const auto says = [](const std::string& sentence, const std::string& part) { return sentence.find(part) != std::string::npos; };
   EXPECT_PRED2(says, refusal("(I1 - 1 + 1/(I2 + 1)/2"), "`)` is expected at the end");
   EXPECT_PRED2(says, refusal("I1 + * I2"), "at character 6");

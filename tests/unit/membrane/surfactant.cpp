@@ -15,7 +15,7 @@ SurfactantOptions linear(double elasticity) {
   return options;
 }
 
-TEST(Surfactant, IsConservedWhateverMoves) {
+TEST(Surfactant, IsConservedForAnyMotion) {
   const Sphere& s = sphere(3);
   Surfactant surfactant(s.space, s.net, linear(0.2), 1.3, 0.4);
   const Eigen::VectorXd q = Eigen::VectorXd::Ones(s.net.rows()) + 0.3 * random_net(s.net.rows(), 1).col(0);
@@ -81,7 +81,7 @@ TEST(Surfactant, HasTheEquationsOfStateOfItsName) {
   EXPECT_NEAR((langmuir.tension(1) - 1) / h, -0.3, 1e-5);
 }
 
-TEST(Surfactant, FreeEnergyLessWhatTheConcentrationIsWorthIsTheTension) {
+TEST(Surfactant, FreeEnergyMinusConcentrationTimesChemicalPotentialIsTheTension) {
   SurfactantOptions langmuir = linear(0.3);
   langmuir.coverage = 0.25;
   const double c = 1.3, h = 1e-5;  // central differences: 1e-11
@@ -110,7 +110,7 @@ TEST(Surfactant, LoadIsTheGradientOfTheFreeEnergy) {
   EXPECT_LT(fine, coarse / 4) << coarse << ' ' << fine;
 }
 
-TEST(Surfactant, ThatLeavesNoTensionIsAFailureWithItsConcentration) {
+TEST(Surfactant, WithoutRemainingTensionIsAFailureThatStatesTheConcentration) {
   const Sphere& s = sphere(3);
   Surfactant surfactant(s.space, s.net, linear(0.4), 1, 0);
   EXPECT_THROW(surfactant.set_state(s.net, Eigen::VectorXd::Constant(s.net.rows(), 2.6)), RunFailure);

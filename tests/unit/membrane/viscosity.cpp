@@ -37,7 +37,7 @@ struct Sphere {
 /// Returns an ellipsoid, so that no result is right only by symmetry.
 Net stretched(const Net& net) { return net * Vec3(1.3, 0.9, 1.1).asDiagonal(); }
 
-TEST(ViscousLoad, OfARigidMotionIsNothing) {
+TEST(ViscousLoad, OfARigidMotionVanishes) {
   const Sphere sphere;
   const Net x = stretched(sphere.net);
   Mat3 turn;
@@ -62,7 +62,7 @@ TEST(ViscousLoad, IsSymmetricAndAddsUpToNoForce) {
 /// On the unit sphere v = x is a dilatation: d = g, div 2, tau:d = 4 kappa. The rates of strain of v = (-x1/2, -x2/2, x3) along the meridian and the
 /// parallel are d1 = 1 - 3/2 cos^2 and d2 = -1/2, so (d1 - d2)^2 = 9/4 sin^4 and d1 + d2 = 1/2 - 3/2 cos^2. The integrals of (d1 - d2)^2 and (d1 +
 /// d2)^2 over the sphere are 4 pi x 6/5 and 4 pi x 1/5.
-TEST(ViscousLoad, DissipatesWhatTheRateOfStrainSays) {
+TEST(ViscousLoad, HasTheDissipationOfTheRateOfStrain) {
   const Sphere sphere;
   const double four_pi = 4 * std::numbers::pi, mesh = 1e-3;  // error of the sphere's fit
   EXPECT_NEAR(sphere.power({0.7, 1.9}, sphere.net, sphere.net), four_pi * 4 * 1.9, mesh * four_pi * 4 * 1.9);

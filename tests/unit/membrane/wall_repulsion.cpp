@@ -36,7 +36,7 @@ TEST(WallRepulsion, LoadIsTheGradientOfTheEnergy) {
 }
 
 // The tangent neglects the rotation of the normals, a relative error of order range/radius.
-TEST(WallRepulsion, TangentIsSymmetricAndAllButTheDerivativeOfTheLoad) {
+TEST(WallRepulsion, TangentIsSymmetricAndNearlyTheDerivativeOfTheLoad) {
   Sphere of;
   of.repulsion.linearise(of.x, of.elements, {});
   std::srand(2);

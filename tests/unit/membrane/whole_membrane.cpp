@@ -43,7 +43,7 @@ struct Whole {
   double energy(const Net& at) const { return whole.energy(at, sums(at)); }
 };
 
-TEST(WholeMembrane, EnergyIsOfTheWholeArea) {
+TEST(WholeMembrane, EnergyDependsOnTheTotalArea) {
   const Whole of(7, 0);
   const auto area = [&](const Net& net) { return surface::measures(of.space, net).area; };
   const double now = area(of.x), before = area(of.unstressed);
@@ -52,7 +52,7 @@ TEST(WholeMembrane, EnergyIsOfTheWholeArea) {
 }
 
 /// The integral of twice the mean curvature of an oblate spheroid is 4 pi (c + a^2 acos(c/a)/sqrt(a^2 - c^2)); the mesh is coarse.
-TEST(WholeMembrane, EnergyIsOfTheDifferenceOfTheLeaves) {
+TEST(WholeMembrane, EnergyDependsOnTheAreaDifferenceOfTheLeaflets) {
   const Whole of(0, 3);
   const double pi = std::numbers::pi, relaxed = 1.2 * 8 * pi;
   const auto expected = [&](double n) { return pi * 3 * (n - relaxed) * (n - relaxed) / (2 * 4 * pi); };
@@ -62,7 +62,7 @@ TEST(WholeMembrane, EnergyIsOfTheDifferenceOfTheLeaves) {
   EXPECT_NEAR(of.energy(spheroid) / expected(4 * pi * (0.6 + std::acos(0.6) / 0.8)), 1, 5e-3);
 }
 
-TEST(WholeMembrane, LoadIsTheGradientOfTheEnergyAndPullsNothingAway) {
+TEST(WholeMembrane, LoadIsTheGradientOfTheEnergyWithZeroForceAndTorque) {
   const Whole of;
   const Net d = of.load(of.x);
   const double h = 1e-5;
@@ -83,7 +83,7 @@ TEST(WholeMembrane, TangentIsTheDerivativeOfTheLoad) {
 }
 
 /// If the stress-free area difference is that of a sphere, the load is that of a spontaneous curvature and a tension.
-TEST(WholeMembrane, LeavesActLikeASpontaneousCurvature) {
+TEST(WholeMembrane, AreaDifferenceActsLikeASpontaneousCurvatureAndATension) {
   const Whole of(0, 3);
   const double stiffness = 3 * std::numbers::pi / surface::measures(of.space, of.unstressed).area;
   const double change = std::sqrt(2 * of.energy(of.x) / stiffness), curvature = 0.3;  // N is smaller than its stress-free value

@@ -40,13 +40,13 @@ TEST(Adaptation, AVariationAboveItsReferenceShortensElementsByThePowerOfTheOrder
   EXPECT_TRUE(cut(element(0.2, 0.2, 8 * 1.42), 0));  // 0.4 / 2.02 = 0.198
 }
 
-TEST(Adaptation, SlenderElementsAreCutUnlessTheyAreAtTheFloor) {
+TEST(Adaptation, SlenderElementsAreDividedUnlessTheyHaveTheMinimumLength) {
   EXPECT_TRUE(cut(element(0.26, 0.1), 0));
   EXPECT_FALSE(cut(element(0.24, 0.1), 0));
   EXPECT_FALSE(cut(element(0.049, 0.01), 0));
 }
 
-TEST(Adaptation, WhatIsMergedIsNotCutAgain) {
+TEST(Adaptation, MergedElementsAreNotDividedAgain) {
   for (const double a : {0.03, 0.06, 0.1, 0.15, 0.3})
     for (const double b : {0.03, 0.06, 0.1, 0.15, 0.3})
       for (const double traction : {0.0, 9.0, 20.0})
@@ -62,7 +62,7 @@ using Resolved = std::array<surface::Resolution, 2>;
 /// Returns the resolution along one direction: length, errors, and the error of an element of twice the length.
 surface::Resolution along(double length, double surface, double load = 0, double merged = 0) { return {length, {surface, load}, {merged, 0}}; }
 
-TEST(Adaptation, AnErrorAboveItsToleranceCutsItsOwnDirection) {
+TEST(Adaptation, AnErrorAboveItsToleranceDividesElementsInItsDirection) {
   AdaptationOptions o;
   o.surface_tolerance = 1e-3;
   o.minimum_length = 0.05;
@@ -89,7 +89,7 @@ TEST(Adaptation, TheErrorOfFieldsIsComparedWithTheSurfaceToleranceOverTheRadius)
   EXPECT_FALSE(merges(with(1.5e-4), o)[0].s);
 }
 
-TEST(Adaptation, WhatIsMergedByItsErrorIsNotCutAgain) {
+TEST(Adaptation, ElementsMergedByTheirErrorAreNotDividedAgain) {
   AdaptationOptions o;
   o.surface_tolerance = 1e-3;
   int merged = 0;

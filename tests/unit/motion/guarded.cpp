@@ -40,7 +40,7 @@ State start(double step) {
 
 bool never() { return false; }
 
-TEST(GuardedDynamics, WhatCannotBeEvaluatedMakesAStepShorterUnderEveryScheme) {
+TEST(GuardedDynamics, AFailedEvaluationShortensTheStepInEveryScheme) {
   for (const char* scheme : {"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"}) {
     TimeOptions options;
     options.scheme = scheme;
@@ -59,7 +59,7 @@ TEST(GuardedDynamics, WhatCannotBeEvaluatedMakesAStepShorterUnderEveryScheme) {
   }
 }
 
-TEST(GuardedDynamics, AFirstTrialWithoutAVelocityLeavesAStepToBeginWith) {
+TEST(GuardedDynamics, AFirstTrialWithoutAVelocityStillGivesAnInitialStep) {
   Decay decay;
   GuardedDynamics motion(decay, never);
   State state = start(0);
@@ -70,7 +70,7 @@ TEST(GuardedDynamics, AFirstTrialWithoutAVelocityLeavesAStepToBeginWith) {
   EXPECT_GT(first_step(motion, state, TimeOptions()), 0.1 * step);
 }
 
-TEST(GuardedDynamics, AFailureOfOneRankIsOneOfAll) {
+TEST(GuardedDynamics, AFailureOnOneRankIsAFailureOnAllRanks) {
   const coupling::Ranks ranks;
   Decay decay;
   decay.fails = [&](const Net&) {
@@ -81,7 +81,7 @@ TEST(GuardedDynamics, AFailureOfOneRankIsOneOfAll) {
   EXPECT_EQ(motion.failure(), "not converged");
 }
 
-TEST(GuardedDynamics, MemoryThatRunsOutIsNoReasonForAShorterStep) {
+TEST(GuardedDynamics, LackOfMemoryDoesNotShortenTheStep) {
   const coupling::Ranks ranks;
   Decay decay;
   decay.fails = [&](const Net&) {
@@ -92,7 +92,7 @@ TEST(GuardedDynamics, MemoryThatRunsOutIsNoReasonForAShorterStep) {
   EXPECT_EQ(motion.failure(), "there is not enough memory");
 }
 
-TEST(GuardedDynamics, EveryRankStopsWhereOneWasTold) {
+TEST(GuardedDynamics, AllRanksStopIfOneReceivesASignal) {
   const coupling::Ranks ranks;
   Decay decay;
   GuardedDynamics motion(decay, [&] { return ranks.rank() == ranks.size() - 1; });
@@ -100,7 +100,7 @@ TEST(GuardedDynamics, EveryRankStopsWhereOneWasTold) {
 }
 
 // Two ranks whose own errors would lie on either side of the tolerance take the same steps.
-TEST(GuardedDynamics, DecisionsOfAStepAreTheFirstRanks) {
+TEST(GuardedDynamics, TheFirstRankDecidesAboutSteps) {
   const coupling::Ranks ranks;
   for (const char* scheme : {"tr-bdf2", "bs3", "rkc2"}) {
     TimeOptions options;

@@ -155,7 +155,7 @@ double clocked_error(const std::string& scheme, double step) {
   return (state.x.transpose() - Clocked::at_one()).norm();
 }
 
-TEST(Integrators, KeepTheirOrderWhereTheMotionChangesInTimeAndJumps) {
+TEST(Integrators, KeepTheirOrderForMotionsThatVaryInTimeAndJump) {
   const std::pair<const char*, double> orders[] = {{"tr-bdf2", 3}, {"bs3", 3}, {"bdf3", 3}, {"rkc2", 2}, {"crank-nicolson", 2}, {"auto", 3}};
   for (const auto& [scheme, order] : orders)
     EXPECT_NEAR(std::log2(clocked_error(scheme, 0.005) / clocked_error(scheme, 0.0025)), order, 0.15) << scheme;
@@ -171,7 +171,7 @@ TEST(Integrators, EverySolverOfCrankNicolsonFindsTheSameSteps) {
   }
 }
 
-TEST(Integrators, SecantsSpareEvaluationsAndLeaveTheResult) {
+TEST(Integrators, SecantsSaveEvaluationsWithoutChangingTheResult) {
   for (const char* scheme : {"tr-bdf2", "bdf3"}) {
     int evaluations[2];
     Net end[2];
@@ -252,12 +252,12 @@ double transient(const std::string& scheme, double rate, int steps) {
   return std::abs(state.x(0, 0) - std::cos(state.x(0, 2)));
 }
 
-TEST(Integrators, ImplicitSchemesForgetAStiffTransient) {
+TEST(Integrators, ImplicitSchemesDampAStiffTransient) {
   EXPECT_LT(transient("tr-bdf2", 1e8, 2), 1e-6);  // L-stable: divided by about dt rate each step
   EXPECT_LT(transient("bdf3", 1e8, 6), 1e-6);     // three steps of TR-BDF2, then three positions without the transient
 }
 
-TEST(Integrators, Rkc2TakesTheStagesThatStabilityNeeds) {
+TEST(Integrators, Rkc2UsesTheNumberOfStagesThatStabilityRequires) {
   EXPECT_EQ(rkc2_stages(0.1, 0), 2);
   for (const double rho : {10.0, 1e2, 1e3, 1e4}) {
     const double s = rkc2_stages(0.1, rho);
@@ -282,7 +282,7 @@ TEST(Integrators, TheStiffnessIsFoundFromARandomDirection) {
   EXPECT_NEAR(stiffness(model, x, model.velocity(x), direction, 1), 40, 0.1);  // starts from the direction of the last call
 }
 
-TEST(Integrators, AutoIsExplicitWhereThatIsStableAndImplicitWhereItIsNot) {
+TEST(Integrators, AutoIsExplicitIfThatIsStableAndImplicitOtherwise) {
   for (const double rate : {1.0, 1e4}) {
     TimeOptions options = with("auto");
     Model model(rate);
@@ -311,7 +311,7 @@ class InLattice : public Model {
   double now = 0, assembled = 0;
 };
 
-TEST(Integrators, AShapeIsFrozenInTheLatticeOfItsTime) {
+TEST(Integrators, FrozenOperatorsUseTheLatticeAtTheTimeOfAssembly) {
   InLattice model(1);
   State state = start(0.25);
   state.time = 0.5;
@@ -328,7 +328,7 @@ TEST(Integrators, AShapeIsFrozenInTheLatticeOfItsTime) {
   EXPECT_EQ(model.assemblies, 2);
 }
 
-TEST(Integrators, AutoTakesAFirstStepThatAnExplicitOneCannot) {
+TEST(Integrators, AutoMakesAFirstStepThatIsTooLongForExplicitSchemes) {
   for (const double rate : {1.0, 1e4}) {
     Model model(rate);
     State state = start(1e-2);
@@ -338,7 +338,7 @@ TEST(Integrators, AutoTakesAFirstStepThatAnExplicitOneCannot) {
   }
 }
 
-TEST(Integrators, AutoAssemblesNothingLargerThanItIsAllowed) {
+TEST(Integrators, AutoAssemblesNoOperatorAboveTheMemoryLimit) {
   TimeOptions options = with("auto");
   options.largest_operator = 1e-9;  // in GB; the operator has 12 bytes
   Model model(1e3);
@@ -414,7 +414,7 @@ TEST(Integrators, CrankNicolsonFollowsThePapersStepRule) {
   EXPECT_DOUBLE_EQ(landing.step, 1e-6);
 }
 
-TEST(Integrators, AStepBelowTheMinimumStopsTheRunAndKeepsTheState) {
+TEST(Integrators, AStepBelowTheMinimumEndsTheRunAndKeepsTheState) {
   class Broken : public Model {
    public:
     Broken() : Model(1) {}
@@ -443,7 +443,7 @@ class Rescaled : public Model {
   double unit_;
 };
 
-TEST(Integrators, TheFirstStepIsTheSameWhateverTheUnitOfTime) {
+TEST(Integrators, TheFirstStepDoesNotDependOnTheUnitOfTime) {
   double first = 0;
   for (const double unit : {1.0, 1e-3, 1e4}) {
     Rescaled model(unit);
@@ -466,7 +466,7 @@ TEST(Integrators, AFixedStepMayBeShorterThanTheLeastOfAControlledOne) {
   EXPECT_EQ(integrator(options)->advance(model, state, 1).step, 1e-12);
 }
 
-TEST(Integrators, AttemptsFollowTheErrorDownWhateverItsPower) {
+TEST(Integrators, RepeatedStepsReduceTheErrorForAnyOrder) {
   const TimeOptions options;
   for (const double power : {3., 1., 0.7}) {
     State state;
@@ -480,7 +480,7 @@ TEST(Integrators, AttemptsFollowTheErrorDownWhateverItsPower) {
   }
 }
 
-TEST(Integrators, AttemptsWhoseErrorHardlyFallsAreNotCutToSlivers) {
+TEST(Integrators, RepeatedStepsAreNotShortenedTooMuchIfTheErrorHardlyDecreases) {
   const TimeOptions options;
   State state;
   state.step = 1;
@@ -492,13 +492,13 @@ TEST(Integrators, AttemptsWhoseErrorHardlyFallsAreNotCutToSlivers) {
   EXPECT_NEAR(attempts.next(), 0.8 * 0.9 / (1.2 * 1.2), 1e-14);
 }
 
-TEST(Integrators, StepsTowardsALimitLeaveNoSliver) {
+TEST(Integrators, StepsTowardsALimitLeaveNoTinyLastStep) {
   EXPECT_EQ(step_towards(1, 2, 5), 1);
   EXPECT_EQ(step_towards(1, 2, 0.7), 0.5);
   EXPECT_EQ(step_towards(1, 2, 0.3), 0.3);
 }
 
-TEST(Integrators, ACopiedStateGoesOnToTheLastBit) {
+TEST(Integrators, ACopiedStateContinuesBitwiseEqual) {
   for (const char* scheme : {"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"}) {
     Model model(3);
     State state = start(0.01);

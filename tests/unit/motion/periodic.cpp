@@ -81,7 +81,7 @@ TEST(Periodic, AMotionThatStartsAtRestNeedsNoFinalTime) {
   EXPECT_LT((after_periods(motion, time, nullptr, options, x) - x).norm(), 1e-7);
 }
 
-TEST(Periodic, WhatDoesNotComeBackSaysSo) {
+TEST(Periodic, AMotionThatIsNotPeriodicIsReported) {
   Cycle motion;
   const TimeOptions time = explicit_steps();
   PeriodicOptions options;

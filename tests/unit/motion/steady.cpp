@@ -53,7 +53,7 @@ TEST(FixedPointError, IsExactForAnAffineMap) {
 }
 
 // The correction is a hundredth of the error. The estimate is tested to a factor of 2, because the map is not affine.
-TEST(FixedPointError, SeesTheErrorOfAModeThatDecaysSlowly) {
+TEST(FixedPointError, DetectsTheErrorOfASlowMode) {
   Slow motion;
   FixedPointError error(10);
   Net x = start();
@@ -71,7 +71,7 @@ class Steady : public testing::TestWithParam<const char*> {};
 
 // The error is at most twice the tolerance; with the correction as the criterion it was up to 35 times the tolerance. Tolerances above a hundredth of
 // the initial error are met before the slow mode dominates.
-TEST_P(Steady, EndsWhereTheErrorIsTheTolerance) {
+TEST_P(Steady, EndsWhenTheErrorIsBelowTheTolerance) {
   Slow motion;
   for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
     SteadyEquations equations(motion, {}, 0.5, start());
@@ -105,7 +105,7 @@ class Crumpled : public ExplicitMotion {
   double norm(const Net& d) const override { return d.norm() / std::sqrt(static_cast<double>(d.rows())); }
 };
 
-TEST_P(Steady, DoesNotTakeAShapeThatMovesForASteadyOne) {
+TEST_P(Steady, DoesNotAcceptAMovingShapeAsSteady) {
   Crumpled motion;
   Net x = Net::Zero(40, 3);
   SteadyEquations equations(motion, {}, 0.5, x);

@@ -40,7 +40,7 @@ constexpr double places[][2] = {{0, 0}, {1, 0}, {1, 1}, {0.3, 0}, {1, 0.7}, {0.5
 
 Rule made(double s, double t, MetricBin metric, double tolerance) { return polar(s, t, metric, polar_orders(s, t, metric, 4, tolerance)); }
 
-TEST(Polar, IntegratesTheSingularityWhereverTheTargetIs) {
+TEST(Polar, IntegratesTheSingularityForAnyTarget) {
   for (const auto& [s, t] : places)
     for (const double b : {1., 3., 0.2})
       for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
@@ -52,7 +52,7 @@ TEST(Polar, IntegratesTheSingularityWhereverTheTargetIs) {
       }
 }
 
-TEST(Polar, TakesUpTheShearOfTheElement) {
+TEST(Polar, IsAccurateOnShearedElements) {
   const double s = 0.3, t = 0.6;
   const Vec3 u(1, 0, 0), v(1.2, 0.5, 0);  // tangents with an angle of 23 degrees
   const auto value = [&](const Rule& rule) {
@@ -108,7 +108,7 @@ TEST(Graded, CostsTheLogarithmOfTheDistance) {
   EXPECT_LT(points(1e-6) - points(1e-4), 1.5 * (points(1e-4) - points(1e-2)));
 }
 
-TEST(Graded, EndsOnAnElementThatIsNotFiniteOrTooCrumpledForAnyRule) {
+TEST(Graded, EndsOnAnElementThatIsNotFiniteOrTooDistorted) {
   for (const double size : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(), 1e200}) {  // 1e200: squares overflow
     Rule rule;
     graded(rectangle(1, size), 1, Vec3(0.4, 0.3, 0.1), {.allowed = 1e-8, .tolerance = 1e-8}, rule);
@@ -117,7 +117,7 @@ TEST(Graded, EndsOnAnElementThatIsNotFiniteOrTooCrumpledForAnyRule) {
   }
 }
 
-TEST(Ellipse, TellsTheErrorOfGauss) {
+TEST(Ellipse, PredictsTheErrorOfGauss) {
   for (const double height : {0.3, 1., 2.}) {
     const double rho = ellipse(0, height), exact = 2 * std::asinh(1 / height);
     const int n = order_for(1e-8, rho);
@@ -129,7 +129,7 @@ TEST(Ellipse, TellsTheErrorOfGauss) {
   }
 }
 
-TEST(Sight, SeesTheNearestPlaceOfAPatch) {
+TEST(Sight, FindsTheNearestPointOfAPatch) {
   const Patch patch{Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 2, 0)};
   EXPECT_DOUBLE_EQ(sight(patch, Vec3(0.3, 1, 0.5)).distance, 0.5);
   EXPECT_DOUBLE_EQ(sight(patch, Vec3(3, 0, 0)).distance, 2);

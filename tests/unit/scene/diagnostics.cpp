@@ -33,7 +33,7 @@ TEST(Series, AreDeclaredOnce) {
   }
 }
 
-TEST(Series, OfTheProgramComeInTheOrderOfTheManual) {
+TEST(Series, OfTheProgramAreInTheOrderOfTheManual) {
   Columns row;
   for (const char* name : {"of a part", "kernel_evaluations", "cell_2_x1", "axis_1_x1", "axis_3", "time"}) row.add(0, {name, "1", ""});
   put_in_order(row);
@@ -83,7 +83,7 @@ stokes::FlowOptions linear(std::initializer_list<double> rows) {
   return flow;
 }
 
-TEST(FlowPlanes, AreX1X3OfFlowsThatAreBuiltIn) {
+TEST(FlowPlanes, AreX1X3ForBuiltInFlows) {
   for (const char* type : {"simple shear", "uniaxial extension", "quiescent"}) {
     stokes::FlowOptions flow;
     flow.type = type;
@@ -107,7 +107,7 @@ TEST(FlowPlanes, AreThoseInWhichALinearFlowMovesAndChanges) {
 }
 
 // The first normal stress difference is that along the flow minus that along the gradient, whichever axes the deck gives them.
-TEST(FlowPlanes, KnowTheDirectionsOfAShearFlow) {
+TEST(FlowPlanes, HaveTheDirectionsOfAShearFlow) {
   const Mat3 stress = (Mat3() << 3, 0.2, 0.5, 0.2, -1, 0.1, 0.5, 0.1, -2).finished();  // shear along x1 with the gradient along x3
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   const Mat3 swap = (Mat3() << 0, 0, 1, 0, 1, 0, 1, 0, 0).finished();  // shear along x3 with the gradient along x1
@@ -124,7 +124,7 @@ TEST(FlowPlanes, KnowTheDirectionsOfAShearFlow) {
   EXPECT_FALSE(flow_plane(linear({1, 0.3, 0, 0.2, -1, 0, 0, 0, 0})).of_shear);
 }
 
-TEST(FlowPlanes, DoNotHoldAFlowThatIsNotPlanar) {
+TEST(FlowPlanes, DoNotExistForANonplanarFlow) {
   const FlowPlane plane = flow_plane(linear({1, 0.5, 0, -0.5, 1, 0, 0, 0, -2}));
   EXPECT_FALSE(plane.holds_flow);
   EXPECT_EQ(plane.axes.row(1).cwiseAbs(), Eigen::RowVector3d(0, 0, 1));  // the normal is along the vorticity
@@ -157,7 +157,7 @@ TEST(SiteAhead, IsFoundAtAPoleToo) {
   }
 }
 
-TEST(Turnings, CountPastWholeTurns) {
+TEST(Turnings, CountWholeTurns) {
   PhaseAngle turning;
   double angle = 0;
   for (int k = 1; k <= 40; ++k) {

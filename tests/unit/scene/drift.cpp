@@ -19,12 +19,12 @@ ParticleScene scene(const std::string& flow) {
   return s;
 }
 
-TEST(Drift, AParticleIsHeldAtThePointOfRestOfAFlowThatDrawsAwayFromIt) {
+TEST(Drift, AParticleIsHeldAtAStagnationPointOfADivergingFlow) {
   for (const char* flow : {"planar hyperbolic", "uniaxial extension", "four-roll"}) EXPECT_TRUE(holds_centre(scene(flow))) << flow;
   for (const char* flow : {"simple shear", "quiescent"}) EXPECT_FALSE(holds_centre(scene(flow))) << flow;
 }
 
-TEST(Drift, AParticleThatStartsElsewhereIsCarriedAway) {
+TEST(Drift, AParticleThatStartsElsewhereDriftsAway) {
   ParticleScene s = scene("planar hyperbolic");
   s.particle.shape.center = {0.1, 0, 0};
   EXPECT_FALSE(holds_centre(s));
@@ -38,7 +38,7 @@ TEST(Drift, AParticleOnWhichAForceActsIsNotHeld) {
   EXPECT_TRUE(holds_centre(heavy));
 }
 
-TEST(Drift, AShearInAnyDirectionsHoldsNothing) {
+TEST(Drift, AParticleInShearIsNotHeld) {
   for (const double angle : {0.3, 1.1, 2.5}) {
     ParticleScene s = scene("linear");
     const Mat3 turn = Eigen::AngleAxisd(angle, Vec3(1, 2, -1).normalized()).toRotationMatrix();
@@ -47,7 +47,7 @@ TEST(Drift, AShearInAnyDirectionsHoldsNothing) {
   }
 }
 
-TEST(Drift, TheDeckDecides) {
+TEST(Drift, TheDeckMayOverrideTheDefault) {
   ParticleScene s = scene("planar hyperbolic");
   s.particle.drift = "free";
   EXPECT_FALSE(holds_centre(s));
@@ -56,7 +56,7 @@ TEST(Drift, TheDeckDecides) {
   EXPECT_TRUE(holds_centre(s));
 }
 
-TEST(Drift, PuttingTheCentroidBackTakesTheSlopesAlong) {
+TEST(Drift, MovingTheCentroidBackUpdatesTheSlopes) {
   // Points that only move with the flow, v = L x, have the slopes L x at any position.
   const stokes::AmbientFlow flow(scene("planar hyperbolic").flow);
   const spline::TMesh mesh = spline::cube(4);
@@ -75,7 +75,7 @@ TEST(Drift, PuttingTheCentroidBackTakesTheSlopesAlong) {
 }
 
 // Points that only move with the flow were at exp(-L s) x a time s earlier, for any current position x.
-TEST(Drift, PuttingTheCentroidBackTakesEarlierPlacesAlong) {
+TEST(Drift, MovingTheCentroidBackUpdatesEarlierPositions) {
   const stokes::AmbientFlow flow(scene("planar hyperbolic").flow);
   const spline::TMesh mesh = spline::cube(4);
   const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::catmull_clark);

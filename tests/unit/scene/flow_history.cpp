@@ -63,14 +63,14 @@ TEST(FlowHistory, ACapsuleWhoseFlowStopsRelaxes) {
   }
 }
 
-TEST(FlowHistory, AnAmplitudeOfOneIsTheSteadyFlowToTheLastBit) {
+TEST(FlowHistory, AnAmplitudeOfOneIsBitwiseEqualToTheSteadyFlow) {
   for (const char* scheme : {"tr-bdf2", "auto"}) {
     const auto settings = with(capsule_in_shear, {std::string("Time/scheme=") + scheme});
     EXPECT_EQ(shape_at(0.2, settings), shape_at(0.2, with(settings, {"Flow/history/times=[0]", "Flow/history/amplitudes=[1]"})));
   }
 }
 
-TEST(FlowHistory, ATurnOfTheFlowTurnsTheCapsule) {
+TEST(FlowHistory, ARotatedFlowRotatesTheCapsule) {
   // Shear rotated by 90 degrees about x2 is the flow (x3, 0, 0) with x1 and x3 exchanged and one of them reversed. The mesh has this symmetry.
   Evolution steady(capsule_in_shear), turned(with(capsule_in_shear, {"Flow/history/times=[0]", "Flow/history/angles=[90]"}));
   steady.to(0.3);

@@ -32,7 +32,7 @@ TEST(InitialShape, RelaxesToTheRestingOneAndLosesEnergyInEveryStep) {
   EXPECT_NEAR(surface::volume(run.body().space, run.state.x) / volume, 1, 1e-13);
 }
 
-TEST(InitialShape, ThatIsTheRestingOneIsNoneToTheLastBit) {
+TEST(InitialShape, ThatEqualsTheRestingShapeGivesABitwiseEqualRun) {
   const std::vector<std::string> settings = {"Surface/elements per side=3", "Particle/center=[0.1, 0.2, 0.3]", "Time/final time=1"};
   const Evolution none(settings);
   for (const char* same : {"stretch=[1, 1, 1]", "map=[1, 0, 0, 0, 1, 0, 0, 0, 1]"}) {
@@ -44,7 +44,7 @@ TEST(InitialShape, ThatIsTheRestingOneIsNoneToTheLastBit) {
   }
 }
 
-TEST(InitialShape, HasTheRestingVolumeUnlessItsOwnIsAskedFor) {
+TEST(InitialShape, HasTheRestingVolumeUnlessAnotherIsRequested) {
   const std::vector<std::string> shear = at_rest({"Particle/initial shape/map=[1.2, 0, 0.5, 0, 1, 0, 0, 0, 0.7]"});
   Evolution kept(shear);
   const double rest = surface::volume(kept.body().space, kept.body().rest);
@@ -56,13 +56,13 @@ TEST(InitialShape, HasTheRestingVolumeUnlessItsOwnIsAskedFor) {
   EXPECT_NEAR(surface::volume(own.body().space, own.state.x) / rest, 1.2 * 0.7, 1e-13) << "and keeps it";
 }
 
-TEST(InitialShape, SaysWhatSymmetryThereIs) {
+TEST(InitialShape, DeterminesTheSymmetry) {
   const auto description = [](const char* shape) { return Evolution(at_rest({shape})).body().symmetry.description(); };
   EXPECT_EQ(description("Particle/initial shape/stretch=[1.4, 1, 0.8]"), "mirror x1, mirror x2 and mirror x3");
   EXPECT_EQ(description("Particle/initial shape/map=[1, 0, 0.5, 0, 1, 0, 0, 0, 1]"), "mirror x2 and point symmetry");
 }
 
-TEST(InitialShape, ThatIsWrongIsRefused) {
+TEST(InitialShape, ThatIsWrongIsRejected) {
   const auto refusal = [](std::vector<std::string> settings) -> std::string {
     try {
       Evolution run(at_rest(std::move(settings)));

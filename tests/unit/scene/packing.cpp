@@ -54,7 +54,7 @@ TEST(Packing, SpheresFillMoreThanNearlyHalfOfACellWithoutOverlap) {
       }
 }
 
-TEST(Packing, TwoSizesAndWhatIsFixed) {
+TEST(Packing, TwoSizesAndFixedSpheres) {
   Scene scene(40, 0.4, tilted, true);
   scene.spheres[3].fixed = true;
   const Vec3 stays = scene.spheres[3].centre;
@@ -63,7 +63,7 @@ TEST(Packing, TwoSizesAndWhatIsFixed) {
   EXPECT_EQ(scene.spheres[3].centre, stays);
 }
 
-TEST(Packing, ComesAgainFromItsSeed) {
+TEST(Packing, IsReproducibleFromItsSeed) {
   const Scene start(20, 0.45, tilted);
   Scene one = start, other = start, third = start;
   ASSERT_TRUE(pack(one.spheres, one.cell, 1) && pack(other.spheres, other.cell, 1) && pack(third.spheres, third.cell, 2));
@@ -91,7 +91,7 @@ TEST(Packing, IsThatOfHardSpheresInEquilibrium) {
   EXPECT_LT(found / expected, 1.05);
 }
 
-TEST(Packing, WhatHasNoRoomIsSaidToHaveNone) {
+TEST(Packing, SpheresThatDoNotFitAreReported) {
   Scene scene(20, 0.7, Mat3::Identity());
   EXPECT_FALSE(pack(scene.spheres, scene.cell, 1));
 }

@@ -34,7 +34,7 @@ std::vector<std::string> in_flow(const char* profile, std::vector<std::string> m
   return more;
 }
 
-TEST(ParabolicFlow, HoldsASphereWithFaxensForceAndTorque) {
+TEST(ParabolicFlow, ExertsFaxensForceAndTorqueOnAFixedSphere) {
   for (const char* profile : {"round", "plane"}) {
     const RigidSolution s = rigid_solution("spheroid_cube.yaml", in_flow(profile, {"Particle/semi-axes=[0.8, 0.8, 0.8]",
                                                                                   "Particle/velocity=[0, 0, 0]", "Surface/elements per side=6"}));
@@ -46,7 +46,7 @@ TEST(ParabolicFlow, HoldsASphereWithFaxensForceAndTorque) {
   }
 }
 
-TEST(ParabolicFlow, CarriesAnUnstressedCapsuleWithItsMeanOverTheVolume) {
+TEST(ParabolicFlow, MovesAnUnstressedCapsuleWithTheMeanVelocityOverItsVolume) {
   const Evolution run(in_flow("round", {"Particle/radius=0.8", "Surface/elements per side=5"}));
   const Exact exact(true);
   const Vec3 velocity = surface::centroid_velocity(run.capsule->geometry().bezier(), run.state.x, run.state.history[0]);

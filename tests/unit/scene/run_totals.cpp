@@ -11,7 +11,7 @@
 namespace tanktread {
 namespace {
 
-TEST(RunTotals, ComesBackFromACheckpoint) {
+TEST(RunTotals, IsRestoredFromACheckpoint) {
   RunTotals totals;
   totals.step = 7;
   totals.wall_seconds = 1. / 3;
@@ -34,7 +34,7 @@ TEST(RunTotals, ComesBackFromACheckpoint) {
   EXPECT_EQ(stored_totals(checkpoint).warnings.shown.at(1).sentence, "at time 2 it folds");
 }
 
-TEST(RunTotals, OfAnotherVersionIsLacking) {
+TEST(RunTotals, OfAnotherVersionIsMissing) {
   output::Checkpoint checkpoint;
   store(RunTotals(), checkpoint);
   checkpoint.numbers.erase("tangents");
@@ -50,7 +50,7 @@ std::vector<std::string> look(Warnings& warnings) {
   return warnings.sentences(signs);
 }
 
-TEST(RunTotals, WarningsGoOnWhereTheyWere) {
+TEST(RunTotals, WarningsContinueAfterResumption) {
   Scene scene;
   deck::Document deck = deck::read({}, {"Membrane/capillary number=0.1"});
   deck.declare(scene);

@@ -35,7 +35,7 @@ std::string refusal(const std::string& lists) {
   return {};
 }
 
-TEST(Scenes, WithoutAnyKeyAreASphereInShear) {
+TEST(Scenes, DefaultToASphereInShear) {
   const ParticleScene s = only("");
   EXPECT_EQ(s.flow.type, "simple shear");
   EXPECT_EQ(s.radius(), 1.0);
@@ -46,7 +46,7 @@ TEST(Scenes, WithoutAnyKeyAreASphereInShear) {
   EXPECT_EQ(s.snapshot_interval(), s.time.final_time / 20);
 }
 
-TEST(Scenes, SurviveTheirEffectiveDeck) {
+TEST(Scenes, AreReproducedFromTheirEffectiveDeck) {
   for (const char* lists :
        {"  Flow: {type: quiescent}\n  Membrane: {shear modulus: 2}\n", "  Membrane: {law: Skalak, capillary number: 0.1}\n",
         "  Flow: {type: linear, gradient: [1, 0, 0, 0, -1, 0, 0, 0, 0]}\n", "  Particle: {shape: ellipsoid, semi-axes: [1, 2, 3]}\n",
@@ -67,7 +67,7 @@ TEST(Scenes, SurviveTheirEffectiveDeck) {
   }
 }
 
-TEST(Scenes, HaveViscosityRatiosThatRoundingLeavesSolvable) {
+TEST(Scenes, RejectViscosityRatiosThatRoundingMakesUnsolvable) {
   EXPECT_EQ(refusal("  Particle: {viscosity ratio: 1e6}\n"), "");
   EXPECT_NE(refusal("  Particle: {viscosity ratio: 1.1e6}\n"), "");
   EXPECT_EQ(refusal("  Particle: {viscosity ratio: 1e9}\n  Solvers: {tolerance: 1e-5}\n"), "");
@@ -80,7 +80,7 @@ TEST(Scenes, CountTheFactorsOfTheWallOnEveryRank) {
   EXPECT_NE(refusal(tube + "300}\n").find("more than the limit of 64 GB"), std::string::npos);  // 66 GB per rank
 }
 
-TEST(Scenes, HaveLengthsOfRefinementThatGoWithTheirSize) {
+TEST(Scenes, ScaleLengthsOfRefinementWithTheirSize) {
   const ParticleScene one = only("  Adaptation: {enabled: true}\n"), other = only("  Particle: {radius: 1.0e-6}\n  Adaptation: {enabled: true}\n");
   EXPECT_DOUBLE_EQ(other.adaptation.surface_tolerance, 1e-6 * one.adaptation.surface_tolerance);
   EXPECT_DOUBLE_EQ(other.adaptation.minimum_length, 1e-6 * one.adaptation.minimum_length);
@@ -88,7 +88,7 @@ TEST(Scenes, HaveLengthsOfRefinementThatGoWithTheirSize) {
   EXPECT_EQ(only("  Particle: {radius: 2}\n  Adaptation: {enabled: true, surface tolerance: 0.5}\n").adaptation.surface_tolerance, 0.5);
 }
 
-TEST(Scenes, RefuseSnapshotsWithoutEnd) {
+TEST(Scenes, RejectTooManySnapshots) {
   EXPECT_NE(refusal("  Time: {final time: 2}\n  Output: {interval: 1.0e-9}\n").find("Output/interval"), std::string::npos);
 }
 
@@ -122,13 +122,13 @@ TEST(EquivalentRadii, AreThoseOfTheSphereOfEqualVolume) {
               1e-6);  // error of the midpoint rule
 }
 
-TEST(Orientations, TurnTheAxesOfTheParticle) {
+TEST(Orientations, RotateTheAxesOfTheParticle) {
   const ParticleScene s = only("  Particle: {shape: spheroid, semi-axes: [2, 2, 1], orientation: [0, -45, 0]}\n");
   EXPECT_TRUE(s.particle.shape.rotation().col(0).isApprox(Vec3(1, 0, 1).normalized(), 1e-15)) << "along the direction of extension";
   EXPECT_TRUE(only("").particle.shape.rotation().isIdentity(0));
 }
 
-TEST(Contradictions, OfFlowsAreOneSentenceEach) {
+TEST(Contradictions, OfFlowsAreReportedInOneSentenceEach) {
   EXPECT_EQ(refusal("  Flow: {type: parabolic}\n"), "Flow/type `parabolic` needs Flow/half width.");
   EXPECT_EQ(refusal("  Flow: {half width: 2}\n"), "Flow/half width belongs to Flow/type `parabolic`, but Flow/type is `simple shear`.");
   EXPECT_EQ(refusal("  Flow: {type: parabolic, half width: 2, shear rate: 3}\n"),
@@ -153,7 +153,7 @@ TEST(Contradictions, OfFlowsAreOneSentenceEach) {
             "Membrane/bending modulus and Membrane/bending number contradict each other: give one of them.");
 }
 
-TEST(Contradictions, AreOneSentenceEach) {
+TEST(Contradictions, AreReportedInOneSentenceEach) {
   EXPECT_EQ(refusal("  Membrane: {capillary number: 0.3, shear modulus: 1}\n"),
             "Membrane/capillary number and Membrane/shear modulus contradict each other: give one of them.");
   EXPECT_EQ(refusal("  Membrane: {area dilatation: 2}\n"),
@@ -187,7 +187,7 @@ TEST(Contradictions, AreOneSentenceEach) {
   EXPECT_EQ(refusal("  Volume: {constraint: none}\n  Membrane: {load measure: current}\n"), "");
 }
 
-TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
+TEST(Sizes, BeyondMemoryAreRejectedWithAnEstimate) {
   const std::string assembled = "  Solvers: {frozen operator: assembled}\n";
   EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n"), "");  // only near-field matrices are stored
   EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 110}\n"), "");
@@ -220,7 +220,7 @@ std::string particle(const std::string& name, double x1, const std::string& list
   return formatted("    %s: {center: [%g, 0, 0], Surface: {elements per side: 3}%s}\n", name.c_str(), x1, lists.c_str());
 }
 
-TEST(Members, ThatAreEqualShareTheirTables) {
+TEST(Members, WithEqualMeshesShareTheirTables) {
   const Scene all = scene("  Particles:\n" + particle("first", 0) + particle("softer", 3, ", Membrane: {capillary number: 0.1}") +
                           particle("equal", 6.1) + particle("flatter", 9, ", shape: ellipsoid, semi-axes: [1, 1, 0.9]") + "  Contact: {}\n");
   std::vector<Member> members = tanktread::members(all);
@@ -232,7 +232,7 @@ TEST(Members, ThatAreEqualShareTheirTables) {
   EXPECT_NE(members[3].membrane, members[0].membrane);
 }
 
-TEST(Members, HaveTheMeshAndTheShapeThatTheyHaveAlone) {
+TEST(Members, HaveTheMeshAndTheShapeOfASingleParticle) {
   const std::string flat = ", shape: ellipsoid, semi-axes: [1, 1, 0.9]";
   const Scene all = scene("  Particles:\n" + particle("first", 0) + particle("turned", 3, ", orientation: [0, 40, 10]") + particle("flat", 6, flat) +
                           particle("flat and turned", 9, flat + ", orientation: [20, 0, 30]") + particle("large", 15, ", radius: 2") +
@@ -269,7 +269,7 @@ TEST(Scenes, PutASingleRigidBodyInAFlowOfAnyDegreeIntoTheSystem) {
   }
 }
 
-TEST(Resuming, MayChangeHowTheRunGoesOnButNotWhatItIs) {
+TEST(Resuming, MayChangeKeysOfTheRunButNotOfTheScene) {
   for (const char* path : {"Time/final time", "Output/interval", "Expect/volume/value", "Solvers/Belos", "Quadrature/tolerance"})
     EXPECT_TRUE(may_change_on_resume(path)) << path;
   for (const char* path : {"Flow/type", "Particle/radius", "Membrane/law", "Surface/elements per side", "Output/power balance", "Contact/limiter"})

@@ -36,21 +36,21 @@ std::string with_a_second(const std::string& particle, const std::string& membra
   return "  Particles:\n    light: {center: [3, 0, 0], " + capsule + "}\n    other: {center: [0, 0, 0], " + particle + ", " + membrane + "}\n";
 }
 
-TEST(FreeMotions, InAFluidAtRestAreAll) { EXPECT_EQ(free_number(still_fluid + one_particle("", capsule)), 6u); }
+TEST(FreeMotions, InAFluidAtRestAreAllRigidMotions) { EXPECT_EQ(free_number(still_fluid + one_particle("", capsule)), 6u); }
 
 // The free motions are the translations and the rotation about the force.
-TEST(FreeMotions, DoNotTurnAWeight) {
+TEST(FreeMotions, ExcludeRotationsOfAWeightExceptAboutItsDirection) {
   EXPECT_EQ(free_number(with_gravity + one_particle("density difference: 1", capsule)), 4u);
   EXPECT_EQ(free_number(with_gravity + with_a_second("density difference: 1", capsule)), 4u);
 }
 
-TEST(FreeMotions, DoNotTurnForcesOnPatches) {
+TEST(FreeMotions, ExcludeRotationsOfForcesOnPatches) {
   EXPECT_EQ(free_number(still_fluid + one_particle("", pulled)), 4u);
   EXPECT_EQ(free_number(still_fluid + with_a_second("shape: sphere", pulled)), 4u);
 }
 
 // Only the rotation about the axis is free, because an extensional flow is at rest only at its centre.
-TEST(FreeMotions, InAnExtensionTurnAboutItsAxis) { EXPECT_EQ(free_number("  Flow: {type: uniaxial extension}\n"), 1u); }
+TEST(FreeMotions, InAnExtensionAreTheRotationAboutItsAxis) { EXPECT_EQ(free_number("  Flow: {type: uniaxial extension}\n"), 1u); }
 
 }  // namespace
 }  // namespace tanktread

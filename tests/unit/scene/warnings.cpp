@@ -36,20 +36,20 @@ StepFindings at(double step, double tension, double element = 0.13) {
   return signs;
 }
 
-TEST(Warnings, AreSilentAboutAHealthyRun) {
+TEST(Warnings, AreNotGivenInANormalRun) {
   Told run({"Membrane/capillary number=0.3"});
   for (int k = 0; k < 100; ++k)
     EXPECT_EQ(run.first(at(0.1, k < 10 ? -0.19 : -0.05)), "");  // tensions at the start and in the steady state of a run
                                                                 // that agrees with other methods to five digits
 }
 
-TEST(Warnings, TellOfSnapshotsThatAreLeftOut) {
+TEST(Warnings, ReportOmittedSnapshots) {
   Told often({"Time/fixed step=0.2", "Output/interval=0.1"}), seldom({"Time/fixed step=0.1", "Output/interval=0.1"});
   EXPECT_TRUE(names(first_warnings(often.whole).at(0).sentence, "Output/interval"));
   EXPECT_TRUE(first_warnings(seldom.whole).empty());
 }
 
-TEST(Warnings, TellOfSurfaceFieldsOfAnEarlierRun) {
+TEST(Warnings, ReportSurfaceFieldsOfAnEarlierRun) {
   const std::vector<std::string> clean{"Membrane/law=surface tension", "Particle/initial shape/run=."};
   std::vector<std::string> covered = clean;
   covered.emplace_back("Interface/surfactant/elasticity number=0.2");
@@ -57,7 +57,7 @@ TEST(Warnings, TellOfSurfaceFieldsOfAnEarlierRun) {
   EXPECT_TRUE(first_warnings(Told(clean).whole).empty());
 }
 
-TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
+TEST(Warnings, ReportCompressionWithoutBendingOnce) {
   Told run({"Membrane/capillary number=0.1"});
   for (int k = 0; k < 10; ++k) EXPECT_EQ(run.first(at(0.1, -0.13)), "");  // the waves need time to grow
   for (int k = 0; k < 10; ++k) run.first(at(0.1, -0.13));
@@ -68,7 +68,7 @@ TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
   EXPECT_EQ(run.warnings.memory().shown.size(), 1u);
 }
 
-TEST(Warnings, TellOfCompressionOnlyWhereTheMeshAndNotBendingSetsTheWave) {
+TEST(Warnings, ReportCompressionOnlyIfTheMeshAndNotBendingDeterminesTheWavelength) {
   Told stiff({"Membrane/capillary number=0.1", "Membrane/bending modulus=0.02"});
   for (int k = 0; k < 50; ++k) EXPECT_EQ(stiff.first(at(0.1, -0.13)), "");  // the fastest wave has k = 4.7, and the mesh resolves k = 24
   Told soft({"Membrane/capillary number=0.1", "Membrane/bending modulus=1e-5"});
@@ -76,34 +76,34 @@ TEST(Warnings, TellOfCompressionOnlyWhereTheMeshAndNotBendingSetsTheWave) {
   EXPECT_TRUE(names(soft.warnings.memory().shown.at(0).sentence, "too little resistance"));
 }
 
-TEST(Warnings, TellOfAFixedStepBeyondTheLimit) {
+TEST(Warnings, ReportAFixedStepBeyondTheStabilityLimit) {
   Told run({"Time/scheme=bs3", "Time/fixed step=0.2"});  // rho is 80 on these elements at Ca = 0.3
   EXPECT_TRUE(names(run.first(at(0.2, 0)), "Time/scheme"));
   Told implicit({"Time/scheme=tr-bdf2", "Time/fixed step=0.2"});
   EXPECT_EQ(implicit.first(at(0.2, 0)), "");
 }
 
-TEST(Warnings, TellOfStepsThatStabilityKeepsShort) {
+TEST(Warnings, ReportStepsLimitedByStability) {
   Told run({"Time/scheme=bs3"});
   for (int k = 0; k < 9; ++k) EXPECT_EQ(run.first(at(0.03, 0)), "");
   EXPECT_TRUE(names(run.first(at(0.03, 0)), "Time/tolerance"));
 }
 
-TEST(Warnings, TellOfAnElementThatFoldsWithTheCureOfTheScene) {
+TEST(Warnings, ReportAFoldedElementWithAdviceForTheScene) {
   StepFindings signs = at(0.1, 0);
   signs.jacobian_ratio = 0.01;
   EXPECT_TRUE(names(Told({"Flow/type=simple shear"}).first(signs), "Adaptation/enabled"));
   EXPECT_TRUE(names(Told({"Membrane/law=surface tension", "Interface/motion=material"}).first(signs), "Interface/motion"));
 }
 
-TEST(Warnings, TellOfADropThatTheFlowMayDrawOutWithoutEnd) {
+TEST(Warnings, ReportADropThatTheFlowMayElongateWithoutLimit) {
   StepFindings signs = at(0.1, 0);
   signs.jacobian_ratio = 0.01;
   EXPECT_TRUE(names(Told({"Flow/type=uniaxial extension", "Membrane/law=surface tension"}).first(signs), "no steady shape"));
   EXPECT_FALSE(names(Told({"Flow/type=uniaxial extension"}).first(signs), "no steady shape"));
 }
 
-TEST(Warnings, TellOfVolumeGapsAndSlimElements) {
+TEST(Warnings, ReportVolumeErrorsGapsAndSlenderElements) {
   StepFindings lost = at(0.1, 0), slim = lost, narrow = lost;
   lost.volume_error = -0.01;
   slim.aspect_ratio = 12;
@@ -113,12 +113,12 @@ TEST(Warnings, TellOfVolumeGapsAndSlimElements) {
   EXPECT_TRUE(names(Told({"Flow/type=simple shear"}).first(narrow), "gap"));
 }
 
-TEST(Warnings, TellFromTheStartOfChoicesThatAreKnownToFail) {
+TEST(Warnings, ReportChoicesThatAreKnownToFailAtTheStart) {
   EXPECT_TRUE(names(Told({"Membrane/load=strong"}).first(at(0.01, 0)), "Membrane/load"));
   EXPECT_TRUE(names(Told({"Surface/mesh=polar", "Surface/poles=plain", "Quadrature/rule=fixed"}).first(at(0.01, 0)), "poles"));
 }
 
-TEST(Soundness, EndsARunWhoseElementFolds) {
+TEST(Soundness, EndsARunWithAFoldedElement) {
   Scene scene;
   deck::Document deck = deck::read({}, {"Surface/elements per side=4"});
   deck.declare(scene);

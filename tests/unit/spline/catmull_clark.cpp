@@ -25,7 +25,7 @@ TEST(CatmullClark, PiecesArePositiveAndSumToOne) {
   EXPECT_EQ(area, 1);
 }
 
-TEST(CatmullClark, SubdivisionHasTheKnownSubdominantEigenvalueTwice) {
+TEST(CatmullClark, SubdivisionHasTheKnownDoubleSubdominantEigenvalue) {
   // lambda = (5 + c + sqrt((18 + 2 c) (1 + c) / 2)) / 16 with c = cos(2 pi / 3): 0.41010. Source: Stam 1998.
   Eigen::VectorXd values = catmull_clark_subdivision().eigenvalues().real();
   std::sort(values.data(), values.data() + values.size(), std::greater<>());
@@ -77,7 +77,7 @@ TEST(CatmullClark, FieldsAreC2AcrossAllSidesButThoseOfTheInnermostSquares) {
   EXPECT_LT(bend, 1e-10);  // rounding of 1e-16 divided by the squared side 2^-8 of the smallest piece
 }
 
-TEST(CatmullClark, EverySiteIsSeenAlikeFromAllPiecesAroundIt) {
+TEST(CatmullClark, AllPiecesAroundASiteHaveTheSameValue) {
   const TMesh mesh = cube(4);
   const Space s = space(mesh, rule);
   const Net net = random_net(s.n_points, 8);
@@ -88,7 +88,7 @@ TEST(CatmullClark, EverySiteIsSeenAlikeFromAllPiecesAroundIt) {
   }
 }
 
-TEST(CatmullClark, TheInnermostSquareKeepsItsSideWhateverTheLevels) {
+TEST(CatmullClark, TheInnermostSquareHasTheSameSideOnAllLevels) {
   for (int levels : {0, 2, 4}) {
     const Space s = space(cube(3, levels), rule);
     double smallest = 1;

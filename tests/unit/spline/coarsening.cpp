@@ -17,7 +17,7 @@ constexpr auto rule = ExtraordinaryRule::catmull_clark;
 
 double largest(const std::vector<double>& v) { return *std::max_element(v.begin(), v.end()); }
 
-TEST(Coarsening, TakingBackTheLastRefinementGivesTheMeshAndTheControlPointsBack) {
+TEST(Coarsening, UndoingTheLastRefinementRestoresTheMeshAndTheControlPoints) {
   for (int n : {3, 4, 6})
     for (unsigned seed = 0; seed < 4; ++seed) {
       std::mt19937 generator(seed);
@@ -38,7 +38,7 @@ TEST(Coarsening, TakingBackTheLastRefinementGivesTheMeshAndTheControlPointsBack)
     }
 }
 
-TEST(Coarsening, EverythingGoesBackToTheBaseMesh) {
+TEST(Coarsening, CoarseningReturnsToTheBaseMesh) {
   for (int n : {3, 4, 6})
     for (unsigned seed = 0; seed < 4; ++seed) {
       std::mt19937 generator(seed);

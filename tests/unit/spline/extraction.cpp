@@ -51,7 +51,7 @@ TEST(Extraction, EqualMatricesAreSharedWithinSpacesAndAcrossThem) {
   EXPECT_EQ(distinct(stacked(both)), distinct(one));
 }
 
-TEST(Extraction, LevelsOfTheLatticeThatAreNotUsedChangeNothing) {
+TEST(Extraction, UnusedLevelsOfTheLatticeHaveNoEffect) {
   const Space a = space(cube(4, 0), ExtraordinaryRule::g1), b = space(cube(4, 2), ExtraordinaryRule::g1);
   ASSERT_EQ(a.elements.size(), b.elements.size());
   for (std::size_t k = 0; k < a.elements.size(); ++k) {
@@ -111,7 +111,7 @@ TEST(Extraction, FieldsAreC2AcrossRegularSidesAndG1AtExtraordinaryPoints) {
   EXPECT_LT(g1, 1e-12);
 }
 
-TEST(Extraction, LinearFieldsOfTheControlPointsMoveAsABody) {
+TEST(Extraction, AnAffineMapOfTheControlPointsIsAnAffineMapOfTheSurface) {
   const Space s = space(cube(3), ExtraordinaryRule::g1);
   const Net net = random_net(s.n_points, 5);
   Mat3 A;
@@ -180,7 +180,7 @@ TEST(Greville, CollocationIsWellConditioned) {
   }
 }
 
-TEST(Locate, FindsTheElementOfEveryPlace) {
+TEST(Locate, FindsTheElementOfEveryPoint) {
   const TMesh mesh = cube(4, 1);
   const Space s = space(mesh, ExtraordinaryRule::g1);
   const Locator locate(s);

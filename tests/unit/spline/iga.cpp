@@ -36,7 +36,7 @@ Net ball(const TMesh& mesh) {
   return net;
 }
 
-TEST(Iga, WhatIsWrittenIsReadBack) {
+TEST(Iga, AWrittenSurfaceIsReadUnchanged) {
   std::mt19937 generator(3);
   const TMesh uniform = cube(3, 2), cut = refine(uniform, random_marks(uniform, 4, 0, generator)).mesh;
   for (const TMesh& mesh : {uniform, cut})
@@ -56,7 +56,7 @@ TEST(Iga, WhatIsWrittenIsReadBack) {
     }
 }
 
-TEST(Iga, EveryFunctionOfAnImportedSurfaceGetsItsOwnPlace) {
+TEST(Iga, EveryFunctionOfAnImportedSurfaceHasASeparateSite) {
   const TMesh mesh = cube(4);
   const Scratch file;
   write_iga(file.path, space(mesh, ExtraordinaryRule::g1), ball(mesh));
@@ -112,7 +112,7 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
   text.replace(at, from.size(), to);
 }
 
-TEST(Iga, EveryFaultGetsOneSentence) {
+TEST(Iga, EveryErrorIsReportedInOneSentence) {
   EXPECT_EQ(complaint([](std::string&) {}), "read");
   // Removes the last element, first without and then with a change of the number of elements.
   EXPECT_TRUE(says(complaint([](std::string& t) { t.erase(t.rfind("belem")); }), "elemN states 54 elements, but the file contains 53"));
@@ -150,7 +150,7 @@ Element turned_over(Element e) {
   return e;
 }
 
-TEST(Iga, InvertedElementsAndSurfacesAreRefused) {
+TEST(Iga, InvertedElementsAndSurfacesAreRejected) {
   const TMesh mesh = cube(3);
   Space s = space(mesh, ExtraordinaryRule::g1);
   const Net net = ball(mesh);

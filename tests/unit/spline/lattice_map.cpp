@@ -58,12 +58,12 @@ TEST(LatticeMaps, OfACubeAreItsFortyEightSymmetries) {
   EXPECT_EQ(reflections(*mesh.lattice, {mesh.lattice->extraordinary[0], 0}).size(), 7u);
 }
 
-TEST(LatticeMaps, OfAPolarSphereTurnAboutItsAxisAndChangeThePoles) {
+TEST(LatticeMaps, OfAPolarSphereRotateAboutItsAxisAndExchangeThePoles) {
   const TMesh mesh = polar(5, 4);
   EXPECT_EQ(all_maps(*mesh.lattice, {0, 0}).size(), 4u * 5u);
 }
 
-TEST(LatticeMaps, TakeElementsToWhereTheirCornersGo) {
+TEST(LatticeMaps, MapElementsLikeTheirCorners) {
   const TMesh mesh = cube(4, 2);
   const Lattice& l = *mesh.lattice;
   const Tiling tiling = elements(mesh);

@@ -46,7 +46,7 @@ TEST(Polar, FunctionsSumToOneAndUseEveryControlPoint) {
 }
 
 /// If the control values are the meridian coordinates of the generalised Greville points, the field is the meridian coordinate.
-TEST(Polar, ReproducesTheWayAlongTheMeridian) {
+TEST(Polar, ReproducesTheMeridianCoordinate) {
   const PolarMesh mesh{8, 6, PoleRule::plain};
   const Space s = space(mesh);
   Net net = Net::Zero(s.n_points, 3);

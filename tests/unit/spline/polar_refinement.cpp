@@ -46,7 +46,7 @@ TEST(PolarRefinement, CutsAtAPoleKeepTheField) {
   }
 }
 
-TEST(PolarRefinement, EverythingGoesBackToTheBaseMesh) {
+TEST(PolarRefinement, CoarseningReturnsToTheBaseMesh) {
   for (unsigned seed = 0; seed < 4; ++seed) {
     std::mt19937 generator(seed);
     const TMesh base = polar(8, 4, 3);

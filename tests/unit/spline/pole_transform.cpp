@@ -47,7 +47,7 @@ TEST(PoleTransform, HasThePublishedEntries) {
   EXPECT_EQ(first(5, 9), 0);
 }
 
-TEST(PoleTransform, TakesConstantsToConstantsAndQuadrilateralsAreAverages) {
+TEST(PoleTransform, ReproducesConstantsAndQuadrilateralsAreAverages) {
   EXPECT_LT((triangle_of_degenerate().rowwise().sum().array() - 1).abs().maxCoeff(), 1e-15);
   for (const Corners& corners : thirds_of_triangle()) {
     const Eigen::MatrixXd m = quadrilateral_of_triangle(corners);

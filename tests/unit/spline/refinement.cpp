@@ -54,7 +54,7 @@ TEST(Refinement, EachRuleIsNeeded) {
   EXPECT_GT(residual_without({.rings = 2}), 1e-4);
 }
 
-TEST(Refinement, AChainIntoAnExtraordinaryPointCosts45PointsALevel) {
+TEST(Refinement, RepeatedRefinementAtAnExtraordinaryPointAdds45PointsPerLevel) {
   TMesh mesh = cube(8, 6);
   const Lattice& l = *mesh.lattice;
   const int P = l.extraordinary[0];
@@ -90,19 +90,19 @@ TEST(Refinement, DependsOnTheSetOfMarksOnly) {
   }
 }
 
-TEST(Refinement, NoMarksChangeNothing) {
+TEST(Refinement, WithoutMarksTheMeshIsUnchanged) {
   const TMesh mesh = cube(4, 2);
   EXPECT_EQ(refine(mesh, {}).mesh.edges, mesh.edges);
 }
 
-TEST(Refinement, WhatIsCutCannotBeCutBelowTheLattice) {
+TEST(Refinement, ElementsCannotBeDividedBelowTheLattice) {
   const TMesh mesh = cube(4, 0);
   const Refinement r = refine(mesh, {{0, true, false}, {7, true, true}});
   EXPECT_EQ(r.refused, 3);
   EXPECT_EQ(r.mesh.edges, mesh.edges);
 }
 
-TEST(Refinement, OneCutAcrossSHalvesTheElementAcrossSOnly) {
+TEST(Refinement, OneCutAcrossSDividesTheElementOnlyAcrossS) {
   const TMesh mesh = cube(12, 1);
   const Tiling before = elements(mesh);
   const int element = before.tile_of_cell[mesh.lattice->cell_at(0, 12, 12)];
@@ -116,7 +116,7 @@ TEST(Refinement, OneCutAcrossSHalvesTheElementAcrossSOnly) {
   EXPECT_EQ(t_junctions(cut).size(), 2u);
 }
 
-TEST(Refinement, EveryBezierElementKnowsItsMeshElement) {
+TEST(Refinement, EveryBezierElementHasTheIndexOfItsMeshElement) {
   std::mt19937 generator(4);
   const TMesh mesh = refine(cube(4, 2), random_marks(cube(4, 2), 6, 0, generator)).mesh;
   const Space s = space(mesh, rule);

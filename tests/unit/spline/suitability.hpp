@@ -1,5 +1,5 @@
 #pragma once
-// Violations of the conditions for linearly independent and nested splines on a T-mesh, counted without earlier results.
+// Violations of the conditions for linearly independent and nested splines on a T-mesh, counted from scratch.
 
 #include "spline/extended_mesh.hpp"
 

@@ -11,7 +11,7 @@
 namespace tanktread::spline {
 namespace {
 
-TEST(Lattice, EveryWayBackLeadsBack) {
+TEST(Lattice, EveryLinkHasAnInverse) {
   const Lattice l = cube_lattice(3, 1);
   EXPECT_EQ(l.vertices(), 6 * 6 * 6 + 2);
   EXPECT_EQ(l.extraordinary.size(), 8u);
@@ -49,7 +49,7 @@ TEST(Lattice, EveryStraightLineClosesOrEndsAtAnExtraordinaryPoint) {
   EXPECT_EQ(closed, (l.vertices() - 8) * 4 - ended);
 }
 
-TEST(Lattice, CellsAreSeenFromOutside) {
+TEST(Lattice, CellsHaveOutwardOrientation) {
   const Lattice l = cube_lattice(3, 0);
   for (const auto& c : l.corners) {
     const Vec3 a = l.position[c[0]], normal = (l.position[c[1]] - a).cross(l.position[c[3]] - a);
@@ -57,7 +57,7 @@ TEST(Lattice, CellsAreSeenFromOutside) {
   }
 }
 
-TEST(Lattice, AWalkerWhoTurnsLeftFourTimesComesHome) {
+TEST(Lattice, FourLeftTurnsAroundACellReturnToTheStart) {
   const Lattice l = cube_lattice(5, 0);
   for (int c = 0; c < l.cells(); ++c)
     for (int turn = 0; turn < 4; ++turn) {
@@ -73,7 +73,7 @@ TEST(Lattice, AWalkerWhoTurnsLeftFourTimesComesHome) {
     }
 }
 
-TEST(TMesh, TheUniformCubeHasOneAnchorAVertex) {
+TEST(TMesh, TheUniformCubeHasOneAnchorPerVertex) {
   for (int n : {3, 6})
     for (int levels : {0, 2}) {
       const TMesh mesh = cube(n, levels);
@@ -84,7 +84,7 @@ TEST(TMesh, TheUniformCubeHasOneAnchorAVertex) {
     }
 }
 
-TEST(TMesh, TooCoarseOrTooFineIsTheUsersMistake) {
+TEST(TMesh, TooCoarseOrTooFineMeshesAreRejected) {
   EXPECT_THROW(cube(2), UserError);
   EXPECT_THROW(cube(0), UserError);
   EXPECT_THROW(cube(-3), UserError);

@@ -25,7 +25,7 @@ TEST(Transfer, ARefinedFieldIsTheSameFieldEverywhere) {
   }
 }
 
-TEST(Transfer, WhatIsFarFromACutIsCopiedToTheLastBit) {
+TEST(Transfer, ControlPointsFarFromACutAreBitwiseEqual) {
   const TMesh mesh = cube(12, 1);
   const TMesh cut = refine(mesh, {{elements(mesh).tile_of_cell[mesh.lattice->cell_at(0, 12, 12)]}}).mesh;
   const Space coarse = space(mesh, ExtraordinaryRule::catmull_clark), fine = space(cut, ExtraordinaryRule::catmull_clark);
@@ -38,12 +38,12 @@ TEST(Transfer, WhatIsFarFromACutIsCopiedToTheLastBit) {
   EXPECT_GT(copied, coarse.n_points - 49);  // a cut has an effect up to three elements away in each direction
 }
 
-TEST(Transfer, ResidualTellsWhenSpacesAreNotNested) {
+TEST(Transfer, ResidualDetectsSpacesThatAreNotNested) {
   const Space fine = space(cube(6), ExtraordinaryRule::g1), coarse = space(cube(3), ExtraordinaryRule::g1);
   EXPECT_GT(Transfer(coarse, fine)(random_net(coarse.n_points, 1)).residual, 1e-3);
 }
 
-TEST(Projection, ReproducesWhatTheSpaceHolds) {
+TEST(Projection, ReproducesFieldsOfTheSpace) {
   const Space coarse = space(cube(4), ExtraordinaryRule::catmull_clark);
   const Space other = space(refine(cube(4, 2), {{3}, {50}}).mesh, ExtraordinaryRule::catmull_clark);
   const Net net = random_net(coarse.n_points, 2);

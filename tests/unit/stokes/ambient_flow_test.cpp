@@ -42,7 +42,7 @@ TEST(AmbientFlow, HasTheVelocitiesOfItsDefinition) {
   EXPECT_LT((AmbientFlow(roll).velocity(x) - 0.75 * Vec3(1.6 * x[0] + 0.4 * x[2], 0, -0.4 * x[0] - 1.6 * x[2])).norm(), 1e-15);
 }
 
-TEST(AmbientFlow, TakesTheRateOfALinearFlowFromItsGradient) {
+TEST(AmbientFlow, HasTheRateOfALinearFlowFromItsGradient) {
   FlowOptions linear = flow("linear", 1);
   linear.gradient = Mat3::Zero();
   (*linear.gradient)(0, 2) = 3;  // simple shear at rate 3
@@ -111,7 +111,7 @@ FlowHistory stopped() {
   return history;
 }
 
-TEST(FlowHistory, OfATableIsStraightBetweenItsTimesAndJumpsWhereTwoAreEqual) {
+TEST(FlowHistory, OfATableIsPiecewiseLinearAndJumpsAtEqualTimes) {
   const FlowHistory history = stopped();
   EXPECT_EQ(history.at(0, 0).amplitude, 1);
   EXPECT_EQ(history.at(1.5, 1).amplitude, 2);
@@ -142,7 +142,7 @@ FlowOptions rotlet() {
   return options;
 }
 
-TEST(AmbientFlow, OfAnotherProgramIsTakenAsItIs) {
+TEST(AmbientFlow, OfAnotherProgramIsUsedUnchanged) {
   const AmbientFlow f(rotlet());
   EXPECT_EQ(f.velocity(x), Rotlet().velocity(x));
   EXPECT_EQ(f.velocities(Net(x.transpose())).row(0), Rotlet().velocity(x).transpose());
@@ -159,7 +159,7 @@ struct Shear : UserFlow {
   bool affine() const override { return true; }
 };
 
-TEST(AmbientFlow, OfAnotherProgramIsFittedToPlates) {
+TEST(AmbientFlow, OfAnotherProgramIsAdaptedToPlates) {
   FlowOptions options = flow("shear", 1);
   options.user = std::make_shared<Shear>();
   options.viscosity = 0.7;
@@ -182,7 +182,7 @@ TEST(AmbientFlow, OfAnotherProgramIsFittedToPlates) {
   }
 }
 
-TEST(FlowHistory, MakesAnyFlowTheSameOneTurnedAndMoreOrLess) {
+TEST(FlowHistory, MultipliesAndRotatesAnyFlow) {
   FlowOptions uniform = flow("uniform"), roll = flow("four-roll");
   uniform.velocity = Vec3(1, 2, 3);
   roll.roll_parameter = 0.6;

@@ -73,7 +73,7 @@ TEST(Cap, IsBoundedAndContinuousAtItsRim) {
   }
 }
 
-TEST(Cap, LetsThroughWhatADoubleLayerDrives) {
+TEST(Cap, GivesTheFlowRateOfADoubleLayer) {
   const surface::Outline outline = bean();
   const Cap cap(outline, -2, 1e-12);
   const Vec3 y(0.2, 0.3, -0.1), v(0.7, -1.1, 0.4), n(0.5, 0.2, -0.9);
@@ -82,7 +82,7 @@ TEST(Cap, LetsThroughWhatADoubleLayerDrives) {
   EXPECT_NEAR(cap.double_layer_flow(y, n).dot(v) / exact, 1, 1e-9);
 }
 
-TEST(Cap, DrivesAFlowThroughItself) {
+TEST(Cap, CausesAFlowThroughItself) {
   // int int 1/|x - x'| dS dS' = 16 pi/3 on the unit disc.
   EXPECT_NEAR(Cap(circle(48), 0, 1e-9).own_flow(), 2. / 3, 2e-6);  // the spline's area accounts for 8e-7
   EXPECT_NEAR(Cap(circle(24), 0, 1e-9).own_flow(), 2. / 3, 2e-5);

@@ -92,7 +92,7 @@ TEST(CrossLayer, KeepsItsNearRulesForFurtherDensities) {
   }
 }
 
-TEST(CrossLayer, FeelsNoConstantVelocityOutside) {
+TEST(CrossLayer, VanishesOutsideForAConstantVelocity) {
   const Fixture s;
   CrossLayer layer(s.space, s.options, CrossLayer::Kernel::double_layer);
   layer.set_shape(s.x);

@@ -58,7 +58,7 @@ TEST(DoubleLayer, AssembledRowsTimesAVelocityAreTheSum) {
 }
 
 // The integrand vanishes for a translation. For a rotation, int T_ijk n_k (omega x r)_j dG = 0 inside and on the surface (2.3).
-TEST(DoubleLayer, GivesNothingForRigidBodyMotions) {
+TEST(DoubleLayer, VanishesForRigidBodyMotions) {
   Net translation = Net::Zero(scene().space.n_points, 3), rotation = translation;
   translation.rowwise() = Eigen::RowVector3d(1, -2, 3);
   for (int i = 0; i < scene().space.n_points; ++i) rotation.row(i) = Vec3(0.3, 0.9, -0.2).cross(Vec3(scene().x.row(i))).transpose();
@@ -89,7 +89,7 @@ struct Film {
 };
 
 // int T_ijk n_k (U + omega x r)_j dG = 0 outside (2.3), at any distance and for any velocity of the surface that contains the target.
-TEST(DoubleLayer, GivesNothingAcrossAFilmForRigidBodyMotionsOfTheOtherSurface) {
+TEST(DoubleLayer, VanishesAcrossAFilmForRigidBodyMotionsOfTheOtherSurface) {
   for (const double gap : {0.1, 1e-3}) {
     const Film film(gap);
     const int n = scene().space.n_points;
@@ -116,7 +116,7 @@ TEST(DoubleLayer, AssembledRowsOfTwoSurfacesTimesAVelocityAreTheSum) {
             1e-11 * rows.norm());  // round-off, multiplied by 1 / gap^2
 }
 
-TEST(DoubleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
+TEST(DoubleLayer, DesingularisedAgreesToTheOrderOfItsPoints) {
   const Net exact = scene().apply(scene().v, {.tolerance = 1e-10});
   const double at_6 = largest(scene().apply(scene().v, {.rule = quadrature::LayerRule::desingularised, .points = 6}) - exact) / largest(exact);
   const double at_12 = largest(scene().apply(scene().v, {.rule = quadrature::LayerRule::desingularised, .points = 12}) - exact) / largest(exact);
@@ -124,7 +124,7 @@ TEST(DoubleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
   EXPECT_GT(at_6 / at_12, 3.5);  // the integrand is bounded but not smooth: the order is at least two in the spacing of the points
 }
 
-TEST(SingleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
+TEST(SingleLayer, DesingularisedAgreesToTheOrderOfItsPoints) {
   const auto apply = [](const quadrature::Options& options) {
     SingleLayer layer(scene().space, options);
     Net u = Net::Zero(scene().space.n_points, 3);

@@ -37,7 +37,7 @@ TEST(OutlineSpace, HasOneSiteAFunctionAndElementsThatEndAtTheOutlinesKnots) {
   }
 }
 
-TEST(OutlineSpace, DerivativesAreOnesOfThePlaces) {
+TEST(OutlineSpace, DerivativesAreThoseOfThePositions) {
   const OutlineSpace space(polygon({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}), 24);
   for (int k = 0; k < 6; ++k)
     for (const double t : {0.05, 0.3, 0.6, 0.97}) {
@@ -89,7 +89,7 @@ TEST(BoundaryProfile, OfACircleIsExactOnTheExactCircleOfAnyRadius) {
   }
 }
 
-TEST(BoundaryProfile, DoesNotDependOnWhereTheSectionIs) {
+TEST(BoundaryProfile, DoesNotDependOnThePositionOfTheSection) {
   const std::vector<Vec2> corners{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
   std::vector<Vec2> moved;
   for (const Vec2& c : corners) moved.push_back(0.5 * Vec2(-c[1], c[0]) + Vec2(4, -3));  // rotated by a right angle and scaled by a half

@@ -29,7 +29,7 @@ surface::TubeOptions rectangle(double w, double h) {
   return tube;
 }
 
-TEST(DuctFlow, IsPoiseuillesInACircle) {
+TEST(DuctFlow, IsPoiseuilleFlowInACircle) {
   const DuctFlow flow(circle(1.5), 2, 3);
   EXPECT_NEAR(flow.velocity(Vec3(7, 0.3, -0.4))[0], 6 * (1 - 0.25 / 2.25), 1e-13) << "twice the mean on the axis";
   EXPECT_NEAR(flow.pressure_gradient(), 8 * 2 * 3 / (1.5 * 1.5), 1e-12);
@@ -80,7 +80,7 @@ surface::TubeOptions capillary() {
   return tube;
 }
 
-TEST(DuctFlow, SatisfiesItsEquationAndItsGradientIsOne) {
+TEST(DuctFlow, SatisfiesItsEquationAndHasTheGradientOfItsVelocity) {
   expect_consistent(DuctFlow(capillary(), 1.3, 0.7));
   expect_consistent(DuctFlow(by_elements(rectangle(1, 3)), 1.3, 0.7));
   expect_consistent(DuctFlow(circle(1), 1.3, 0.7));
@@ -100,7 +100,7 @@ TEST(DuctFlow, VanishesOnTheWallOfARectangle) {
   EXPECT_NEAR(DuctFlow(rectangle(1, 1), 1, 0.035144253739).maximum().velocity, 0.073671353282, 1e-11);  // rounding of the known values
 }
 
-TEST(DuctFlow, HasTheMeanVelocityThatIsAskedFor) {
+TEST(DuctFlow, HasTheRequestedMeanVelocity) {
   const DuctFlow flow(capillary(), 1, 0.7);
   const auto [low, high] = flow.outline().box();
   constexpr int grid = 100;  // a sum over the points of a grid, of second order because v vanishes on the wall
@@ -119,7 +119,7 @@ TEST(DuctFlow, HasTheMeanVelocityThatIsAskedFor) {
   EXPECT_LT(flow.gradient(Vec3(0, top.place[0], top.place[1])).norm(), 1e-9);
 }
 
-TEST(DuctFlow, IsWhatFlowTypeDuctMeans) {
+TEST(DuctFlow, IsTheFlowOfTypeDuct) {
   FlowOptions options;
   options.type = "duct", options.mean_velocity = 2, options.shear_rate = 1;
   const auto duct = std::make_shared<const DuctFlow>(circle(0.5), 1, 2);

@@ -82,7 +82,7 @@ TEST(FarSum, IsAccurateAtEveryScale) {
 }
 
 // The sum of a target does not depend on its neighbours, for any instruction set.
-TEST(FarSum, OfATargetIsTheSameToTheBitInEveryLane) {
+TEST(FarSum, OfATargetIsBitwiseEqualInEveryLane) {
   const Forces forces(37);
   double target[3 * far_block], u[3 * far_block];
   for (int k = 0; k < 3 * far_block; ++k) target[k] = std::sin(k / far_block + 1);
@@ -91,7 +91,7 @@ TEST(FarSum, OfATargetIsTheSameToTheBitInEveryLane) {
     for (int l = 1; l < far_block; ++l) EXPECT_EQ(u[far_block * c + l], u[far_block * c]);
 }
 
-TEST(FarSum, TakesNothingFromANodeAtTheTarget) {
+TEST(FarSum, OmitsANodeAtTheTarget) {
   Forces forces(5);
   double target[3 * far_block], u[3 * far_block];
   for (int l = 0; l < far_block; ++l)  // exact coincidence in the first lane, up to rounding in the others

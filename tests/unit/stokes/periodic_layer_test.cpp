@@ -95,7 +95,7 @@ TEST(PeriodicLayer, AssembledRowsOfTargetsAtFarNodesAreTheSum) {
   EXPECT_LT((product - Eigen::Map<const Eigen::VectorXd>(u.data(), u.size())).cwiseAbs().maxCoeff(), 1e-11);
 }
 
-TEST(PeriodicLayer, WhatCrossesTheFacesOfACellIsAsInside) {
+TEST(PeriodicLayer, SurfacesThatCrossTheFacesOfACellGiveTheSameResult) {
   const auto& [space, x, field, all] = ellipsoid();
   for (const int n : {1, 2, 3}) {
     const Net moved = x.rowwise() + Eigen::RowVector3d(0.47, n > 1 ? -0.41 : 0, n > 2 ? 0.3 : 0);
@@ -107,7 +107,7 @@ TEST(PeriodicLayer, WhatCrossesTheFacesOfACellIsAsInside) {
   }
 }
 
-TEST(PeriodicLayer, ClustersMakeTheSameSums) {
+TEST(PeriodicLayer, ClustersGiveTheSameSums) {
   const auto& [space, x, field, all] = ellipsoid();
   for (const double tolerance : {1e-3, 1e-5}) {
     EXPECT_LT(difference(double_layer(x, field, cell(), tolerance, "tree"), double_layer(x, field, cell(), tolerance, "dense")), tolerance);
@@ -115,7 +115,7 @@ TEST(PeriodicLayer, ClustersMakeTheSameSums) {
   }
 }
 
-TEST(PeriodicLayer, ALatticeIsTheSameByCellsOfOneAndOfTwo) {
+TEST(PeriodicLayer, CellsWithOneAndTwoSurfacesGiveTheSameResult) {
   const auto& [space, x, field, all] = ellipsoid();
   const spline::Space two = spline::stacked(std::vector<const spline::Space*>{&space, &space});
   const PeriodicCell one = cell();
@@ -137,7 +137,7 @@ TEST(PeriodicLayer, ALatticeIsTheSameByCellsOfOneAndOfTwo) {
   }
 }
 
-TEST(PeriodicLayer, ACellTiltedByAWholePeriodIsTheSame) {
+TEST(PeriodicLayer, ACellTiltedByAWholePeriodGivesTheSameResult) {
   const auto& [space, x, field, all] = ellipsoid();
   EXPECT_LT(difference(single_layer(x, field, cell(3, 1), 1e-7), single_layer(x, field, cell(3, 0), 1e-7)), 1e-13);  // both have equal shortest
                                                                                                                      // lattice vectors

@@ -60,7 +60,7 @@ Six stokeslet_at(const PeriodicCell& cell, const Vec3& r, int steps = 1, double 
 
 Six six(double a, double b, double c, double d, double e, double f) { return (Six() << a, b, c, d, e, f).finished(); }
 
-TEST(PeriodicKernel, StokesletsOfThreePeriodsAreThoseKnown) {
+TEST(PeriodicKernel, StokesletsOfThreePeriodsHaveTheKnownValues) {
   const Vec3 far(0.1, 0.2, 0.3), near(0.05, -0.02, 0.01);
   const PeriodicCell cube(Mat3::Identity(), 3), any(general(), 3);
   const Six known[4] = {six(-0.7029562442847, 0.2967332825332, 0.4115157245489, 0.006777515630703, 0.8030045620774, 1.148218321646),
@@ -75,7 +75,7 @@ TEST(PeriodicKernel, StokesletsOfThreePeriodsAreThoseKnown) {
   }
 }
 
-TEST(PeriodicKernel, StokesletsOfTwoPeriodsDifferByWhatIsKnown) {
+TEST(PeriodicKernel, StokesletsOfTwoPeriodsHaveKnownDifferences) {
   const PeriodicCell cell(Mat3::Identity(), 2);
   const Six known = six(-3.869674721424, 0.2847371220542, 0.4784096156009, -3.231353441273, 0.9221163516607, 0.9844550994578) -
                     six(-15.0757091142, 0.0002160606654125, 0.008003417215417, -15.08586387131, 0.004623662308219, 0.004342482468543);
@@ -83,7 +83,7 @@ TEST(PeriodicKernel, StokesletsOfTwoPeriodsDifferByWhatIsKnown) {
     EXPECT_LT((stokeslet_at(cell, {0.1, 0.2, 0.3}, steps, 1.3) - stokeslet_at(cell, {0.3, 0.1, 1.2}, steps, 1.3) - known).norm(), 1e-10);
 }
 
-TEST(PeriodicKernel, StokesletsOfOnePeriodDifferByWhatIsKnown) {
+TEST(PeriodicKernel, StokesletsOfOnePeriodHaveKnownDifferences) {
   const PeriodicCell cell(Mat3::Identity(), 1);
   const Six known = six(3.868593935259, 0.3110042702003, 0.4665064053004, 3.163052432329, 1.273574551257, 4.224364558376) -
                     six(-0.438916235253, 0.006098547955641, 0.00304927397782, 1.367480031487, 0.7959809689579, 0.1735085780498);
@@ -237,7 +237,7 @@ double error_of_sums(Kind kind, const PeriodicCell& cell, double tolerance) {
   return largest;
 }
 
-TEST(PeriodicSum, ItsErrorIsBelowWhatIsAsked) {
+TEST(PeriodicSum, ItsErrorIsBelowTheTolerance) {
   const Mat3 tilted = rows({1, 0, 0}, {0, 1, 0}, {0.5, 0, 1}), oblong = Vec3(1, 1, 2).asDiagonal();
   for (const Kind kind : {Kind::stokeslet, Kind::stresslet}) {
     for (const double tolerance : {1e-4, 1e-6, 1e-8})

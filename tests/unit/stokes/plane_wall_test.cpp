@@ -95,7 +95,7 @@ TEST(PlaneWall, StressIsThatOfTheKernel) {
 
 /// If a point force is parallel to the wall, the force of the fluid on the wall equals this force. The integral of the velocity gradient over the
 /// wall is therefore 8 pi times the force.
-TEST(PlaneWall, TakesTheForce) {
+TEST(PlaneWall, BalancesAForceParallelToIt) {
   const Vec3 y = above(level, 0, 0, 0.5);
   constexpr double e = 1e-4;
   Mat3 pull = Mat3::Zero();
@@ -172,7 +172,7 @@ TEST(PlaneWall, LayersKeepTheTolerance) {
     }
 }
 
-TEST(PlaneWall, ClustersMakeTheSameSums) {
+TEST(PlaneWall, ClustersGiveTheSameSums) {
   const Surface& of = ellipsoid();
   for (const auto kernel : {single, twofold})
     for (const double gap : {1., 0.01})
@@ -183,7 +183,7 @@ TEST(PlaneWall, ClustersMakeTheSameSums) {
             << gap << " " << int(kernel);
 }
 
-TEST(PlaneWall, AnyDirectionIsTheSame) {
+TEST(PlaneWall, ResultsDoNotDependOnItsDirection) {
   const Surface& of = ellipsoid();
   const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   const PlaneWall wall = of.below(0.05), turned(turn * wall.point(), turn * wall.normal());
@@ -193,7 +193,7 @@ TEST(PlaneWall, AnyDirectionIsTheSame) {
   }
 }
 
-TEST(PlaneWall, RowsMakeTheSameSums) {
+TEST(PlaneWall, RowsGiveTheSameSums) {
   const Surface& of = ellipsoid();
   for (const auto kernel : {single, twofold}) {
     Layer layer(kernel, of.space, of.space.collocation, {.tolerance = 1e-7});
@@ -206,7 +206,7 @@ TEST(PlaneWall, RowsMakeTheSameSums) {
   }
 }
 
-TEST(PlaneWall, FluidSticksToIt) {
+TEST(PlaneWall, HasNoSlip) {
   const Surface& of = ellipsoid();
   const PlaneWall wall = of.below(0.003);
   Net at(7, 3);

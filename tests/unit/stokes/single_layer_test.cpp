@@ -47,8 +47,9 @@ const Scene& scene() {
 
 double largest(const Net& u) { return u.rowwise().norm().maxCoeff(); }
 
-/// The choice of near panels and of their rules depends on the size of their own surface only: eight surfaces are integrated as accurately as one.
-TEST(SingleLayer, RulesOfASurfaceDoNotDependOnHowManyThereAre) {
+/// The choice of near panels and of their rules depends only on the size of the surface that contains them: eight surfaces are integrated as
+/// accurately as one.
+TEST(SingleLayer, RulesOfASurfaceDoNotDependOnTheNumberOfSurfaces) {
   const Scene one;
   std::vector<const spline::Space*> spaces(8, &one.space);
   const spline::Space space = spline::stacked(spaces);
@@ -123,7 +124,7 @@ TEST(SingleLayer, DoesNotDependOnHowTargetsAreSplit) {
   EXPECT_EQ(whole, parts);  // bitwise equal
 }
 
-TEST(SingleLayer, ForgetsEarlierShapes) {
+TEST(SingleLayer, DoesNotDependOnEarlierShapes) {
   SingleLayer used(scene().space, {.tolerance = 1e-6}), fresh(scene().space, {.tolerance = 1e-6});
   used.set_reference(scene().unstressed), fresh.set_reference(scene().unstressed);
   Net u = Net::Zero(scene().space.n_points, 3), v = u;
@@ -132,12 +133,12 @@ TEST(SingleLayer, ForgetsEarlierShapes) {
   EXPECT_EQ(u, v);  // a resumed run must be bitwise equal
 }
 
-TEST(SingleLayer, MovesAndTurnsWithTheSurface) {
+TEST(SingleLayer, TranslatesAndRotatesWithTheSurface) {
   const Mat3 turn = Eigen::AngleAxisd(0.9, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   const Net u = scene().apply(scene().x, scene().f, {.tolerance = 1e-10});
   const Net moved = scene().apply((scene().x * turn.transpose()).rowwise() + Eigen::RowVector3d(5, -3, 2), scene().f * turn.transpose(),
                                   {.tolerance = 1e-10});
-  EXPECT_LT(largest(moved - u * turn.transpose()), 1e-9 * largest(u));  // rules are chosen for other metrics and distances
+  EXPECT_LT(largest(moved - u * turn.transpose()), 1e-9 * largest(u));  // tolerance: other quadrature rules are chosen after the rotation
 }
 
 TEST(SingleLayer, ScalesWithLengthAndWithTheDensity) {
@@ -165,7 +166,7 @@ TEST(SingleLayer, KeepsItsToleranceAtTipsThatAreAsSharpAsTheirElements) {
   EXPECT_LT(largest(u - exact), 2e-8 * largest(exact));  // twice the tolerance
 }
 
-TEST(SingleLayer, FixedRuleOfThePaperIsGoodToSevenDigitsAtVertices) {
+TEST(SingleLayer, FixedRuleOfThePaperHasSevenDigitsAtVertices) {
   const Net exact = scene().apply(scene().x, scene().f, {.tolerance = 1e-10});
   const Net fixed = scene().apply(scene().x, scene().f, {.rule = quadrature::LayerRule::fixed, .points = 8});
   EXPECT_LT(largest(fixed - exact), 1e-6 * largest(exact));

@@ -59,7 +59,7 @@ double largest_error(const Scene& scene, int power, const double* single, const 
 
 // The bounds are 4 rounding errors of single precision, and 16 for a stresslet, which contains the fifth power of a rounded value. The kernel
 // stores the rounding errors of the positions in addition to the rounded positions; without them, the errors are a hundred times larger.
-TEST(SinglePrecision, ErrsByRoundingHoweverCloseANodeIsAndInAnyUnit) {
+TEST(SinglePrecision, HasOnlyRoundingErrorsForCloseNodesAndInAnyUnit) {
   const double rounding = 0x1p-24;
   for (const double unit : {1e-9, 1e-6, 1., 1e9}) {
     const Scene scene(unit);
@@ -73,7 +73,7 @@ TEST(SinglePrecision, ErrsByRoundingHoweverCloseANodeIsAndInAnyUnit) {
   }
 }
 
-TEST(SinglePrecision, GivesATargetTheSameWhateverItsNeighboursAre) {
+TEST(SinglePrecision, GivesATargetTheSameValueForAnyNeighbours) {
   const Scene scene(1);
   double together[3 * far_block], alone[3 * far_block], repeated[6 * far_block];
   const auto same = [&](auto sum, const auto& nodes) {

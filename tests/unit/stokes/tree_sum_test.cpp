@@ -115,7 +115,7 @@ TEST(Clusters, OfMirroredPointsDoNotDependOnRounding) {
   EXPECT_EQ(tree.order(), other.order());
 }
 
-TEST(TreeSum, RowsDoNotDependOnWhichOthersAreWanted) {
+TEST(TreeSum, RowsDoNotDependOnOtherRequestedRows) {
   const Cloud cloud(5000, 1000, 0.05);
   TreeSum tree(1e-5), other(1e-5);
   const Net whole = cloud.sum(tree, every(1, 1000));
@@ -127,7 +127,7 @@ TEST(TreeSum, RowsDoNotDependOnWhichOthersAreWanted) {
   }
 }
 
-TEST(TreeSum, ServesOnePointAndPointsThatCoincide) {
+TEST(TreeSum, AcceptsOnePointAndCoincidentPoints) {
   Cloud one(1, 1, 1);
   one.targets[0] = Vec3(3, 0, 0);
   TreeSum tree(1e-5);
@@ -138,7 +138,7 @@ TEST(TreeSum, ServesOnePointAndPointsThatCoincide) {
   EXPECT_LT(many.error(many.sum(tree, every(1, 40)), every(1, 40)), 1e-13);
 }
 
-TEST(TreeSum, PassesOnWhatIsNotANumber) {
+TEST(TreeSum, PassesOnNan) {
   Cloud cloud(2000, 300, 0.1);
   for (int k = 0; k < 2000; k += 3) cloud.x[k % 2][k] = NAN;
   TreeSum tree(1e-5);
@@ -169,7 +169,7 @@ const Surface& surface_of_clusters() {
 
 double difference(const Net& a, const Net& b) { return (a - b).rowwise().norm().maxCoeff() / b.rowwise().norm().maxCoeff(); }
 
-TEST(TreeSum, MakesTheSingleLayerOfALoadToTheTolerance) {
+TEST(TreeSum, ComputesTheSingleLayerOfALoadToTheTolerance) {
   const auto& [space, x, f, all] = surface_of_clusters();
   for (const double tolerance : {1e-3, 1e-5, 1e-8}) {
     SingleLayer tree(space, {.tolerance = tolerance, .far_sum = "tree"}), dense(space, {.tolerance = tolerance, .far_sum = "dense"});
@@ -182,7 +182,7 @@ TEST(TreeSum, MakesTheSingleLayerOfALoadToTheTolerance) {
   }
 }
 
-TEST(TreeSum, MakesTheSingleLayerOfASymmetricLoadFromAPartOfTheSurface) {
+TEST(TreeSum, ComputesTheSingleLayerOfASymmetricLoadFromAPartOfTheSurface) {
   for (const int n : {6, 7}) {  // with 7, some panels are images of themselves
     auto [space, x, f, all] = Surface(n);
     const Net* nets[] = {&x};
@@ -201,7 +201,7 @@ TEST(TreeSum, MakesTheSingleLayerOfASymmetricLoadFromAPartOfTheSurface) {
   }
 }
 
-TEST(TreeSum, PartsOfTheSingleLayerAddUpAndAreOfEqualWork) {
+TEST(TreeSum, PartsOfTheSingleLayerAddUpAndHaveEqualWork) {
   const auto& [space, x, f, all] = surface_of_clusters();
   SingleLayer one(space, {.far_sum = "tree"});
   Net whole = Net::Zero(space.n_points, 3), sum = whole;
@@ -220,7 +220,7 @@ TEST(TreeSum, PartsOfTheSingleLayerAddUpAndAreOfEqualWork) {
   EXPECT_LT(difference(sum, whole), 1e-13);  // round-off
 }
 
-TEST(TreeSum, MakesTheDoubleLayerOfAVelocityToTheTolerance) {
+TEST(TreeSum, ComputesTheDoubleLayerOfAVelocityToTheTolerance) {
   const auto& [space, x, v, all] = surface_of_clusters();
   for (const double tolerance : {1e-3, 1e-5, 1e-8}) {
     DoubleLayer tree(space, {.tolerance = tolerance, .far_sum = "tree"}), dense(space, {.tolerance = tolerance, .far_sum = "dense"});
@@ -235,7 +235,7 @@ TEST(TreeSum, MakesTheDoubleLayerOfAVelocityToTheTolerance) {
   }
 }
 
-TEST(TreeSum, PartsOfTheDoubleLayerAddUpAndAreOfEqualWork) {
+TEST(TreeSum, PartsOfTheDoubleLayerAddUpAndHaveEqualWork) {
   const auto& [space, x, v, all] = surface_of_clusters();
   DoubleLayer one(space, {.far_sum = "tree"});
   Net whole = Net::Zero(space.n_points, 3), sum = whole;

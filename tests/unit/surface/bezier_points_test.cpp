@@ -52,7 +52,7 @@ TEST(BezierPoints, BackwardMapIsTheTranspose) {
   }
 }
 
-TEST(BezierPoints, DerivativesOfAPatchAreThoseOfItsPlaces) {
+TEST(BezierPoints, DerivativesOfAPatchAreThoseOfItsPositions) {
   const CubeMesh cube(3);
   const Net net = cube.crumpled(0.1);
   for (const int e : {0, 4}) {  // next to an extraordinary point, and regular

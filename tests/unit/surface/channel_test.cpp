@@ -39,7 +39,7 @@ TubeOptions bend() {
   return o;
 }
 
-TEST(Channel, NarrowsAsItsProfileSays) {
+TEST(Channel, HasTheRadiusOfItsProfile) {
   const Channel round(constriction());
   for (const double s : {-3., -1.7, 0., 0.4, 2.})
     EXPECT_NEAR(round.section(s).factor[0], std::abs(s) < 2 ? 1 - (1 + std::cos(pi * s / 2)) / 4 : 1, 1e-14);
@@ -51,7 +51,7 @@ TEST(Channel, NarrowsAsItsProfileSays) {
   EXPECT_NEAR(slit.smallest_radius(), 1, 1e-12);
 }
 
-TEST(Channel, KnowsWhereAPlaceIs) {
+TEST(Channel, FindsThePositionOfAPointInTheChannel) {
   for (const TubeOptions& options : {constriction(), step(), bend()}) {
     const Channel channel(options);
     for (const double s : {-3., -0.5, 0.3, 1.5, 4., 7.})
@@ -144,7 +144,7 @@ void refused(const TubeOptions& options, const std::string& words) {
   }
 }
 
-TEST(Channel, IsRefusedWhereItIsNone) {
+TEST(Channel, IsRejectedIfItIsWrong) {
   TubeOptions closed = constriction(), short_end = constriction(), tight = bend(), round = step();
   closed.channel->depth = 0.999;
   refused(closed, "The channel is closed at s");

@@ -51,7 +51,7 @@ void is_the_least(const Scene& scene, int most_pieces, double tolerance = 1e-7) 
 
 Outline square(double half) { return polygon({{-half, -half}, {half, -half}, {half, half}, {-half, half}}); }
 
-TEST(Clearance, IsTheLeastWhereverTheSurfaceComesNear) {
+TEST(Clearance, IsTheSmallestDistanceForAnySurface) {
   const CubeMesh mesh(3);
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const Net net = mesh.crumpled(0.2, seed);
@@ -60,7 +60,7 @@ TEST(Clearance, IsTheLeastWhereverTheSurfaceComesNear) {
   }
 }
 
-TEST(Clearance, TakesLittleWorkWhereGapsAreEqual) {
+TEST(Clearance, NeedsLittleWorkForEqualGaps) {
   const CubeMesh mesh(6);
   const Net sphere = 0.6 * mesh.sphere();
   is_the_least({sphere, mesh, ellipse(1, 1)}, 800);              // minima on a circle

@@ -134,7 +134,7 @@ TEST(FilmWidths, InFrontOfAThinBody) {
 }
 
 /// A sphere on the axis of a tube: the film is within reach near the equator only.
-TEST(FilmWidths, BesideTheWallOfATube) {
+TEST(FilmWidths, NextToTheWallOfATube) {
   const Shape shape;
   TubeOptions options;
   options.radius = 1.1;

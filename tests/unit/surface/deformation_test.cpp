@@ -63,7 +63,7 @@ TEST(Deformation, OfAnEllipsoidInAnyPositionIsThatOfItsSectionAndItsMoments) {
   }
 }
 
-TEST(Deformation, ExtremesOfACrumpledSurfaceBoundWhatDenseSamplingFinds) {
+TEST(Deformation, ExtremesOfAnIrregularSurfaceAgreeWithDenseSampling) {
   const CubeMesh cube(4);
   for (const unsigned seed : {1u, 2u, 3u}) {
     const Net net = cube.crumpled(0.08, seed);
@@ -123,7 +123,7 @@ TEST(Deformation, ExtremesDoNotDependOnWhereElementsMeetThePlane) {
   EXPECT_NEAR(turned.inclination, 25, 1e-9);
 }
 
-TEST(Deformation, AnUprightParticleIsInclinedBy90DegreesWhateverTheRounding) {
+TEST(Deformation, AnUprightParticleIsInclinedBy90DegreesForAnyRounding) {
   const CubeMesh cube(4);
   ParticleShape shape;
   shape.shape = "ellipsoid";

@@ -13,7 +13,7 @@
 namespace tanktread::surface {
 namespace {
 
-TEST(Extremes, OfAWholeAreTheWiderOfThoseOfItsParts) {
+TEST(Extremes, OfAUnionAreTheWidestOfItsParts) {
   const CubeMesh cube(6);
   const Geometry geometry(cube.space);
   for (const double amplitude : {0.08, 1e-3, 1e-4})
@@ -38,7 +38,7 @@ TEST(Extremes, OfAWholeAreTheWiderOfThoseOfItsParts) {
     }
 }
 
-TEST(Extremes, OfNoElementsAreOfNothingAndASurfaceThatThePlaneMissesIsRefused) {
+TEST(Extremes, OfNoElementsAreEmptyAndASurfaceThatThePlaneMissesIsRejected) {
   const CubeMesh cube(3);
   const Geometry geometry(cube.space);
   const Net net = cube.sphere();

@@ -24,19 +24,19 @@ double defect(const spline::Space& space) {
 
 constexpr double round_off = 1e-11;  // for values up to 7, times the condition number of the matrix
 
-TEST(LeastSquaresFit, FindsWhatLiesInTheSpace) {
+TEST(LeastSquaresFit, ReproducesFieldsOfTheSpace) {
   EXPECT_LT(defect(CubeMesh(4).space), round_off);
   EXPECT_LT(defect(CubeMesh(11).space), round_off);
   EXPECT_LT(defect(CubeMesh(6, spline::ExtraordinaryRule::catmull_clark).space), round_off);
 }
 
-TEST(LeastSquaresFit, FindsItOnElementsOfVeryDifferentSizes) {
+TEST(LeastSquaresFit, ReproducesFieldsOnElementsOfVeryDifferentSizes) {
   spline::TMesh mesh = spline::cube(5, 4);
   for (int k = 0; k < 4; ++k) mesh = spline::refine(mesh, {{5 * 2 + 2, true, true}}).mesh;
   EXPECT_LT(defect(spline::space(mesh, spline::ExtraordinaryRule::catmull_clark)), round_off);
 }
 
-TEST(LeastSquaresFit, FindsItAtPoles) {
+TEST(LeastSquaresFit, ReproducesFieldsAtPoles) {
   for (const auto rule : {spline::PoleRule::plain, spline::PoleRule::bezier_transform, spline::PoleRule::c1})
     EXPECT_LT(defect(spline::space({12, 8, rule})), round_off);
 }

@@ -55,7 +55,7 @@ TEST(Geometry, VolumeAndMomentsAreExactForPolynomialElements) {
   EXPECT_NEAR(fast.area, exact.area, 1e-4);
 }
 
-TEST(Geometry, EllipsoidIsMeasuredToTheOrderOfItsFit) {
+TEST(Geometry, MeasuresOfAnEllipsoidHaveTheOrderOfItsFit) {
   const Vec3 axes(1.5, 1.0, 0.7), turn(30, 40, -50), place(2, -1, 3);
   double before = 1;
   for (const int n : {3, 6, 12}) {
@@ -116,7 +116,7 @@ TEST(Geometry, VolumeGradientObeysTranslationAndScaling) {
   EXPECT_LT(torque.norm(), 1e-12);  // a rotation does not change the volume
 }
 
-TEST(Geometry, AShareOfTheElementsGivesItsRowsToTheLastBit) {
+TEST(Geometry, APartOfTheElementsGivesBitwiseEqualRows) {
   const CubeMesh cube(5);
   const Geometry geometry(cube.space);
   const Net net = cube.crumpled(0.05);
@@ -137,7 +137,7 @@ TEST(Geometry, AShareOfTheElementsGivesItsRowsToTheLastBit) {
   }
 }
 
-TEST(Geometry, SharedBlocksOfElementsGiveMeasuresToTheLastBit) {
+TEST(Geometry, DistributedBlocksOfElementsGiveBitwiseEqualMeasures) {
   const CubeMesh cube(6);
   const Net net = cube.crumpled(0.05);
   const Geometry geometry(cube.space);
@@ -154,7 +154,7 @@ TEST(Geometry, SharedBlocksOfElementsGiveMeasuresToTheLastBit) {
   EXPECT_EQ(shared.second_moments, whole.second_moments);
 }
 
-TEST(Geometry, FarFromTheOriginNothingIsLost) {
+TEST(Geometry, FarFromTheOriginAccuracyIsKept) {
   const CubeMesh cube(4);
   Net net = cube.crumpled(0.05);
   const Geometry geometry(cube.space);

@@ -31,7 +31,7 @@ TEST(Metrics, MidLinesOfASphereMeasureItsElementsAndHaveNoCurvatureVariation) {
   EXPECT_LT(largest, 0.05);  // chi = 1 everywhere up to the error of the fit at the extraordinary points
 }
 
-TEST(Metrics, ALinearFieldVariesAlongMidLinesAsTheyAreLong) {
+TEST(Metrics, ALinearFieldVariesInProportionToTheLengthOfMidLines) {
   // phi = x itself: |phi(end) - phi(start)| / L is the ratio of chord to arc, which is one up to the curvature of the element.
   const CubeMesh cube(12);
   const Net net = cube.sphere();
@@ -46,7 +46,7 @@ TEST(Metrics, ALinearFieldVariesAlongMidLinesAsTheyAreLong) {
   }
 }
 
-TEST(Metrics, MeridiansOfAPolarSphereAreHalfCirclesAndNothingIsAskedOfAPole) {
+TEST(Metrics, MeridiansOfAPolarSphereAreHalfCirclesAndPolesHaveNoMetric) {
   const spline::TMesh mesh = spline::polar(12, 8, 1);
   const spline::Space space = spline::space(mesh, spline::PoleRule::plain);
   const Net net = unit_sphere({12, 8, spline::PoleRule::plain}, space);
@@ -84,7 +84,7 @@ TEST(Metrics, TractionIsPerCurrentArea) {
   for (int e = 0; e < 10; ++e) EXPECT_LT((traction({e, 0.2, 0.7}) - Vec3::Constant(0.25)).norm(), 1e-13);
 }
 
-TEST(Metrics, CuttingAnElementHalvesItsMidLineAndLeavesTheOthersAsTheyAre) {
+TEST(Metrics, DividingAnElementHalvesItsMidLineAndKeepsTheOthers) {
   // Refinement is exact, so the metrics of unchanged elements stay the same, although T-junctions now divide Bezier elements.
   spline::TMesh mesh = spline::cube(8, 2);
   const auto rule = spline::ExtraordinaryRule::catmull_clark;

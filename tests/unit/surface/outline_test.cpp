@@ -106,7 +106,7 @@ TEST(Outline, HasAreaCentroidLengthAndNormal) {
   EXPECT_NEAR(polygon({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}).corner_angle(3), 1.5 * pi, 1e-14) << "a corner that points inwards";
 }
 
-TEST(Outline, FindsTheNearestPlaceAndTheSide) {
+TEST(Outline, FindsTheNearestPointAndTheSide) {
   const std::vector<Outline> outlines{ellipse(2, 0.5), trefoil(40), rectangle(2, 1),
                                       polygon({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}})};
   for (const Outline& o : outlines)
@@ -130,7 +130,7 @@ TEST(Outline, FindsTheNearestPlaceAndTheSide) {
     }
 }
 
-TEST(Outline, TellsInsideFromOutsideCloseToItself) {
+TEST(Outline, DistinguishesInsideFromOutsideCloseToItself) {
   const std::vector<Outline> outlines{circle(1), trefoil(24), polygon({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}})};
   for (const Outline& o : outlines)
     for (int k = 0; k < o.n_sides(); ++k)
@@ -160,7 +160,7 @@ TEST(Outline, IsApproachedByItsSplinesWithOrderFour) {
   EXPECT_EQ(rectangle(6, 5).shares(21), (std::vector<int>{6, 5, 6, 5})) << "opposite sides have equally many";
 }
 
-TEST(Outline, RefusesSidesThatCrossOrRunClockwise) {
+TEST(Outline, RejectsSidesThatCrossOrRunClockwise) {
   const auto message = [](const std::vector<Vec2>& corners) {
     try {
       polygon(corners);
@@ -228,7 +228,7 @@ TEST_F(OutlineFile, HasCornersWhereItMarksThem) {
   EXPECT_FALSE(read("0,0\n1,-0.5\n1.5,0\n1,0.5\n0,0,corner\n").smooth()) << "the mark may stand where the first point is repeated";
 }
 
-TEST_F(OutlineFile, IsRefusedWithTheReason) {
+TEST_F(OutlineFile, IsRejectedWithTheReason) {
   EXPECT_EQ(refusal(ring(7)), " must hold at least 8 points without corners, but holds 7.");
   EXPECT_EQ(refusal("0,0,corner\n1,0\n"), " must hold at least 3 points, but holds 2.");
   EXPECT_EQ(refusal("0,0\n1\n"),

@@ -67,7 +67,7 @@ TEST(Partition, IsTheSameEveryTime) {
   EXPECT_EQ(a.point_owner, b.point_owner);
 }
 
-TEST(Partition, MorePartsThanElementsIsAMistake) {
+TEST(Partition, MorePartsThanElementsAreRejected) {
   const CubeMesh cube(3);
   EXPECT_THROW(partition(cube.space, 55), UserError);
 }

@@ -55,7 +55,7 @@ TEST(PolarSphere, NormalOfThePapersSpheroidIsBetterThanThePapers) {
   }
 }
 
-TEST(PolarSphere, TransformErrsAtThePolesByTheAngleOfAPiece) {
+TEST(PolarSphere, ErrorOfTheTransformAtThePolesIsProportionalToTheAngleOfAPiece) {
   // On the unit sphere with 146 points, the error that the transform adds to that of the plain mesh halves with each subdivision.
   const double plain = normal_error({16, 8, PoleRule::plain}, Vec3::Ones());
   double before = 0;
@@ -70,7 +70,7 @@ TEST(PolarSphere, TransformErrsAtThePolesByTheAngleOfAPiece) {
   EXPECT_LT(before, 0.3 * plain);
 }
 
-TEST(PolarSphere, IsClosedAndTurnedOutwards) {
+TEST(PolarSphere, IsClosedWithOutwardNormals) {
   for (const PoleRule rule : every_rule) {
     const spline::PolarMesh mesh{16, 8, rule};
     const spline::Space space = spline::space(mesh);
@@ -87,7 +87,7 @@ TEST(PolarSphere, IsClosedAndTurnedOutwards) {
   }
 }
 
-TEST(PolarSphere, HasItsPolesOnTheAxisAsked) {
+TEST(PolarSphere, HasItsPolesOnTheRequestedAxis) {
   for (const int axis : {0, 1, 2}) {
     const spline::PolarMesh mesh{8, 4, PoleRule::plain};
     const Net net = unit_sphere(mesh, spline::space(mesh), axis);
@@ -115,7 +115,7 @@ TEST(PolarSphere, IsNotFoldedWhereRowsAreCloserThanThePointsOfARow) {
     }
 }
 
-TEST(PolarShapes, StandWhereTheDeckPutsThem) {
+TEST(PolarShapes, HaveThePositionAndOrientationOfTheDeck) {
   for (const PoleRule rule : every_rule) {
     const spline::PolarMesh mesh{16, 8, rule};
     const spline::Space space = spline::space(mesh);
@@ -146,7 +146,7 @@ TEST(PolarShapes, RedCellHasTheVolumeOfItsOutline) {
   }
 }
 
-TEST(PolarShapes, PartitionServesThemToo) {
+TEST(PolarShapes, CanBePartitioned) {
   const spline::Space space = spline::space({16, 8, PoleRule::bezier_transform});
   const Partition p = partition(space, 3);
   std::vector<int> points(3, 0);

@@ -20,7 +20,7 @@ TEST(Quality, AFittedSphereIsEven) {
   EXPECT_NO_THROW(require_sound(q));
 }
 
-TEST(Quality, OfAWholeIsTheWorseOfItsParts) {
+TEST(Quality, OfAUnionIsTheWorstOfItsParts) {
   const CubeMesh cube(6);
   const BezierMap map(cube.space);
   const Net net = cube.crumpled(0.05);
@@ -34,7 +34,7 @@ TEST(Quality, OfAWholeIsTheWorseOfItsParts) {
   EXPECT_EQ(together.stretched_element, whole.stretched_element);
 }
 
-TEST(Quality, StretchingShowsInTheAspectRatio) {
+TEST(Quality, StretchingIncreasesTheAspectRatio) {
   const CubeMesh cube(6);
   const BezierMap map(cube.space);
   Net net = cube.sphere();
@@ -45,7 +45,7 @@ TEST(Quality, StretchingShowsInTheAspectRatio) {
   EXPECT_LT(after, 5 * before);
 }
 
-TEST(Quality, AFoldedElementIsNamedWithItsPlace) {
+TEST(Quality, AFoldedElementIsReportedWithItsPosition) {
   const CubeMesh cube(6);
   const BezierMap map(cube.space);
   Net net = cube.sphere();

@@ -23,7 +23,7 @@ double largest_surface_error(const std::vector<std::array<Resolution, 2>>& all) 
   return largest;
 }
 
-TEST(Resolution, AParticleThatHasKeptItsShapeHasNoError) {
+TEST(Resolution, AnUndeformedParticleHasNoError) {
   // Rotated, translated and inflated: x = c Q X + d, so F = c Q.
   const CubeMesh cube(6, spline::ExtraordinaryRule::catmull_clark);
   const Net rest = cube.sphere();
@@ -69,7 +69,7 @@ TEST(Resolution, HalvingElementsDividesTheErrorBySixteen) {
   }
 }
 
-TEST(Resolution, AFieldThatVariesLikeThePlaceHasNoErrorAtExtraordinaryPoints) {
+TEST(Resolution, AFieldProportionalToPositionHasNoErrorAtExtraordinaryPoints) {
   // The field is q = x. Its fourth differences along the surface come from the parametrisation, which is not smooth at extraordinary points.
   const auto largest = [](int n, double Errors::*which) {
     const CubeMesh cube(n, spline::ExtraordinaryRule::catmull_clark);
@@ -84,7 +84,7 @@ TEST(Resolution, AFieldThatVariesLikeThePlaceHasNoErrorAtExtraordinaryPoints) {
   EXPECT_GT(largest(16, &Errors::load), largest(8, &Errors::load) / 3);      // estimate without the correction for the parametrisation
 }
 
-TEST(Resolution, WhatMergingWouldLeaveIsTheErrorOfTheMeshBefore) {
+TEST(Resolution, TheEstimatedErrorAfterMergingIsThatOfTheCoarserMesh) {
   const spline::TMesh coarse = spline::cube(6, 1);
   std::vector<spline::Mark> all;
   for (int e = 0; e < 216; ++e) all.push_back({e});
@@ -109,7 +109,7 @@ struct PolarSphere {
   Net net = unit_sphere({12, 8, spline::PoleRule::plain}, space);
 };
 
-TEST(Resolution, OfAPolarMeshIsNoneWhereTheShapeIsKeptAndFiniteAtThePoles) {
+TEST(Resolution, OfAPolarMeshVanishesWithoutDeformationAndIsFiniteAtThePoles) {
   const PolarSphere sphere;
   const Net net = (1.7 * sphere.net).rowwise() + Vec3(0.3, -2, 1).transpose();
   EXPECT_LT(largest_surface_error(resolution(sphere.mesh, sphere.space, sphere.net, net, {})), 1e-15);

@@ -25,7 +25,7 @@ struct Body {
   }
 };
 
-TEST(ShapeVelocity, OfASphereThatIsDrawnOutIsTheRootMeanSquareOfTheStrain) {
+TEST(ShapeVelocity, OfASphereInExtensionIsTheRootMeanSquareOfTheStrainRate) {
   const Body sphere(Vec3(1, 1, 1), Vec3(3, -1, 2));
   const Vec3 strain(1, -0.25, -0.75);
   const Net v = (sphere.x.rowwise() - Vec3(3, -1, 2).transpose()) * strain.asDiagonal();
@@ -33,7 +33,7 @@ TEST(ShapeVelocity, OfASphereThatIsDrawnOutIsTheRootMeanSquareOfTheStrain) {
   EXPECT_NEAR(sphere.speed(v), std::sqrt(2. / 15) * strain.norm(), 2e-3);
 }
 
-TEST(ShapeVelocity, OfARigidTranslationIsZeroButAcrossATube) {
+TEST(ShapeVelocity, OfARigidTranslationIsZeroExceptAcrossATube) {
   const Body body(Vec3(1.2, 1, 0.7), Vec3(0, 1, 0));
   const auto translated = [&](const Vec3& u) { return Net(u.transpose().replicate(body.x.rows(), 1)); };
   EXPECT_LT(body.speed(translated({1, -2, 3})), 1e-7);  // of a velocity of 3.7; quadrature error with three Gauss points per direction
@@ -42,7 +42,7 @@ TEST(ShapeVelocity, OfARigidTranslationIsZeroButAcrossATube) {
 }
 
 // A rotating sphere keeps its shape: only the error of its net moves, and this error is of high degree.
-TEST(ShapeVelocity, OfASphereThatSpinsIsTheErrorOfItsShape) {
+TEST(ShapeVelocity, OfARotatingSphereIsTheErrorOfItsShape) {
   const Body sphere(Vec3(1, 1, 1), Vec3::Zero());
   Net v(sphere.x.rows(), 3);
   for (Eigen::Index i = 0; i < v.rows(); ++i) v.row(i) = Vec3(0.3, 1, -0.5).cross(sphere.x.row(i).transpose()).transpose();

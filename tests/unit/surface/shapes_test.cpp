@@ -45,7 +45,7 @@ void expect_at_most(double value, double table) {
   EXPECT_GT(value, 0.3 * table);
 }
 
-TEST(Shapes, SphereErrsNoMoreThanTheMeasuredTable) {
+TEST(Shapes, ErrorsOfTheSphereAreThoseOfTheTable) {
   const double rms[] = {6e-4, 4e-5, 2.4e-6};
   double normal_before = 0;
   for (int k = 0; k < 3; ++k) {
@@ -63,19 +63,19 @@ TEST(Shapes, SphereErrsNoMoreThanTheMeasuredTable) {
   EXPECT_GT(std::log2(normal_before / finest.normal), 2.5);
 }
 
-TEST(Shapes, CatmullClarkPointsErrNoMoreThanTheMeasuredTable) {
+TEST(Shapes, ErrorsOfCatmullClarkPointsAreThoseOfTheTable) {
   const Errors e = errors(CubeMesh(24, spline::ExtraordinaryRule::catmull_clark), Vec3::Ones());
   expect_at_most(e.radial, 6.1e-7);
   expect_at_most(e.normal, 6.7e-5);
   expect_at_most(e.largest_normal, 3.8e-4);
 }
 
-TEST(Shapes, NormalOfThePapersSpheroidErrsNoMoreThanTheMeasuredTable) {  // V = 1, b/a = 1.5
+TEST(Shapes, ErrorOfTheNormalOfThePapersSpheroidIsThatOfTheTable) {  // V = 1, b/a = 1.5
   const double table[] = {1.42e-2, 1.80e-3, 2.51e-4, 3.96e-5};
   for (int k = 0; k < 4; ++k) expect_at_most(errors(CubeMesh(3 << k), {0.5419260701, 0.5419260701, 0.8128891052}).normal, table[k]);
 }
 
-TEST(Shapes, MeshesThatAreNoSubdivisionOfTheCoarsestLieBetweenTheirNeighbours) {
+TEST(Shapes, ErrorsOfOtherMeshesAreBetweenThoseOfTheirNeighbours) {
   const double n6 = errors(CubeMesh(6), Vec3::Ones()).normal, n8 = errors(CubeMesh(8), Vec3::Ones()).normal;
   const double n10 = errors(CubeMesh(10), Vec3::Ones()).normal, n12 = errors(CubeMesh(12), Vec3::Ones()).normal;
   EXPECT_LT(n8, 0.6 * n6);  // (8/6)^-2.7 = 0.46
@@ -118,7 +118,7 @@ TEST(Shapes, RedCellHasTheVolumeOfItsOutline) {
   }
 }
 
-TEST(Shapes, StandWhereTheDeckPutsThem) {
+TEST(Shapes, HaveThePositionAndOrientationOfTheDeck) {
   const CubeMesh cube(4);
   ParticleShape shape;
   shape.shape = "spheroid";
@@ -132,7 +132,7 @@ TEST(Shapes, StandWhereTheDeckPutsThem) {
   EXPECT_LT((measures(cube.space, net).centroid - shape.center).norm(), 1e-12);
 }
 
-TEST(Shapes, AreThoseOfAnotherParticlePlacedAgain) {
+TEST(Shapes, OfACopyAreThoseOfTheOriginalMoved) {
   const CubeMesh cube(6);
   for (const char* kind : {"ellipsoid", "red cell"}) {
     ParticleShape one, other;

@@ -28,7 +28,7 @@ Net stress_free(const CubeMesh& cube, const ParticleShape& shape, double reduced
 
 double reduced_volume(const Measures& m) { return 6 * std::sqrt(std::numbers::pi) * m.volume / std::pow(m.area, 1.5); }
 
-TEST(StressFreeSpheroid, HasTheAreaOfTheRestingShapeAndTheReducedVolumeAskedFor) {
+TEST(StressFreeSpheroid, HasTheAreaOfTheRestingShapeAndTheRequestedReducedVolume) {
   const CubeMesh cube(12);
   const ParticleShape shape = red_cell_shape();
   const Measures resting = measures(cube.space, cube.shape(shape));
@@ -47,7 +47,7 @@ TEST(StressFreeSpheroid, HasTheAreaOfTheRestingShapeAndTheReducedVolumeAskedFor)
 }
 
 /// Only the errors of the fits change the area at a point; they decrease with mesh refinement.
-TEST(StressFreeSpheroid, LeavesTheAreaOfEveryPieceAsItIsAtRest) {
+TEST(StressFreeSpheroid, KeepsTheAreaOfEveryPiece) {
   double before = 1;
   for (const int n : {6, 12}) {
     const CubeMesh cube(n);
@@ -63,7 +63,7 @@ TEST(StressFreeSpheroid, LeavesTheAreaOfEveryPieceAsItIsAtRest) {
   EXPECT_LT(before, 1e-2);
 }
 
-TEST(StressFreeSpheroid, OfASphereIsTheSphereAndOfASpheroidOfItsOwnReducedVolumeTheSpheroid) {
+TEST(StressFreeSpheroid, OfASphereIsTheSphereAndOfASpheroidWithItsReducedVolumeTheSpheroid) {
   const CubeMesh cube(6);
   ParticleShape shape;
   EXPECT_LT((stress_free(cube, shape, 1) - cube.shape(shape)).norm() / cube.shape(shape).norm(), 1e-5);

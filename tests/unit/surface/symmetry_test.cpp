@@ -32,7 +32,7 @@ TEST(Symmetry, OfACubeMeshOnAlignedEllipsoidsIsEveryReflectionOfCoordinates) {
   }
 }
 
-TEST(Symmetry, IsThatOfTheMeshWhereTheMeshIsTurned) {
+TEST(Symmetry, OfARotatedMeshIsThatOfTheMesh) {
   const CubeMesh cube(4);
   EXPECT_EQ(of(cube.space, cube.ellipsoid({1, 1, 1}, {10, 20, 30})).description(), "point symmetry");
   EXPECT_EQ(of(cube.space, cube.ellipsoid({1, 1, 1}, {0, 20, 0})).description(), "mirror x2 and point symmetry");
@@ -50,7 +50,7 @@ TEST(Symmetry, OfCatmullClarkAndPolarMeshes) {
   EXPECT_LT(of(space, unit_sphere(odd, space)).order(), 8);
 }
 
-TEST(Symmetry, IsLostWhereOneElementIsCut) {
+TEST(Symmetry, IsLostIfOneElementIsDivided) {
   const spline::TMesh cut = spline::refine(spline::cube(8, 1), {{8 * 3 + 3, true, true}}).mesh;
   const spline::Space space = spline::space(cut, spline::ExtraordinaryRule::g1);
   ParticleShape shape;
@@ -58,7 +58,7 @@ TEST(Symmetry, IsLostWhereOneElementIsCut) {
   EXPECT_LT(of(space, resting_shape(space, cut, shape)).order(), 8);
 }
 
-TEST(Symmetry, IsKeptByCutsThatStandForTheirImages) {
+TEST(Symmetry, IsKeptIfImagesAreDividedToo) {
   const spline::TMesh whole = spline::cube(6, 2);
   ParticleShape shape;
   shape.radius = 1;
@@ -84,7 +84,7 @@ TEST(Symmetry, FundamentalPointsAreOneOfEachSetOfImages) {
   for (const int a : found.fundamental()) EXPECT_GE(net.row(a).minCoeff(), -1e-12);
 }
 
-TEST(Symmetry, CompletesTheFieldsThatItsSurfacesHave) {
+TEST(Symmetry, CompletesSymmetricFields) {
   const CubeMesh cube(4);
   const Net net = cube.ellipsoid({1.3, 1, 0.8});
   const Net* nets[] = {&net};

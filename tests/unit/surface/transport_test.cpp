@@ -19,7 +19,7 @@ Net rigid(const Net& x, const Vec3& u, const Vec3& w, const Vec3& centre) {
   return v;
 }
 
-TEST(Transport, ARigidMotionCarriesTheCentroidWithIt) {
+TEST(Transport, ARigidMotionMovesTheCentroid) {
   const CubeMesh cube(3);
   const Net x = cube.crumpled(0.1).rowwise() + Eigen::RowVector3d(25, 0, 0);
   const Geometry geometry(cube.space);
@@ -52,11 +52,11 @@ struct TreadingEllipsoid {
 
 TEST(Transport, TheFrequencyIsThatOfTheMaterial) {
   const TreadingEllipsoid e;
-  EXPECT_NEAR(e.treading(&e.sphere).frequency / e.rate, 1, 2e-3);  // weighted by the sphere's length, on chords: (1/36)^2
-  EXPECT_NEAR(e.treading(nullptr).frequency / e.rate, 1, 2e-3);    // weighted by the time that a point needs
+  EXPECT_NEAR(e.treading(&e.sphere).frequency / e.rate, 1, 2e-3);  // weighted by length on the unstressed sphere; error of the chords: (1/36)^2
+  EXPECT_NEAR(e.treading(nullptr).frequency / e.rate, 1, 2e-3);    // weighted by the time that a point spends on each part
 }
 
-TEST(Transport, WhereAPointRestsADropDoesNotTread) {
+TEST(Transport, ADropWithAStagnationPointDoesNotTankTread) {
   TreadingEllipsoid e;
   e.v.col(2) *= -1;  // stretches the ellipsoid
   EXPECT_EQ(e.treading(nullptr).frequency, 0);
@@ -65,7 +65,7 @@ TEST(Transport, WhereAPointRestsADropDoesNotTread) {
   EXPECT_NEAR(e.treading(nullptr).velocity / (circulation / perimeter), 1, 2e-3);  // error of the chords
 }
 
-TEST(Transport, ATurningSphereTreadsAtItsRim) {
+TEST(Transport, ARotatingSphereTankTreadsAtTheVelocityOfItsEquator) {
   const CubeMesh cube(6);
   const double radius = 0.6, spin = 0.7;
   const Vec3 centre(3, 0.1, -0.2), u(1.5, 0, 0);

@@ -53,13 +53,13 @@ TEST(TubeWall, HasANormalIntoTheFluid) {
     }
 }
 
-TEST(TubeWall, HasAllPlacesOfACollocationPointAtOnePoint) {
+TEST(TubeWall, HasAllSitesOfACollocationPointAtOnePosition) {
   for (const TubeWall& wall : {of(circle(12, 8)), of(square())})
     for (const auto& sites : wall.space.collocation)
       for (const spline::Site& site : sites) EXPECT_LT((place(wall, site) - place(wall, sites.front())).norm(), 1e-12);
 }
 
-TEST(TubeWall, CollocatesOnItsRimsAndNowhereTwice) {
+TEST(TubeWall, HasCollocationPointsOnItsRimsWithoutDuplicates) {
   for (const TubeWall& wall : {of(circle(12, 8)), of(square())}) {
     double closest = 1;
     for (int i = 0; i < wall.space.n_points; ++i) {
@@ -73,7 +73,7 @@ TEST(TubeWall, CollocatesOnItsRimsAndNowhereTwice) {
   }
 }
 
-TEST(TubeWall, ReproducesConstantsAndItsOwnCoordinate) {
+TEST(TubeWall, ReproducesConstantsAndTheAxialCoordinate) {
   const TubeWall wall = of(circle(12, 8));
   for (const spline::Element& element : wall.space.elements) EXPECT_NEAR(spline::basis(element, 0.2, 0.7, 0).value.sum(), 1, 1e-14);
   const Net along = wall.net.col(0).replicate<1, 3>();
@@ -120,7 +120,7 @@ TEST(TubeWall, HasElementsAlongItInProportionToThoseAroundIt) {
   }
 }
 
-TEST(TubeWall, IsRefusedWhenItIsTooShort) {
+TEST(TubeWall, IsRejectedIfItIsTooShort) {
   const TubeWall wall = of(circle(12, 8));
   EXPECT_NO_THROW(check_length(wall, -1.4, 1.4));
   try {
@@ -132,7 +132,7 @@ TEST(TubeWall, IsRefusedWhenItIsTooShort) {
   }
 }
 
-/// Returns the largest error of cos(2 pi x1/L + angle around), interpolated by periodic densities of a wall that repeats, at points of all elements.
+/// Returns the largest error of cos(2 pi x1/L + angle around), interpolated by densities of a periodic wall, at points of all elements.
 double error_of_wave(int around, int along, double grading) {
   TubeOptions options = circle(around, along);
   options.grading = grading;
@@ -170,7 +170,7 @@ TEST(PeriodicTubeWall, HasDensitiesThatRepeatToTheOrderOfTheSplines) {
   }
 }
 
-TEST(PeriodicTubeWall, HasNeitherSitesNorMiddlesOnTheSeam) {
+TEST(PeriodicTubeWall, HasNoSitesAndNoElementCentresOnTheSeam) {
   const TubeOptions options = circle(10, 7);
   const TubeWall wall = periodic_tube_wall(outline(options), options, 2.5, 7);
   EXPECT_EQ(wall.sites.size(), 70u);

@@ -13,7 +13,7 @@
 namespace tanktread::coupling {
 namespace {
 
-TEST(Agreement, TheWorstOutcomeAndTheFirstRanksNumbersAreEverybodys) {
+TEST(Agreement, AllRanksGetTheWorstOutcomeAndTheValuesOfTheFirstRank) {
   const Ranks ranks;
   EXPECT_EQ(largest(ranks.rank() + 1, "said by none, for all come"), ranks.size());
   EXPECT_EQ(largest(0), 0);
@@ -24,7 +24,7 @@ TEST(Agreement, TheWorstOutcomeAndTheFirstRanksNumbersAreEverybodys) {
   EXPECT_TRUE(of_first(ranks.rank() == 0));
 }
 
-TEST(Agreement, TheFirstRankAloneDecides) {
+TEST(Agreement, OnlyTheFirstRankDecides) {
   const Ranks ranks;
   int calls = 0;
   EXPECT_EQ(decided([&] { return std::vector(static_cast<std::size_t>(++calls + 2), 1. + ranks.rank()); }), std::vector(3, 1.));
@@ -43,7 +43,7 @@ TEST(Agreement, TheWorstOutcomeHasAReason) {
   EXPECT_EQ(failure_of_any([] {}), "");
 }
 
-TEST(Agreement, TheErrorOfOneRankIsTold) {
+TEST(Agreement, TheErrorOfOneRankIsReportedByAll) {
   const Ranks ranks;
   const int last = ranks.size() - 1;
   EXPECT_EQ(error_of_any(ranks.rank() == last ? "a long sentence of the last one" : ""), "a long sentence of the last one");

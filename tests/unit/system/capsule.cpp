@@ -37,7 +37,7 @@ TEST(Capsule, UnstressedMembraneMovesWithTheFlow) {
   for (Eigen::Index i = 0; i < v.rows(); ++i) EXPECT_NEAR((v.row(i) - Eigen::RowVector3d(f.sphere(i, 2), 0, 0)).norm(), 0, 1e-13);
 }
 
-TEST(Capsule, StoredEnergyFallsInAQuiescentFluid) {
+TEST(Capsule, StoredEnergyDecreasesInAQuiescentFluid) {
   Fixture f("quiescent");
   Capsule capsule = f.capsule();
   Net x = f.deformed();
@@ -72,7 +72,7 @@ TEST(Capsule, ExactConstraintRestoresTheVolumeToRoundOff) {
   EXPECT_NEAR(capsule.volume_error(capsule.geometry().volume(x)), 0, std::pow(0.003, 4));  // two Newton iterations square the error twice
 }
 
-TEST(Capsule, AVolumeThatCannotBeRestoredIsNotTakenForRestored) {
+TEST(Capsule, AVolumeThatCannotBeRestoredGivesNan) {
   Fixture f;
   Capsule capsule = f.capsule();
   Net x = f.sphere * 0.05;  // at this size Newton's first iteration overshoots by a factor of a hundred
@@ -92,7 +92,7 @@ TEST(Capsule, MeasuresOfTheLoadAgreeUpToTheMesh) {
 }
 
 /// The defect of u is B (v - u), computed without v. A short implicit step corrects u by the difference v - u.
-TEST(Capsule, DefectIsWhatAVelocityIsLacking) {
+TEST(Capsule, DefectIsTheErrorOfAVelocityTimesTheOperator) {
   for (const double ratio : {1.0, 5.0})
     for (const double viscosity : {0.0, 0.7}) {
       Fixture f;
@@ -182,7 +182,7 @@ INSTANTIATE_TEST_SUITE_P(FrozenOperators, JacobianOf,
                          testing::Values(JacobianCase{"assembled", "simple shear", 4e-3}, JacobianCase{"nodal", "simple shear", 4e-2},
                                          JacobianCase{"assembled", "parabolic", 4e-3}));
 
-TEST(Capsule, ViscosityRatioChangesTheVelocityAsTheBoundaryIntegralEquationSays) {
+TEST(Capsule, VelocityWithAViscosityRatioSatisfiesTheBoundaryIntegralEquation) {
   Fixture f;
   const Net x = f.deformed();
   f.parameters.volume.constraint = VolumeConservation::none;
@@ -206,7 +206,7 @@ TEST(Capsule, ViscosityRatioChangesTheVelocityAsTheBoundaryIntegralEquationSays)
 }
 
 // A drop in a rigidly rotating fluid. A rigid motion causes no viscous stress, so the velocity does not depend on the viscosity ratio.
-TEST(Capsule, RigidMotionDoesNotFeelTheViscosityInside) {
+TEST(Capsule, RigidMotionDoesNotDependOnTheViscosityInside) {
   Fixture f("linear");
   Mat3 spin = Mat3::Zero();
   spin(0, 2) = 0.7, spin(2, 0) = -0.7;

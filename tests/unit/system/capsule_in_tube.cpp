@@ -80,7 +80,7 @@ TEST(CapsuleInTube, EveryFormOfTheBlockSystemGivesTheVelocityOfTheSchurComplemen
 }
 
 // The wall responds to the fluid velocity on the interface. The tangential motion of the mesh has no influence.
-TEST(CapsuleInTube, PressureDropOfADropIsThatOfTheFluidHoweverControlPointsMove) {
+TEST(CapsuleInTube, PressureDropOfADropDoesNotDependOnTheMotionOfTheMesh) {
   for (const double ratio : {0.2, 4.0}) {
     Confined material(ratio, "schur", MeshMotion::material);
     const double drop = material.capsule->evaluate(material.x)->response().pressure_drop;
@@ -93,7 +93,7 @@ TEST(CapsuleInTube, PressureDropOfADropIsThatOfTheFluidHoweverControlPointsMove)
   }
 }
 
-TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
+TEST(CapsuleInTube, CachedResultsOfAPositionAreReusedAndUnchanged) {
   for (const double ratio : {1.0, 4.0}) {
     Confined known(ratio, "schur"), fresh(ratio, "schur");
     const Net elsewhere = known.x.rowwise() + Eigen::RowVector3d(0.1, 0, 0.02);
@@ -114,14 +114,14 @@ TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
   }
 }
 
-TEST(CapsuleInTube, AVelocityNearTheAnswerSavesIterationsAndNothingElse) {
+TEST(CapsuleInTube, AVelocityCloseToTheSolutionOnlySavesIterations) {
   Confined plain(4, "schur"), helped(4, "schur");
   const Net v = plain.capsule->velocity(plain.x), start = v + 1e-5 * Net::Random(v.rows(), 3);
   EXPECT_LT((helped.capsule->evaluate(helped.x, start)->velocity() - v).norm(), 1e-8 * v.norm());  // residuals of 1e-11, condition numbers of 1e3
   EXPECT_LT(helped.capsule->counts().velocity_iterations, plain.capsule->counts().velocity_iterations);
 }
 
-TEST(CapsuleInTube, ARoughVelocityHasTheErrorAllowedAndIsNotTakenForAnExactOne) {
+TEST(CapsuleInTube, ARoughVelocityHasTheAllowedErrorAndIsNotCachedAsExact) {
   Confined exact(4, "schur"), rough(4, "schur");
   const Net v = exact.capsule->velocity(exact.x);
   int fewer = exact.capsule->counts().velocity_iterations;
@@ -138,7 +138,7 @@ TEST(CapsuleInTube, ARoughVelocityHasTheErrorAllowedAndIsNotTakenForAnExactOne) 
   EXPECT_EQ(rough.capsule->counts().evaluations, evaluations);  // the exact velocity also serves as a rough one
 }
 
-TEST(CapsuleInTube, TheJacobianHoldsTheAnswerOfTheWall) {
+TEST(CapsuleInTube, TheJacobianContainsTheResponseOfTheWall) {
   Confined scene(1, "schur");
   Capsule& capsule = *scene.capsule;
   Net delta = Net::Zero(scene.x.rows(), 3);
@@ -151,7 +151,7 @@ TEST(CapsuleInTube, TheJacobianHoldsTheAnswerOfTheWall) {
   EXPECT_LT((jacobian - difference).norm(), 0.01 * difference.norm());  // the volume constraint contributes 1 per cent
 }
 
-TEST(CapsuleInTube, NothingDependsOnThePlaceAlongTheTube) {
+TEST(CapsuleInTube, ResultsDoNotDependOnThePositionAlongTheTube) {
   for (const double ratio : {1.0, 4.0}) {
     Confined scene(ratio, "schur");
     const Net v = scene.capsule->velocity(scene.x), there = scene.capsule->velocity(scene.x.rowwise() + Eigen::RowVector3d(17, 0, 0));
@@ -162,7 +162,7 @@ TEST(CapsuleInTube, NothingDependsOnThePlaceAlongTheTube) {
   }
 }
 
-TEST(CapsuleInTube, OutsideOfTheTubeThereIsNoVelocity) {
+TEST(CapsuleInTube, OutsideOfTheTubeTheVelocityIsUndefined) {
   Confined scene(1, "schur");
   EXPECT_FALSE(scene.capsule->velocity(scene.x.rowwise() + Eigen::RowVector3d(0, 0.5, 0)).allFinite());
 }

@@ -31,7 +31,7 @@ surface::TubeOptions channel(const std::string& profile, int around) {
 
 Net points() { return (Net(4, 3) << 0, 0, 0, 0.4, 0.3, -0.2, -0.7, 0, 0.6, 0.2, -0.65, 0.1).finished(); }
 
-TEST(ChannelFlow, IsTheDuctsWhereItIsStraight) {
+TEST(ChannelFlow, EqualsTheDuctFlowInAStraightChannel) {
   const ChannelFlow flow(channel("straight", 16), 1.7, 1.3, {});
   const stokes::DuctFlow duct(flow);
   const Net v = flow.velocities(points()), exact = duct.velocities(points());
@@ -41,7 +41,7 @@ TEST(ChannelFlow, IsTheDuctsWhereItIsStraight) {
   EXPECT_LT((gradient - exact_gradient).norm() / exact_gradient.norm(), 3e-2);
 }
 
-TEST(ChannelFlow, PassesEverySectionAlike) {
+TEST(ChannelFlow, HasTheSameFlowRateInEverySection) {
   const ChannelFlow flow(channel("constriction", 16), 1, 1, {});
   for (const double rate : flow.flow_rates_at({-1.2, -0.5, 0., 0.3, 0.8})) EXPECT_NEAR(rate / flow.flow_rate(), 1, 4e-4);
   EXPECT_GT(flow.extra_pressure_drop(), 0);
@@ -49,7 +49,7 @@ TEST(ChannelFlow, PassesEverySectionAlike) {
 
 /// Near the ends of the constriction, where the curvature of the wall jumps, the shear stress falls up to the kink and rises after it, without
 /// oscillation.
-TEST(ChannelFlow, HasAShearStressThatDoesNotRing) {
+TEST(ChannelFlow, HasAShearStressWithoutOscillations) {
   const ChannelFlow flow(channel("constriction", 16), 1, 1, {});
   const surface::TubeWall& wall = *flow.surface();
   std::vector<double> shear;
@@ -65,7 +65,7 @@ TEST(ChannelFlow, HasAShearStressThatDoesNotRing) {
   EXPECT_LE(turns, 1);
 }
 
-TEST(ChannelFlow, CostsInASlenderChannelWhatLubricationSays) {
+TEST(ChannelFlow, HasThePressureDropOfLubricationTheoryInASlenderChannel) {
   surface::TubeOptions options = channel("constriction", 12);
   options.channel->depth = 0.2, options.channel->half_length = 8;
   options.channel->start = -10.5, options.channel->end = 10.5;
@@ -111,7 +111,7 @@ struct InStraightChannel {
   }
 };
 
-TEST(Channel, AnswersAsTheTubeDoesWhereItIsStraight) {
+TEST(Channel, RespondsLikeTheTubeIfItIsStraight) {
   for (const double ratio : {1., 5.}) {
     InStraightChannel s(ratio, 20);
     const Tube::Response tube = s.tube->respond(s.f, s.v), channel = s.channel->respond(s.f, s.v);
@@ -122,7 +122,7 @@ TEST(Channel, AnswersAsTheTubeDoesWhereItIsStraight) {
   }
 }
 
-TEST(Channel, KeepsItsAnswerFrozen) {
+TEST(Channel, HasAFrozenResponse) {
   InStraightChannel s(5, 12);
   s.channel->freeze();
   const Net now = s.channel->respond(s.f, s.v).velocity;

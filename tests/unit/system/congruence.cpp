@@ -34,7 +34,7 @@ surface::TubeWall bent() {
   return surface::channel_wall(std::make_shared<const surface::Channel>(o), 8);
 }
 
-/// The number of maps of a wall, and how many of its points around have rows of their own.
+/// Returns the number of maps of a wall, and the number of azimuthal points whose rows are not images of other rows.
 std::pair<std::size_t, int> found(const surface::TubeWall& wall) {
   quadrature::Options rule;
   const std::vector<Congruence> maps = congruences(wall, Wall(wall, rule).points().sites());

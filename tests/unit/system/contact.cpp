@@ -13,7 +13,7 @@
 namespace tanktread::coupling {
 namespace {
 
-TEST(Contact, ComplementaryForcesNeverPullAndOpenNothingThatIsOpen) {
+TEST(Contact, ForcesNeverPullAndVanishAtOpenGaps) {
   std::mt19937 random(3);
   std::normal_distribution<double> number;
   for (int n = 1; n <= 12; ++n) {
@@ -28,11 +28,11 @@ TEST(Contact, ComplementaryForcesNeverPullAndOpenNothingThatIsOpen) {
   }
 }
 
-TEST(Contact, WhatCannotBeHeldIsNotFinite) {
+TEST(Contact, UnsolvableContactsGiveValuesThatAreNotFinite) {
   EXPECT_FALSE(complementary(Eigen::MatrixXd::Zero(1, 1), Eigen::VectorXd::Constant(1, -1)).allFinite());
 }
 
-TEST(Contact, ForcesAreEqualAndOppositeAndTurnNothing) {
+TEST(Contact, ForcesAreEqualAndOppositeWithoutTorque) {
   const spline::TMesh mesh = spline::cube(3);
   const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
   const Net sphere = surface::resting_shape(space, mesh, {});

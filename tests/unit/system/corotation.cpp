@@ -55,7 +55,7 @@ TEST(Corotation, IsARotationEvenIfTheShapeIsMirrored) {
   EXPECT_NEAR(Mat3(f.topRows(3)).determinant(), 1, 1e-13);
 }
 
-TEST(Corotation, DeformationIsWhatRemainsOfAStretch) {
+TEST(Corotation, DeformationIsAStretchWithoutItsRotation) {
   std::vector<Particle> particles(1);
   particles[0].block = {0, 20, 0, 0};
   const Net from = cloud(1).rowwise() - cloud(1).colwise().mean(), stretched = from * Vec3(1.2, 1, 0.9).asDiagonal();
@@ -67,7 +67,7 @@ TEST(Corotation, DeformationIsWhatRemainsOfAStretch) {
 
 // A sphere is rotated and then slightly stretched. Operators assembled before the rotation are as accurate as operators assembled on the new shape.
 // Without corotation the result differs by a tenth.
-TEST(Corotation, OperatorsOfATurnedCapsuleAreThoseAssembledThere) {
+TEST(Corotation, OperatorsOfARotatedCapsuleEqualNewlyAssembledOnes) {
   for (const char* frozen : {"nodal", "assembled"})
     for (const double ratio : {1.0, 5.0}) {
       SphereInFlow f(3, "quiescent");

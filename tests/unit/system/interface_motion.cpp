@@ -33,7 +33,7 @@ struct Drop : SphereInFlow {
   }
 };
 
-TEST(InterfaceMotion, AllMotionsCrossTheInterfaceAlike) {
+TEST(InterfaceMotion, AllMotionsHaveTheSameNormalVelocity) {
   Drop drop;
   drop.parameters.volume.constraint = VolumeConservation::none;
   Net x = drop.sphere;
@@ -47,7 +47,7 @@ TEST(InterfaceMotion, AllMotionsCrossTheInterfaceAlike) {
   }
 }
 
-TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
+TEST(InterfaceMotion, NormalMotionHasNoTangentialPart) {
   Drop drop;
   drop.parameters.volume.constraint = VolumeConservation::none;
   const Net v = drop.velocity(MeshMotion::normal, drop.sphere);
@@ -58,7 +58,7 @@ TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
 
 // The stresslet of a spherical drop in a straining flow E, S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3) (Batchelor 1970, section 5), does not depend on
 // the constant surface tension. It must not depend on the tangential motion of the control points either.
-TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
+TEST(InterfaceMotion, StressletDoesNotDependOnTheMotionOfTheMesh) {
   SphereInFlow drop(6, "planar hyperbolic");
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{5};
   drop.parameters.particles.front().measure = stokes::Measure::current;
@@ -96,7 +96,7 @@ TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
 
 // In an affine flow with the gradient L, a drop that is shifted by d moves like the drop at the origin, plus the uniform velocity L d. All motions of
 // the control points must satisfy this.
-TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
+TEST(InterfaceMotion, AFlowThatTranslatesTheDropTranslatesItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
   drop.flow.gradient = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
@@ -111,7 +111,7 @@ TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
 
 // If the rotation W is added to the gradient of the flow, W x is added to the velocity of the control points, so the mesh rotates with the drop. For
 // the motions `normal` and `relaxed` this holds for elongated drops only: see the next test.
-TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
+TEST(InterfaceMotion, AFlowThatRotatesTheDropRotatesItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
   const Mat3 strain = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
@@ -132,7 +132,7 @@ TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
 }
 
 // A sphere does not change if it rotates. Its mesh therefore stays at rest.
-TEST(InterfaceMotion, AFlowThatTurnsASphereDoesNotTurnItsMesh) {
+TEST(InterfaceMotion, AFlowThatRotatesASphereDoesNotRotateItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
   drop.parameters.volume.constraint = VolumeConservation::none;
@@ -152,7 +152,7 @@ TEST(InterfaceMotion, AFlowThatTurnsASphereDoesNotTurnItsMesh) {
 }
 
 // A purely tangential velocity belongs to a steady shape.
-TEST(InterfaceMotion, TheMeshOfASteadyShapeStaysWhereItIs) {
+TEST(InterfaceMotion, TheMeshOfASteadyShapeIsAtRest) {
   Drop drop;
   Net x = drop.sphere;
   x.col(0) *= 1.5;
@@ -164,7 +164,7 @@ TEST(InterfaceMotion, TheMeshOfASteadyShapeStaysWhereItIs) {
   EXPECT_LT(drop.velocity(MeshMotion::normal, x).norm(), 5e-3 * (x * shear.transpose()).norm());  // discretisation error of this coarse mesh, 4e-3
 }
 
-TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
+TEST(InterfaceMotion, TheJacobianIncludesTheRigidMotionOfTheMesh) {
   Drop drop;
   drop.flow.type = "linear";
   drop.flow.gradient = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
@@ -180,7 +180,7 @@ TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
 }
 
 // Flow and shape are symmetric about the axes, so that the shared rigid motion vanishes. Without tension the change of the fluid velocity is known.
-TEST(InterfaceMotion, TheJacobianKnowsHowNormalsTurn) {
+TEST(InterfaceMotion, TheJacobianIncludesTheRotationOfNormals) {
   Drop drop;
   drop.flow.type = "linear";
   drop.flow.gradient = Vec3(1, 0.5, -1.5).asDiagonal();
@@ -204,7 +204,7 @@ TEST(InterfaceMotion, TheJacobianKnowsHowNormalsTurn) {
 }
 
 // An elastic surface that is uniformly inflated or deflated has a uniform tension, and no tangential force acts on the mesh.
-TEST(InterfaceMotion, OnlyWhatPullsAlongTheInterfaceMovesTheMesh) {
+TEST(InterfaceMotion, OnlyTangentialForcesMoveTheMesh) {
   Drop drop;
   drop.flow.type = "quiescent";
   drop.parameters.volume.constraint = VolumeConservation::none;
@@ -215,7 +215,7 @@ TEST(InterfaceMotion, OnlyWhatPullsAlongTheInterfaceMovesTheMesh) {
     EXPECT_LT(drop.velocity(MeshMotion::relaxed, size * drop.sphere).norm(), 0.25 * drawn.norm()) << size;  // error of this coarse mesh
 }
 
-TEST(InterfaceMotion, RelaxedMeshGoesBackToItsShape) {
+TEST(InterfaceMotion, RelaxedMeshReturnsToItsRestingShape) {
   Drop drop;
   drop.flow.type = "quiescent";
   // Moves the control points of a sphere along it. The surface remains a sphere, and the fluid is at rest except for the discretisation error.

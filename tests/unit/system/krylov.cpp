@@ -46,7 +46,7 @@ TEST(Krylov, SolvesANonsymmetricSystemToTheTolerance) {
     }
 }
 
-TEST(Krylov, TheInverseAsPreconditionerLeavesOneIteration) {
+TEST(Krylov, TheInverseAsPreconditionerNeedsOneIteration) {
   const int n = 60;
   const Eigen::MatrixXd a = nonsymmetric(n), inverse = a.inverse();
   const auto product = [](const Eigen::MatrixXd& m) {
@@ -62,7 +62,7 @@ TEST(Krylov, TheInverseAsPreconditionerLeavesOneIteration) {
   }
 }
 
-TEST(Krylov, MultipliesOnceAnIteration) {
+TEST(Krylov, MultipliesOncePerIteration) {
   const int n = 60;
   const Eigen::MatrixXd a = nonsymmetric(n);
   int products = 0;
@@ -78,7 +78,7 @@ TEST(Krylov, MultipliesOnceAnIteration) {
   }
 }
 
-TEST(Krylov, TellsWhenItStopsShort) {
+TEST(Krylov, ReportsAnIterationThatDidNotConverge) {
   const int n = 40;
   const Apply shift = [&](const double* in, double* out) {  // a cyclic shift: GMRES makes no progress before iteration n
     for (int i = 0; i < n; ++i) out[i] = in[(i + 1) % n];
@@ -93,7 +93,7 @@ TEST(Krylov, TellsWhenItStopsShort) {
   EXPECT_THROW(require_convergence(report, "nothing", 1e-8), RunFailure);
 }
 
-TEST(Krylov, TellsTheResidualOfEachBlockWhereItStopsShort) {
+TEST(Krylov, ReportsTheResidualOfEachBlockIfItDidNotConverge) {
   const int n = 60;
   const Eigen::MatrixXd a = nonsymmetric(n);
   const Apply apply = [&](const double* in, double* out) {
@@ -165,7 +165,7 @@ TEST(Krylov, EveryPreconditionerLeadsToTheSolution) {
   }
 }
 
-TEST(Krylov, NumbersThatAreNotFiniteAreASolveThatStoppedShort) {
+TEST(Krylov, ValuesThatAreNotFiniteCountAsNotConverged) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Apply broken = [&](const double* in, double* out) { std::fill(out, out + 5, nan * in[0]); };
   for (const char* name : {"GMRES", "BICGSTAB", "TFQMR"}) {
@@ -192,7 +192,7 @@ TEST(Krylov, EndsInTheSameIterationOnAllRanks) {
 }
 
 // The residual is relative to the right-hand side, not to the initial residual, which may be round-off only.
-TEST(Krylov, AStartThatIsTheSolutionIsLeftAsItIs) {
+TEST(Krylov, AnInitialGuessThatIsTheSolutionIsNotChanged) {
   const int n = 60;
   const Eigen::MatrixXd a = nonsymmetric(n);
   const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2), solution = a.partialPivLu().solve(b);
@@ -208,14 +208,14 @@ TEST(Krylov, AStartThatIsTheSolutionIsLeftAsItIs) {
   }
 }
 
-TEST(Krylov, ZeroRightHandSideCostsNothing) {
+TEST(Krylov, ZeroRightHandSideNeedsNoIteration) {
   Eigen::VectorXd x = Eigen::VectorXd::Ones(5);
   const SolveReport report = solve(Krylov("GMRES", nullptr), [](const double*, double*) { FAIL(); }, Eigen::VectorXd::Zero(5), x, 1e-8);
   EXPECT_EQ(report.iterations, 0);
   EXPECT_EQ(x.norm(), 0);
 }
 
-TEST(Krylov, ASolverThatBelosDoesNotKnowIsTheUsersMistake) { EXPECT_THROW(Krylov("WISHFUL", nullptr), UserError); }
+TEST(Krylov, ASolverThatBelosDoesNotKnowIsRejected) { EXPECT_THROW(Krylov("WISHFUL", nullptr), UserError); }
 
 TEST(Ranks, EveryRankGetsAllRows) {
   Ranks ranks;
@@ -230,7 +230,7 @@ TEST(Ranks, EveryRankGetsAllRows) {
   for (int i = 0; i < n; ++i) EXPECT_EQ(net.row(i), Eigen::RowVector3d(i, 10 * i, 100 * i));
 }
 
-TEST(Ranks, WhatTheyHaveAddsUp) {
+TEST(Ranks, ContributionsAreSummed) {
   Ranks ranks;
   ranks.set_owned_rows(ranks.rank() == 0 ? std::vector<int>{0, 1, 2, 3, 4} : std::vector<int>{}, 5);
   Net a = Net::Constant(5, 3, 1 + ranks.rank()), b = Net::Zero(5, 3);
@@ -278,7 +278,7 @@ TEST(Ranks, OwnersFillTheRowsOfTheirPoints) {
   for (int a = 0; a < 9; ++a) EXPECT_EQ(net.row(a), Eigen::RowVector3d(a, 1, -a));
 }
 
-TEST(Ranks, OneRankSpeaksForAll) {
+TEST(Ranks, TheValueOfOneRankIsBroadcast) {
   Ranks ranks;
   EXPECT_TRUE(ranks.any(ranks.rank() == ranks.size() - 1));
   EXPECT_FALSE(ranks.any(false));

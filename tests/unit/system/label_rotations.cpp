@@ -42,7 +42,7 @@ TEST(LabelRotation, OfASphereAtRestIsARotation) {
   }
 }
 
-TEST(LabelRotation, CostsAStretchedMembraneNoEnergy) {
+TEST(LabelRotation, DoesNotChangeTheEnergyOfAStretchedMembrane) {
   const auto stretched = [](const Ball& ball) {
     Net x = ball.sphere;
     x.col(0) = 1.5 * ball.sphere.col(0) + 0.4 * ball.sphere.col(2) + 0.2 * ball.sphere.col(1).cwiseAbs2();
@@ -56,7 +56,7 @@ TEST(LabelRotation, CostsAStretchedMembraneNoEnergy) {
   }
 }
 
-TEST(LabelRotation, OfASpheroidIsThereAboutItsAxisAlone) {
+TEST(LabelRotation, OfASpheroidExistsOnlyAboutItsAxis) {
   const Ball ball(6);
   const Net flat = ball.sphere * Vec3(1, 1, 0.6).asDiagonal();
   EXPECT_FALSE(ball.rotation(flat, flat, 0).has_value());

@@ -61,14 +61,14 @@ TEST(NodalOperator, IsCloseToTheSingleLayerWhereAFewElementsAreNear) {
   EXPECT_GT(Fixture().error(0), 0.02);  // without any correction
 }
 
-TEST(NodalOperator, RowsDoNotDependOnTheOtherRowsAskedFor) {
+TEST(NodalOperator, RowsDoNotDependOnOtherRequestedRows) {
   Fixture f;
   const Net force = Net::Random(f.space.n_points, 3), whole = f.nodal(3, force, f.targets), part = f.nodal(3, force, {3, 70, 111, 200, 217});
   for (const int i : {3, 70, 111, 200, 217}) EXPECT_EQ(part.row(i), whole.row(i));
   EXPECT_EQ(part.row(0), Net::Zero(1, 3));  // rows of other targets are unchanged
 }
 
-TEST(NodalOperator, IsTheSameByClustersToATenthOfWhatItLeavesOut) {
+TEST(NodalOperator, WithClustersGivesNearlyTheSameResult) {
   Fixture f(12);  // more points than a leaf can hold
   const Net force = Net::Random(f.space.n_points, 3), dense = f.nodal(3, force, f.targets);
   f.far_sum = "tree";

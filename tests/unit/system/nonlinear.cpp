@@ -24,7 +24,7 @@ Net stretched(const Net& x) {
   return y;
 }
 
-TEST(FixedPoint, IsFoundWherePlainIterationDiverges) {
+TEST(FixedPoint, IsFoundIfPlainIterationDiverges) {
   const Net start = Net::Zero(10, 3);
   Net plain = start;
   for (int k = 0; k < 40; ++k) plain = stretched(plain);
@@ -66,7 +66,7 @@ TEST(FixedPoint, DoesNotDependOnTheUnitOfLength) {
   }
 }
 
-TEST(FixedPoint, AListThatNoxDoesNotTakeIsTheUsersMistake) {
+TEST(FixedPoint, ParametersThatNoxRejectsAreReported) {
   const auto list = std::make_shared<Teuchos::ParameterList>();
   list->sublist("Anderson Parameters").set("Storage Deep", 3);
   Net x = Net::Zero(10, 3);

@@ -43,7 +43,7 @@ struct Fixture : SingleEllipsoid {
   }
 };
 
-TEST(FreeBody, SphereGoesWithTheFlow) {
+TEST(FreeBody, SphereMovesWithTheFlow) {
   const Fixture f(Vec3::Constant(0.8));
   const RigidMotion motion = f.body->motion(f.turned(0.7, Vec3(1, 2, 3)));
   const Mat3 l = some_gradient();
@@ -53,7 +53,7 @@ TEST(FreeBody, SphereGoesWithTheFlow) {
   EXPECT_LT((f.body->stresslet(placed(f.shape.center)) - exact).norm() / exact.norm(), 5e-5);  // fourth order: 2.4e-5
 }
 
-TEST(FreeBody, SpheroidTurnsAsJefferyFound) {
+TEST(FreeBody, SpheroidRotatesAsByJeffery) {
   const double ratio = 1.6, b = (ratio * ratio - 1) / (ratio * ratio + 1);
   const Fixture f(Vec3(0.7, 0.7, 0.7 * ratio));
   const Mat3 l = some_gradient(), e = 0.5 * (l + l.transpose()), w = 0.5 * (l - l.transpose());
@@ -70,7 +70,7 @@ stokes::FlowOptions parabolic() {
   return flow;
 }
 
-TEST(FreeBody, SphereInParabolicFlowGoesAsFaxenFound) {
+TEST(FreeBody, SphereInParabolicFlowMovesAsByFaxen) {
   const Fixture f(Vec3::Constant(0.8));
   const stokes::AmbientFlow flow(parabolic());
   const FreeBody body(*f.tractions, f.rest, f.shape.center, 0.8, flow);
@@ -84,7 +84,7 @@ TEST(FreeBody, SphereInParabolicFlowGoesAsFaxenFound) {
 
 // At one position the combination of modes must equal a direct solve for the same motion. BoundedFreeBody also solves for the motion; it corrects the
 // collocation errors of force and torque (2.11), which the modes do not.
-TEST(FreeBody, MeetsAQuadraticFlowByItsModesAsBySolvingAtThePlace) {
+TEST(FreeBody, InAQuadraticFlowModesAgreeWithADirectSolve) {
   Fixture f(Vec3(0.7, 0.9, 1.2));
   stokes::FlowOptions options = parabolic();
   options.history.emplace();
@@ -129,7 +129,7 @@ TEST(FreeBody, MovesAsItsSurfaceDoes) {
   EXPECT_LT((rate - exact).norm() / exact.norm(), 1e-8);  // truncation error h^2, and round-off divided by h
 }
 
-TEST(FreeBody, KeepsItsQuaternionOfUnitLength) {
+TEST(FreeBody, KeepsItsQuaternionNormalised) {
   Fixture f(Vec3(0.7, 0.9, 1.2));
   Net place = f.turned(1.1, Vec3(1, -1, 0.5));
   const Mat3 before = rotation_of(place);

@@ -78,7 +78,7 @@ Mat3 some_gradient() {
 }
 
 /// The two equations are of different kinds and share only the body.
-TEST(RigidParticles, OneMovesAsTheFirstKindEquationSays) {
+TEST(RigidParticles, OneMovesAsByTheFirstKindEquation) {
   const Vec3 centre(0.3, -0.1, 0.2), axes(1.3, 0.8, 1);
   const RigidDrive driven{false, {}, Vec3(1, -2, 3), Vec3(2, 1, -1)};
   Bodies one({{centre, axes, driven}}, 6, some_gradient());
@@ -98,7 +98,7 @@ TEST(RigidParticles, OneMovesAsTheFirstKindEquationSays) {
   EXPECT_LT((system.evaluate(x)->stresslet() - body.stresslet(place)).norm(), 1e-4 * body.stresslet(place).norm());
 }
 
-TEST(RigidParticles, ForcesThatAreNeededDriveTheSameMotion) {
+TEST(RigidParticles, ForcesOfAPrescribedMotionCauseThisMotion) {
   const Vec3 away(0.5, 0.4, 2.6);
   RigidDrive told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
   Bodies held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), RigidDrive{true, {}}}}, 4, some_gradient());
@@ -132,7 +132,7 @@ TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
 }
 
 /// The surface is slightly higher at its collocation sites than between them. Without correction the error of the torque is 1.3e-4.
-TEST(RigidParticles, ALoadDrivesItsOwnBodyBetweenSitesToo) {
+TEST(RigidParticles, TheErrorOfALoadBetweenSitesIsCorrected) {
   const RigidDrive turned{true, {Vec3::Zero(), Vec3(0, 0, 1)}};
   Bodies one({{Vec3::Zero(), Vec3::Ones(), turned}}, 4, Mat3::Zero());
   Capsule system = one.system();
@@ -140,7 +140,7 @@ TEST(RigidParticles, ALoadDrivesItsOwnBodyBetweenSitesToo) {
 }
 
 /// The density needs a correction too. Without it the error of the stresslet is 1.4e-4.
-TEST(RigidParticles, ADensityDrivesItsOwnBodyBetweenSitesToo) {
+TEST(RigidParticles, TheErrorOfADensityBetweenSitesIsCorrected) {
   Bodies one({{Vec3::Zero(), Vec3::Ones(), RigidDrive{}}}, 4, Mat3(Vec3(1, -0.5, -0.5).asDiagonal()));
   Capsule system = one.system();
   EXPECT_NEAR(system.evaluate(one.rest)->stresslet()(0, 0) / (20 * pi * viscosity / 3), 1, 1e-5);
@@ -162,7 +162,7 @@ TEST(RigidParticles, IterationsDoNotGrowAsAFilmThins) {
 }
 
 /// The limit of infinite viscosity is approached like 1/lambda.
-TEST(RigidParticles, VeryViscousDropsMoveAlike) {
+TEST(RigidParticles, VeryViscousDropsMoveLikeRigidBodies) {
   const auto velocity = [](double viscosity_ratio) {
     const std::optional<RigidDrive> rigid = viscosity_ratio > 0 ? std::nullopt : std::optional(RigidDrive{});
     const double ratio = std::max(viscosity_ratio, 1.);
@@ -177,7 +177,7 @@ TEST(RigidParticles, VeryViscousDropsMoveAlike) {
 }
 
 /// The net of a stage of a time step is not a rigid image of the body; it represents the nearest rigid image.
-TEST(RigidParticles, StayAsTheyAre) {
+TEST(RigidParticles, KeepTheirShape) {
   Bodies pair({{Vec3::Zero(), Vec3(1.2, 1, 0.8)}, {Vec3(3, 0.2, 0), Vec3::Ones()}}, 3, some_gradient());
   Capsule system = pair.system();
   Net x = pair.rest + 0.3 * system.velocity(pair.rest);
@@ -210,7 +210,7 @@ TEST(RigidTractions, AFailedSolveKeepsTheInitialGuess) {
 }
 
 /// The force on spheres that approach each other, compared with the multipole solution above.
-TEST(RigidTractions, ErrLessThanDoubleLayers) {
+TEST(RigidTractions, AreMoreAccurateThanDoubleLayers) {
   const RigidDrive one{true, {Vec3(1, 0, 0), Vec3::Zero()}}, other{true, {Vec3(-1, 0, 0), Vec3::Zero()}};
   const auto error = [&](auto pair) {
     Capsule system = pair->system();
@@ -220,7 +220,7 @@ TEST(RigidTractions, ErrLessThanDoubleLayers) {
   EXPECT_LT(10 * error(std::make_unique<ByTractions>(bodies, 4, Mat3::Zero())), error(std::make_unique<Bodies>(bodies, 4, Mat3::Zero())));
 }
 
-TEST(RigidTractions, PairsInStrainMoveAndResistAsTheyShould) {
+TEST(RigidTractions, PairsInStrainHaveTheKnownVelocityAndStresslet) {
   const Mat3 strain = Vec3(1, -0.5, -0.5).asDiagonal();
   ByTractions free({{Vec3::Zero(), Vec3::Ones(), RigidDrive{}}, {Vec3(3, 0, 0), Vec3::Ones(), RigidDrive{}}}, 4, strain);
   Capsule system = free.system();
@@ -242,7 +242,7 @@ TEST(RigidTractions, AStressletIsThatOfItsEvaluationAfterAnotherShapeWasSolved) 
   EXPECT_LT((here->stresslet(1) - stresslet).norm(), 1e-12 * stresslet.norm());
 }
 
-TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
+TEST(RigidTractions, ForcesOfAPrescribedMotionCauseThisMotion) {
   const Vec3 away(0.5, 0.4, 2.6);
   const RigidDrive told{true, {Vec3(1, 2, -1), Vec3(0.5, -1, 2)}};
   ByTractions held({{Vec3::Zero(), Vec3(1.2, 1, 0.8), told}, {away, Vec3::Ones(), RigidDrive{}}}, 4, some_gradient());
@@ -258,7 +258,7 @@ TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
 }
 
 /// Drag of a sphere that moves along a plane wall at a gap of one radius: Goldman, Cox & Brenner 1967.
-TEST(RigidTractions, AWallResists) {
+TEST(RigidTractions, DragNextToAWallIsTheKnownOne) {
   ByTractions one({{Vec3(0.2, 0, 2), Vec3::Ones(), RigidDrive{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
   one.parameters.medium = std::make_shared<stokes::PlaneWall>(Vec3::Zero(), Vec3(0, 0, 1));
   Capsule system = one.system();
@@ -266,7 +266,7 @@ TEST(RigidTractions, AWallResists) {
 }
 
 /// Drag of a simple cubic array of spheres at the volume fraction 0.2: multipoles with Ewald sums.
-TEST(RigidTractions, AnArrayResists) {
+TEST(RigidTractions, DragInAnArrayIsTheKnownOne) {
   ByTractions one({{Vec3::Zero(), Vec3::Ones(), RigidDrive{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
   one.parameters.cell = stokes::PeriodicCell(2.7564674676 * Mat3::Identity(), 3);
   one.parameters.quadrature.tolerance = 1e-6, one.parameters.solvers.tolerance = 1e-8;
@@ -276,7 +276,7 @@ TEST(RigidTractions, AnArrayResists) {
 
 /// A drop 50 radii away changes the motion by 1e-6 at most: the force on the pair causes a strain of order 1/r^2 at the drop, and the stresslet of
 /// the drop a velocity of order 1/r^4 at the pair.
-TEST(RigidTractions, AFarDropChangesNothing) {
+TEST(RigidTractions, ADistantDropHasNoInfluence) {
   const RigidDrive pulled{false, {}, Vec3(6 * pi * viscosity, 0, 0), Vec3::Zero()};
   std::vector<Bodies::One> bodies{{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(3, 0, 0), Vec3::Ones(), RigidDrive{}}};
   ByTractions pair(bodies, 4, Mat3::Zero());
@@ -319,7 +319,7 @@ void expect_agreement(const BesideDrop& fine, double viscosity_ratio) {
   EXPECT_LT(error(finer), 2e-5);   // 1e-5, of which the double layers have a part
 }
 
-TEST(RigidTractions, MoveBesideADropAsDoubleLayersSay) {
+TEST(RigidTractions, MoveNextToADropAsWithDoubleLayers) {
   for (const double ratio : {1., 5.}) expect_agreement(BesideDrop(false, 8, ratio), ratio);
 }
 

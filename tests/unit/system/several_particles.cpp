@@ -68,7 +68,7 @@ struct Several {
 
 const membrane::Law soft = membrane::NeoHookean{2}, hard = membrane::Skalak{3, 1}, tension = membrane::SurfaceTension{4};
 
-TEST(SeveralParticles, FarAwayEachMovesAsAlone) {
+TEST(SeveralParticles, FarApartMoveLikeSingleParticles) {
   const Kind capsule{3, Vec3(0, 0, 0), 5, hard}, drop{4, Vec3(0, 1e4, 0), 0.2, tension, MeshMotion::relaxed};
   Several both({capsule, drop});
   const Net v = both.system().velocity(both.x);
@@ -79,7 +79,7 @@ TEST(SeveralParticles, FarAwayEachMovesAsAlone) {
   }
 }
 
-TEST(SeveralParticles, OrderIsOfNoConsequence) {
+TEST(SeveralParticles, DoNotDependOnTheirOrder) {
   const Kind drop{4, Vec3(0.2, 2.3, 0.1), 0.5, tension, MeshMotion::relaxed};
   const std::vector<Kind> kinds{{3, Vec3(0, 0, 0), 5, hard}, drop, {3, Vec3(-2.5, 0, 0.3), 1, soft}};
   Several one(kinds), other({kinds[2], kinds[0], kinds[1]});
@@ -88,7 +88,7 @@ TEST(SeveralParticles, OrderIsOfNoConsequence) {
   for (size_t p = 0; p < 3; ++p) EXPECT_LT((one.velocity_of(p, v) - other.velocity_of(place[p], w)).lpNorm<Eigen::Infinity>(), 1e-9) << p;
 }
 
-TEST(SeveralParticles, EachKeepsItsVolume) {
+TEST(SeveralParticles, ConserveTheirVolumes) {
   Several pair({{3, Vec3(0, 0, 0), 2, soft}, {4, Vec3(0, 0, 2.4), 0.5, hard}});
   Capsule system = pair.system();
   Net x = pair.x;
@@ -101,7 +101,7 @@ TEST(SeveralParticles, EachKeepsItsVolume) {
 }
 
 /// Two equal particles at r and -r move point-symmetrically, although the system does not use this symmetry.
-TEST(SeveralParticles, EqualOnesMoveAlike) {
+TEST(SeveralParticles, OfEqualShapeMoveSymmetrically) {
   const Vec3 r(1.1, 0.2, 0.3);
   Several pair({{3, r, 5, soft}, {3, -r, 5, soft}});
   const Net v = pair.system().velocity(pair.x), first = pair.velocity_of(0, v), second = pair.velocity_of(1, v);
@@ -116,7 +116,7 @@ TEST(SeveralParticles, EqualOnesMoveAlike) {
 }
 
 
-TEST(SeveralParticles, OfEqualMaterialsHaveOne) {
+TEST(SeveralParticles, OfEqualMaterialShareIt) {
   const Several three({{3, Vec3(0, 0, 0), 5, soft}, {3, Vec3(4, 0, 0), 1, hard}, {3, Vec3(8, 0, 0), 1, soft}});
   const membrane::Materials all = materials(three.parameters.particles);
   ASSERT_EQ(all.all.size(), 2u);

@@ -49,7 +49,7 @@ Fixture sphere() { return Fixture(Vec3::Constant(0.8)); }
 
 Fixture spheroid() { return Fixture(Vec3(0.7, 0.7, 1.1)); }
 
-TEST(SingleBody, OfASphereIsStokes) {
+TEST(SingleBody, OfATranslatingSphereIsStokesDrag) {
   const Fixture s = sphere();
   const double a = 0.8;
   const Vec3 u(1, -2, 0.5);
@@ -61,7 +61,7 @@ TEST(SingleBody, OfASphereIsStokes) {
   EXPECT_LT(s.integrals(f).torque.norm() / exact.norm(), 1e-9);                               // the mesh is symmetric
 }
 
-TEST(SingleBody, OfATurningSphereIsATorque) {
+TEST(SingleBody, OfARotatingSphereIsItsTorque) {
   const Fixture s = sphere();
   const double a = 0.8;
   const Vec3 omega(0.3, 1, -0.7);
@@ -81,7 +81,7 @@ TEST(SingleBody, OfAStrainedSphereIsFiveTimesTheStrain) {
   EXPECT_LT((s.integrals(f).stresslet() - exact).norm() / exact.norm(), 5e-5);  // fourth order: 2.4e-5
 }
 
-TEST(SingleBody, OfASpheroidIsOberbecks) {
+TEST(SingleBody, OfASpheroidIsOberbecksDrag) {
   const Fixture s = spheroid();
   const stokes::Ellipsoid exact(Vec3(0.7, 0.7, 1.1));
   const Vec3 u(0.6, 0.1, 0.8), omega(0.5, -0.2, 0.9);
@@ -93,7 +93,7 @@ TEST(SingleBody, OfASpheroidIsOberbecks) {
   EXPECT_LT(s.difference(f, density, density(Vec3(0.7, 0, 0), {}).norm()), 5e-3);
 }
 
-TEST(SingleBody, LacksWhatTheReciprocalTheoremGives) {
+TEST(SingleBody, IsCorrectedByTheReciprocalTheorem) {
   const Fixture s = spheroid();
   const stokes::Ellipsoid exact(Vec3(0.7, 0.7, 1.1));
   const Vec3 u(0.6, 0.1, 0.8), centre = Vec3::Zero();
@@ -108,14 +108,14 @@ TEST(SingleBody, LacksWhatTheReciprocalTheoremGives) {
   EXPECT_LT(corrected, plain / 20);
 }
 
-TEST(SingleBody, KnowsNothingOfAUniformPressure) {
+TEST(SingleBody, IsIndependentOfAUniformPressure) {
   const Fixture s = spheroid();
   const Net f = s.density([](const Vec3& x) -> Vec3 { return Vec3(1, 0, 0) + Vec3(0, 0, 1).cross(x); });
   const Net b = surface::Geometry(s.space).volume_gradient(s.rest);
   EXPECT_LT(std::abs(b.cwiseProduct(f).sum()), 1e-10 * b.norm() * f.norm());  // the condition int f.n dG = 0 is a choice
 }
 
-TEST(SingleBody, TakesUpTheFluxThatNoFluidCanCarry) {
+TEST(SingleBody, AbsorbsANetFluxIntoThePressure) {
   const Fixture s = sphere();
   // The density f of a growing body equals that of a body at rest, up to the pressure inside.
   const Net f = s.density([](const Vec3& x) { return x; });

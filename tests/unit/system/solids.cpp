@@ -31,7 +31,7 @@ quadrature::Options fine() {
 }
 
 /// The sheets of force f1, f2 move the fluid by -(|z - z1| f1 + |z - z2| f2)/(2 mu), which is V1 and V2 on them.
-TEST(Solids, PlatesThatMoveFeelUniformForces) {
+TEST(Solids, MovingPlatesHaveUniformForces) {
   Phases phases;
   const double mu = 0.7, d = 1.3;
   const Vec3 lower(0.3, -0.2, 0), upper(-1, 0.5, 0);
@@ -81,7 +81,7 @@ TEST(Solids, ForcesBalanceThePressureGradient) {
 }
 
 /// Square array, F/(mu U) by the table of Sangani & Acrivos (1982). Their series to the third power of the area fraction errs by 1.5e-2 at 0.2.
-TEST(Solids, PostsInASquareArrayTakeTheKnownForce) {
+TEST(Solids, PostsInASquareArrayHaveTheKnownForce) {
   Phases phases;
   for (const auto& [c, expected] : {std::pair(0.05, 15.56), {0.2, 51.53}, {0.4, 217.89}}) {
     const stokes::PeriodicCell cell(Mat3(Vec3(1, 1, 0.5).asDiagonal()), 3);

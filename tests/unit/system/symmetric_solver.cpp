@@ -73,7 +73,7 @@ const Keeps mirror = [](const surface::Image& image) { return image.signs == Vec
 const Keeps point = [](const surface::Image& image) { return image.signs == Vec3(-1, -1, -1); };
 const Keeps turns = [](const surface::Image& image) { return image.signs.prod() > 0; };
 
-TEST(SymmetricSolver, IsTheWholeSolverOnSymmetricFields) {
+TEST(SymmetricSolver, EqualsTheFullSolverOnSymmetricFields) {
   const Surface s(spline::cube(4));
   expect_the_same(s, all, "mirror x1, mirror x2 and mirror x3");
   expect_the_same(s, shear, "mirror x2 and point symmetry");
@@ -83,7 +83,7 @@ TEST(SymmetricSolver, IsTheWholeSolverOnSymmetricFields) {
   expect_the_same(s, [](const surface::Image&) { return false; }, "none");
 }
 
-TEST(SymmetricSolver, IsTheWholeSolverOnRefinedSurfaces) {
+TEST(SymmetricSolver, EqualsTheFullSolverOnRefinedSurfaces) {
   const Surface s(refined());
   ASSERT_GT(s.space.n_points, Surface(spline::cube(6)).space.n_points);
   expect_the_same(s, all, "mirror x1, mirror x2 and mirror x3");

@@ -64,7 +64,7 @@ TEST(Symmetry, IsThatOfTheSameSceneInOtherUnits) {
   }
 }
 
-TEST(Symmetry, OfAParticleOffTheMiddleOfAShearFlowIsTheMirrorPlaneAlone) {
+TEST(Symmetry, OfAParticleOffTheStagnationPointOfAShearFlowIsOnlyTheMirrorPlane) {
   Fixture f;
   surface::ParticleShape shape;
   shape.radius = 1;

@@ -56,7 +56,7 @@ struct Fixture {
   }
 };
 
-TEST(Tube, AnswersLinearly) {
+TEST(Tube, HasALinearResponse) {
   Fixture s(5);
   const Tube::Response both = s.tube->respond(s.f, s.v), load = s.tube->respond(s.f), velocity = s.tube->respond({}, s.v);
   EXPECT_LT((both.velocity - load.velocity - velocity.velocity).norm() / both.velocity.norm(), 1e-12);
@@ -75,7 +75,7 @@ TEST(Tube, SolvesTheBlockSystem) {
   EXPECT_LT((answer - r.velocity).norm() / answer.norm(), 1e-12);
 }
 
-TEST(Tube, HasThePressureDropOfTheFlowOnTheSurfaceHoweverCoarse) {
+TEST(Tube, HasTheExactPressureDropOnAnyMeshOfTheSurface) {
   Fixture s(1);
   const Net along = Eigen::RowVector3d(1, 0, 0).replicate(s.x.rows(), 1);
   const auto& rule = quadrature::tensor_gauss(12);
@@ -91,7 +91,7 @@ TEST(Tube, HasThePressureDropOfTheFlowOnTheSurfaceHoweverCoarse) {
                                                                                   // flow were interpolated
 }
 
-TEST(Tube, TakesNoAccountOfVelocitiesWhenTheViscositiesAreEqual) {
+TEST(Tube, IgnoresVelocitiesIfTheViscositiesAreEqual) {
   Fixture s(1);
   EXPECT_EQ((s.tube->respond(s.f, s.v).velocity - s.tube->respond(s.f).velocity).norm(), 0);
   EXPECT_EQ(s.tube->pressure_of({}, s.v), 0);
@@ -111,7 +111,7 @@ TEST(Tube, MeasuresTheGap) {
   EXPECT_NEAR(s.tube->gap(), 1 - 0.5 - std::hypot(0.1, 0.05), 2e-3);  // errors of the fitted sphere and circle
 }
 
-TEST(Tube, KeepsItsAnswerFrozen) {
+TEST(Tube, HasAFrozenResponse) {
   Fixture s(5);
   s.tube->freeze();
   const Net now = s.tube->respond(s.f, s.v).velocity;
@@ -120,7 +120,7 @@ TEST(Tube, KeepsItsAnswerFrozen) {
   EXPECT_GT((s.tube->respond(s.f, s.v).velocity - now).norm() / now.norm(), 0.1);
 }
 
-TEST(Tube, ServesAnotherMeshOfTheParticle) {
+TEST(Tube, SupportsAnotherMeshOfTheParticle) {
   Fixture s(5);
   const spline::TMesh finer = spline::cube(4);
   const spline::Space space = spline::space(finer, spline::ExtraordinaryRule::g1);
@@ -135,7 +135,7 @@ TEST(Tube, ServesAnotherMeshOfTheParticle) {
   EXPECT_NEAR(work(other, x) / work(*s.tube, s.x), 1, 1e-3);
 }
 
-TEST(Tube, GivesItsAnswerAnywhere) {
+TEST(Tube, GivesItsResponseAtAnyPoint) {
   Fixture s(5);
   const Net x = s.x.rowwise() + Eigen::RowVector3d(7, 0, 0);
   s.tube->set_shape(x);
@@ -162,7 +162,7 @@ TEST(Tube, HasChecksThatAgreeForAForceFreeFlow) {
   EXPECT_NEAR(routes.pressure_by_force / pushed.pressure_drop, 1, 0.02);
 }
 
-TEST(BoundedFreeBody, IsTheSameTurnedAndMoved) {
+TEST(BoundedFreeBody, IsInvariantUnderRotationAndTranslation) {
   Fixture s(1);
   SolverOptions solvers;
   solvers.tolerance = 1e-9;

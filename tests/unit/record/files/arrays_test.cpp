@@ -8,7 +8,7 @@
 namespace tanktread::output {
 namespace {
 
-TEST(Arrays, ComeBackWithShapeAndUnit) {
+TEST(Arrays, AreReadWithShapeAndUnit) {
   const Scratch scratch;
   write_arrays(scratch / "duct.h5", {{"table", "length", "what it is", {1, 2, 3, 4, 5, 6}, {2, 3}}, {"number", "1", "", {-0.5}, {}}});
   const hdf::Id file = hdf::open(scratch / "duct.h5");

@@ -48,7 +48,7 @@ bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return true;
 }
 
-TEST(Checkpoint, ComesBackToTheLastBit) {
+TEST(Checkpoint, IsReadBitwiseEqual) {
   using limits = std::numeric_limits<double>;
   const Scratch scratch;
   const Scene scene;
@@ -103,7 +103,7 @@ TEST(Checkpoint, HoldsTheStateOfAnIntegrator) {
   EXPECT_EQ(stored_state(checkpoint).frozen_time, state.time);
 }
 
-TEST(State, IsComparedOverTheRanksToTheLastBit) {
+TEST(State, IsComparedBitwiseAcrossRanks) {
   const coupling::Ranks ranks;
   motion::State state;
   state.x = Net::Ones(5, 3);
@@ -133,7 +133,7 @@ TEST(NewestCheckpoint, PassesOverDamagedFiles) {
 }
 
 /// /proc/self/mem is a file that can be opened, but whose first byte cannot be read (EIO).
-TEST(NewestCheckpoint, IsNotLookedForBehindAFileThatTheSystemDoesNotRead) {
+TEST(NewestCheckpoint, IsNotSearchedForBeyondAFileThatCannotBeRead) {
   const Scratch scratch;
   const Scene scene;
   scene.write(scratch / snapshot_name(1), {{}, {{"time", 0.5}}, {}});
@@ -147,7 +147,7 @@ TEST(NewestCheckpoint, IsNotLookedForBehindAFileThatTheSystemDoesNotRead) {
   EXPECT_THROW(newest_checkpoint(scratch.path()), RunFailure);
 }
 
-TEST(SetAside, NeverTakesTheNameOfAnotherFile) {
+TEST(SetAside, NeverOverwritesAnotherFile) {
   const Scratch scratch;
   for (const char* name : {"a.damaged", "a.damaged.2"}) {
     write_whole(scratch / "a", name);
@@ -157,7 +157,7 @@ TEST(SetAside, NeverTakesTheNameOfAnotherFile) {
 }
 
 /// Changed bytes in unused parts of the file or in the snapshot's fields leave the checkpoint the same; others are detected.
-TEST(Checkpoint, IsRefusedOrTheSameWhateverByteOfTheFileChanged) {
+TEST(Checkpoint, IsRejectedOrUnchangedIfAnyByteOfTheFileChanges) {
   const Scratch scratch;
   const Scene scene;
   Checkpoint checkpoint;
@@ -183,7 +183,7 @@ TEST(Checkpoint, IsRefusedOrTheSameWhateverByteOfTheFileChanged) {
   EXPECT_GT(refused, 1440 / 127) << "the array alone has 1440 bytes";
 }
 
-TEST(SnapshotSeries, OfAResumedRunHoldsWhatCanBeReadAndIsOfTheRun) {
+TEST(SnapshotSeries, OfAResumedRunContainsTheReadableSnapshotsOfTheRun) {
   const Scratch scratch;
   const Scene scene;
   SnapshotSeries series(scratch.path());

@@ -34,7 +34,7 @@ TEST(LagrangeMesh, NeighboursOfOneDegreeShareTheNodesOfAnEdgeAndOthersItsCorners
   EXPECT_EQ(*used.rbegin() + 1, static_cast<std::int64_t>(mesh.sites.size()));
 }
 
-TEST(LagrangeMesh, NodesStandInTheOrderOfVtk) {
+TEST(LagrangeMesh, NodesAreInTheOrderOfVtk) {
   const Sheet sheet_;
   const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
   const std::vector<std::array<int, 2>> order{{0, 0}, {3, 0}, {3, 3}, {0, 3}, {1, 0}, {2, 0}, {3, 1}, {3, 2},
@@ -58,7 +58,7 @@ TEST(LagrangeMesh, NodesLieOnTheSurfaceWithItsExactNormals) {
   }
 }
 
-TEST(LagrangeMesh, SitesNameThePlaceOfEachNode) {
+TEST(LagrangeMesh, SitesAreTheElementsAndParametersOfTheNodes) {
   const Sheet sheet_;
   const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
   const Eigen::MatrixXd points = Nodes(surface::BezierMap(sheet_.space), mesh).values(sheet_.net);

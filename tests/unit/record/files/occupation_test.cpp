@@ -10,7 +10,7 @@
 namespace tanktread::output {
 namespace {
 
-TEST(Occupations, AreOneAtATimeAndLeaveNothingBehind) {
+TEST(Occupations, AreExclusiveAndLeaveNoFiles) {
   const Scratch scratch;
   const std::filesystem::path directory = scratch / "results";
   auto one = std::make_unique<Occupation>(directory);

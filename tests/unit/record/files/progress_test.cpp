@@ -7,13 +7,13 @@
 namespace tanktread::output {
 namespace {
 
-TEST(Progress, ALineTellsTimeStepIterationsDeformationAndTimeLeft) {
+TEST(Progress, ALineContainsTimeStepIterationsDeformationAndTimeLeft) {
   EXPECT_EQ(progress_line({3, 24, 9, 0.39871}, 0, 7.5, 12, 20),
             "[########------------]  40 %  t 3/7.5  step 24  9 iterations  D 0.3987  18 s left");
   EXPECT_EQ(progress_line({7.5, 60, 1, 0.4}, 0, 7.5, 12, 0), "100 %  t 7.5/7.5  step 60  1 iteration  D 0.4000");
 }
 
-TEST(Progress, AResumedRunCountsFromItsOwnBegin) {
+TEST(Progress, AResumedRunCountsFromItsResumption) {
   EXPECT_NE(progress_line({6, 1, 1, 0}, 5, 7, 10, 0).find(" 50 %"), std::string::npos);
   EXPECT_NE(progress_line({6, 1, 1, 0}, 5, 7, 10, 0).find("10 s left"), std::string::npos);
 }

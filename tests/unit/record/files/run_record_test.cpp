@@ -26,7 +26,7 @@ RunRecord three_series(const std::filesystem::path& path) {
   return record;
 }
 
-TEST(RunRecord, ComesBackAsItWasWritten) {
+TEST(RunRecord, IsReadAsItWasWritten) {
   const Scratch scratch;
   RunRecord record = three_series(scratch / "run.h5");
   record.append(std::array{0.0, -0.0, std::numeric_limits<double>::denorm_min()});
@@ -48,7 +48,7 @@ TEST(RunRecord, ComesBackAsItWasWritten) {
     }
 }
 
-TEST(RunRecord, GoesOnFromAnEarlierRow) {
+TEST(RunRecord, ContinuesFromAnEarlierRow) {
   const Scratch scratch;
   RunRecord whole = three_series(scratch / "whole.h5"), first = three_series(scratch / "run.h5");
   for (int k = 0; k < 6; ++k) whole.append(std::array{0.1 * k, 1. * k, std::sin(k)});
@@ -109,13 +109,13 @@ TEST(RunRecord, ItsChecksumIsOfItsFirstRowsInAnyOrderOfTheSeries) {
   EXPECT_NE(of_three, other.checksum(3));
 }
 
-TEST(RunRecord, RefusesARowOfTheWrongLength) {
+TEST(RunRecord, RejectsARowOfTheWrongLength) {
   const Scratch scratch;
   RunRecord record = three_series(scratch / "run.h5");
   EXPECT_THROW(record.append(std::array{1.0}), std::logic_error);
 }
 
-TEST(RunRecord, SaysThatADamagedFileIsOne) {
+TEST(RunRecord, ReportsADamagedFile) {
   const Scratch scratch;
   three_series(scratch / "run.h5").write();
   std::filesystem::resize_file(scratch / "run.h5", 1000);
@@ -123,7 +123,7 @@ TEST(RunRecord, SaysThatADamagedFileIsOne) {
   EXPECT_THROW(RunRecord::load(scratch / "absent.h5"), UserError);
 }
 
-TEST(RunRecord, ADiskThatRefusesIsARunFailure) { EXPECT_THROW(three_series("/proc/none/run.h5").write(), RunFailure); }
+TEST(RunRecord, AWriteErrorIsARunFailure) { EXPECT_THROW(three_series("/proc/none/run.h5").write(), RunFailure); }
 
 /// Writes rows (k, k^2, 1/k) without end, and sends through the pipe the number of the latest row written.
 [[noreturn]] void append_until_killed(const std::filesystem::path& path, int pipe) {
@@ -159,7 +159,7 @@ TEST(RunRecord, KilledAtAnyMomentHoldsEveryRowThatWasAnnounced) {
   }
 }
 
-TEST(OutputDirectory, StartsEmptyOfOldResultsAndLeavesOtherFilesAlone) {
+TEST(OutputDirectory, IsClearedOfOldResultsAndKeepsOtherFiles) {
   const Scratch scratch;
   for (const char* name : {"run.h5", "snapshot_000003.hdf", "snapshot_000004.hdf.part", "snapshot_000005.hdf.damaged.2", "summary.yaml",
                            "notes.txt", "picture.png.part"})

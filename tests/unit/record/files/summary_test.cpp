@@ -29,7 +29,7 @@ TEST(Numbers, AlwaysShowAPoint) {
   EXPECT_EQ(deck::real_text(1e22), "1.0e+22");
 }
 
-TEST(Durations, AreReadAtAGlance) {
+TEST(Durations, HaveReadableUnits) {
   EXPECT_EQ(duration(0.84), "0.8 s");
   EXPECT_EQ(duration(59.4), "59 s");
   EXPECT_EQ(duration(59.6), "1 min 00 s");
@@ -64,7 +64,7 @@ assert s['warnings'] == ['the load: "strong" # it fails']
   EXPECT_NO_THROW(printed_by("/usr/bin/python3 " + (scratch / "check.py").string() + " " + (scratch / "summary.yaml").string()));
 }
 
-TEST(Summary, OfNothingIsStillAMapOfItsParts) {
+TEST(Summary, WithoutContentIsAMapOfItsParts) {
   EXPECT_EQ(yaml(Summary{}), "status: \"done\"\nfinal: {}\nexpect: []\ncounts: {}\nseconds: {}\nplan: {}\nnumbers: {}\nwarnings: []\n");
 }
 
