@@ -4,14 +4,8 @@
 
 namespace tanktread::coupling {
 
-namespace {
-const deck::Choice motions{"material", "normal", "relaxed"};  // words for MeshMotion, in the order of its enumerators
-}  // namespace
-
-std::string word(MeshMotion motion) { return motions[static_cast<std::size_t>(motion)]; }
-
 void InterfaceOptions::declare(deck::Section& section) {
-  section.key("motion", motion, motions,
+  section.key("motion", motion, mesh_motions,
               "motion of the control points of a drop's interface. `material`: with the fluid. `normal`: only normal to the interface. "
               "`relaxed`: with the fluid in the normal direction, and tangentially so that elements keep their shape. If not "
               "given, `relaxed` for Membrane/law `surface tension`, and `material` for all other laws");
