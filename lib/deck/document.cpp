@@ -18,11 +18,11 @@ namespace tanktread::deck {
 
 namespace {
 
-void add_values(const List& list, std::map<std::string, std::string>& out) {
-  for (const Entry& entry : list.entries)
-    if (!entry.value.empty()) out[list.path_of(entry.key)] = entry.value;
-  if (list.foreign) out[list.path] = yaml_text(*list.foreign, 0);
-  for (const auto& inner : list.lists) add_values(*inner, out);
+void add_values(const Record& section, std::map<std::string, std::string>& out) {
+  for (const Entry& entry : section.entries)
+    if (!entry.value.empty()) out[section.path_of(entry.key)] = entry.value;
+  if (section.foreign) out[section.path] = yaml_text(*section.foreign, 0);
+  for (const auto& inner : section.sections) add_values(*inner, out);
 }
 
 const Teuchos::ParameterList* sublist(const Teuchos::ParameterList* list, const std::string& name) {
@@ -111,7 +111,7 @@ struct Layers {
 struct Document::Held {
   std::shared_ptr<Teuchos::ParameterList> given;
   bool documenting;
-  List root;
+  Record root;
 };
 
 Document::Document(std::shared_ptr<Teuchos::ParameterList> given, bool documenting)

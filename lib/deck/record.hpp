@@ -20,7 +20,7 @@ struct Entry {
 };
 
 /// Declaration of one section of the deck.
-struct List {
+struct Record {
   std::string name;
   std::string path;  ///< path of the section, `Flow` or `Expect/volume`; empty for the root
   std::string meaning;
@@ -28,7 +28,7 @@ struct List {
   const Teuchos::ParameterList* itself = nullptr;  ///< the section in the deck, without keys inherited through the key `like` or from `defaults`
   std::shared_ptr<Teuchos::ParameterList> merged;  ///< the section in the deck, with keys inherited through the key `like` or from `defaults`
   std::vector<Entry> entries;
-  std::vector<std::unique_ptr<List>> lists;
+  std::vector<std::unique_ptr<Record>> sections;
   std::vector<std::string> mistakes;                ///< one sentence per refused value; the key keeps its default
   std::vector<std::string> idle;                    ///< one sentence per key that is given but has no effect
   bool alike = false;                               ///< true if inner sections inherit keys through the key `like` or from `defaults`
@@ -41,33 +41,33 @@ struct List {
 /// State of a Section: the record that it fills, whether the manual is being written (`documenting`), and the units of the deck (null if the deck
 /// defines none). In the manual, sections whose names the user chooses are declared once, as `<name>`.
 struct Section::State {
-  List* list;
+  Record* record;
   bool documenting;
   std::shared_ptr<const Units> units = {};
 };
 
 /// Returns the mistakes in a section, followed by the mistakes in its inner sections. A mistake in a key that several sections inherit is reported
 /// once.
-std::vector<std::string> mistakes(const List& list);
+std::vector<std::string> mistakes(const Record& section);
 
 /// Returns the sentences about keys without effect in a section, followed by those of its inner sections, as mistakes() does.
-std::vector<std::string> idle_keys(const List& list);
+std::vector<std::string> idle_keys(const Record& section);
 
 /// Returns a sentence for each key in a section or its inner sections that is given but not declared. The sentence suggests the closest key, which
 /// may be in another section of `root`. An unknown key that several sections inherit is reported once.
-std::vector<std::string> unknown_keys(const List& list, const List& root);
+std::vector<std::string> unknown_keys(const Record& section, const Record& root);
 
 /// Returns the values of a section and its inner sections as YAML, indented by `depth` steps.
-std::string yaml_text(const List& list, int depth);
+std::string yaml_text(const Record& section, int depth);
 
 /// Returns the manual of a section and its inner sections as Markdown.
-std::string markdown_text(const List& list);
+std::string markdown_text(const Record& section);
 
 /// Returns the JSON schema of a section and its inner sections. Lines after the first are indented by `depth` steps.
-std::string schema_text(const List& list, int depth);
+std::string schema_text(const Record& section, int depth);
 
 /// Returns the given keys of a section and its inner sections as YAML, with the description above each key. Keys that are not given are listed in a
 /// comment with their defaults.
-std::string commented_text(const List& list, int depth);
+std::string commented_text(const Record& section, int depth);
 
 }  // namespace tanktread::deck

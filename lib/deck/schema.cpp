@@ -64,13 +64,13 @@ std::string key_text(const Entry& entry) {
 
 }  // namespace
 
-std::string schema_text(const List& list, int depth) {
+std::string schema_text(const Record& section, int depth) {
   const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
-  std::string properties, others = list.foreign ? "true" : "false";
+  std::string properties, others = section.foreign ? "true" : "false";
   const auto add = [&](const std::string& text) { properties += (properties.empty() ? "\n" : ",\n") + indent + "  " + text; };
-  for (const Entry& entry : list.entries) add(key_text(entry));
-  const bool shared = !list.mentioned.empty();  // true if inner sections may inherit keys, for example from the section named `defaults`
-  for (const auto& inner : list.lists) {
+  for (const Entry& entry : section.entries) add(key_text(entry));
+  const bool shared = !section.mentioned.empty();  // true if inner sections may inherit keys, for example from the section named `defaults`
+  for (const auto& inner : section.sections) {
     if (shared)
       others = R"({"type": "object"})";
     else if (inner->name == "<name>")
@@ -78,15 +78,15 @@ std::string schema_text(const List& list, int depth) {
     else
       add(in_quotes(inner->name) + ": " + schema_text(*inner, depth + 1));
   }
-  return R"({"type": "object", "description": )" + in_quotes(list.meaning) + R"(, "properties": {)" + properties +
+  return R"({"type": "object", "description": )" + in_quotes(section.meaning) + R"(, "properties": {)" + properties +
          R"(}, "additionalProperties": )" + others + "}";
 }
 
-std::string commented_text(const List& list, int depth) {
+std::string commented_text(const Record& section, int depth) {
   const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
   std::string out, others;
-  for (const Entry& entry : list.entries) {
-    if (!list.given || !list.given->getEntryPtr(entry.key)) {
+  for (const Entry& entry : section.entries) {
+    if (!section.given || !section.given->getEntryPtr(entry.key)) {
       others += (others.empty() ? "" : ", ") + entry.key + (entry.fallback.empty() ? "" : " (" + entry.fallback + ")");
       continue;
     }
@@ -94,7 +94,7 @@ std::string commented_text(const List& list, int depth) {
     out += indent + "# " + entry.meaning + unit + "\n" + indent + entry.key + ": " + entry.value + "\n";
   }
   if (!others.empty()) out += indent + "# and, with their defaults: " + others + "\n";
-  for (const auto& inner : list.lists)
+  for (const auto& inner : section.sections)
     if (inner->given && !inner->foreign) out += indent + inner->name + ":\n" + commented_text(*inner, depth + 1);
   return out;
 }

@@ -123,21 +123,21 @@ struct Held<std::optional<Field>> {
 
 /// Records the declaration of a key of any type. `read` converts the given entry to a value; if it throws UserError, the field keeps its default.
 template <class Field, class Read>
-void state(List& list, std::string_view name, Field& field, const std::string& values, std::string_view unit, std::string_view meaning,
+void state(Record& record, std::string_view name, Field& field, const std::string& values, std::string_view unit, std::string_view meaning,
            const Read& read) {
   Entry entry{std::string(name), Held<Field>::text(field), values, std::string(unit), std::string(meaning), {}};
-  if (const Teuchos::ParameterEntry* given = list.given ? list.given->getEntryPtr(entry.key) : nullptr) try {
-      field = read(list.path_of(name), *given);
+  if (const Teuchos::ParameterEntry* given = record.given ? record.given->getEntryPtr(entry.key) : nullptr) try {
+      field = read(record.path_of(name), *given);
     } catch (const UserError& error) {
-      list.mistakes.emplace_back(error.what());
+      record.mistakes.emplace_back(error.what());
     }
   entry.value = Held<Field>::text(field);
-  list.entries.push_back(std::move(entry));
+  record.entries.push_back(std::move(entry));
 }
 
 /// Returns the section of this name, completed by the keys of the section that its key `like` names. Without the key `like`, it is completed by the
 /// keys of the section `defaults`, if there is one. `above`: names of the sections whose `like` led to this section, to detect a cycle.
-std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::string& name, std::vector<std::string> above) {
+std::shared_ptr<Teuchos::ParameterList> with_shared(const Record& all, const std::string& name, std::vector<std::string> above) {
   const std::string path = all.path_of(name);
   const auto* entry = all.given->getEntryPtr(name);
   if (!entry->isList()) throw UserError(path + " must be a section of keys, but is " + description(*entry) + ".");
@@ -182,7 +182,7 @@ template <class Field>
 void Section::key(std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
   using Value = typename Held<Field>::Value;
   const std::string values = is_single<Value> ? (is_whole<Value> ? "whole, " : "") + rule.text : with_rule(kind<Value>(), rule, true);
-  state(*state_->list, name, field, values, unit, meaning,
+  state(*state_->record, name, field, values, unit, meaning,
         [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked<Value>(path, entry, rule, unit, state_->units.get()); });
 }
 
@@ -198,7 +198,7 @@ template void Section::key(std::string_view, std::optional<Mat3>&, const Rule&, 
 template void Section::key(std::string_view, std::optional<std::vector<double>>&, const Rule&, std::string_view, std::string_view);
 
 void Section::key(std::string_view name, bool& field, std::string_view meaning) {
-  state(*state_->list, name, field, "true or false", "", meaning, [](const std::string& path, const Teuchos::ParameterEntry& entry) {
+  state(*state_->record, name, field, "true or false", "", meaning, [](const std::string& path, const Teuchos::ParameterEntry& entry) {
     const auto truth = as_truth(entry);
     if (!truth) refuse(path, "true or false", "", description(entry));
     return *truth;
@@ -209,7 +209,7 @@ template <class Field>
 void Section::key(std::string_view name, Field& field, const Choice& choice, std::string_view meaning) {
   std::string values;
   for (const std::string& word : choice) values += (values.empty() ? "`" : ", `") + word + "`";
-  state(*state_->list, name, field, choice.empty() ? "text" : values, "", meaning,
+  state(*state_->record, name, field, choice.empty() ? "text" : values, "", meaning,
         [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
           const auto text = as_text(entry);
           if (!text && choice.empty()) refuse(path, "text (in quotes)", "", description(entry));
@@ -224,17 +224,17 @@ template void Section::key(std::string_view, std::string&, const Choice&, std::s
 template void Section::key(std::string_view, std::optional<std::string>&, const Choice&, std::string_view);
 
 void Section::without_effect(const std::vector<std::string>& names, const std::string& because) {
-  List& list = *state_->list;
-  for (const Entry& entry : list.entries)
+  Record& record = *state_->record;
+  for (const Entry& entry : record.entries)
     if (std::ranges::count(names, entry.key) > 0 && entry.value != entry.fallback)
-      list.idle.push_back(list.path_of(entry.key) + " has no effect " + because + ": remove the key.");
+      record.idle.push_back(record.path_of(entry.key) + " has no effect " + because + ": remove the key.");
 }
 
-std::vector<std::string> Section::idle_keys() const { return deck::idle_keys(*state_->list); }
+std::vector<std::string> Section::idle_keys() const { return deck::idle_keys(*state_->record); }
 
 Section Section::enter(std::string_view name, std::string_view meaning) {
-  List& outer = *state_->list;
-  auto inner = std::make_unique<List>();
+  Record& outer = *state_->record;
+  auto inner = std::make_unique<Record>();
   inner->name = name;
   inner->path = outer.path_of(name);
   inner->meaning = meaning;
@@ -244,50 +244,50 @@ Section Section::enter(std::string_view name, std::string_view meaning) {
     else
       outer.mistakes.push_back(inner->path + " must be a section of keys, but is " + description(*entry) + ".");
   }
-  outer.lists.push_back(std::move(inner));
-  return Section(std::make_shared<State>(State{outer.lists.back().get(), state_->documenting, state_->units}));
+  outer.sections.push_back(std::move(inner));
+  return Section(std::make_shared<State>(State{outer.sections.back().get(), state_->documenting, state_->units}));
 }
 
 void Section::foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning) {
   Section inner = enter(name, meaning);
-  List& list = *inner.state_->list;
+  Record& record = *inner.state_->record;
   auto merged = field ? std::make_shared<Teuchos::ParameterList>(*field) : std::make_shared<Teuchos::ParameterList>();
-  if (list.given) overlay(*merged, *list.given);
-  merged->setName(list.name);
-  field = list.foreign = std::move(merged);
+  if (record.given) overlay(*merged, *record.given);
+  merged->setName(record.name);
+  field = record.foreign = std::move(merged);
 }
 
 void Section::take(std::shared_ptr<const Units> units) { state_->units = std::move(units); }
 
-void Section::mention(std::string_view list) { state_->list->mentioned.emplace_back(list); }
+void Section::mention(std::string_view name) { state_->record->mentioned.emplace_back(name); }
 
 void Section::each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use, bool alike) {
-  List& list = *state_->list;
-  list.alike = alike;
-  if (alike) list.mentioned.emplace_back("defaults");
+  Record& record = *state_->record;
+  record.alike = alike;
+  if (alike) record.mentioned.emplace_back("defaults");
   std::vector<std::string> names;
-  if (list.given)
-    for (const auto& item : *list.given)
+  if (record.given)
+    for (const auto& item : *record.given)
       if (!alike || item.first != "defaults") names.push_back(item.first);
   if (state_->documenting) names = {"<name>"};
   for (const std::string& name : names) {
     Section inner = enter(name, meaning);
-    List& one = *inner.state_->list;
+    Record& one = *inner.state_->record;
     one.itself = one.given;
-    if (alike && one.given) one.merged = with_shared(list, name, {}), one.given = one.merged.get();
+    if (alike && one.given) one.merged = with_shared(record, name, {}), one.given = one.merged.get();
     use(name, inner);
   }
 }
 
-bool Section::given(std::string_view name) const { return state_->list->given && state_->list->given->isParameter(std::string(name)); }
+bool Section::given(std::string_view name) const { return state_->record->given && state_->record->given->isParameter(std::string(name)); }
 
 void Section::leave_out(std::string_view name) {
-  List& list = *state_->list;
-  if (list.merged && !list.itself->isParameter(std::string(name))) list.merged->remove(std::string(name), false);
+  Record& record = *state_->record;
+  if (record.merged && !record.itself->isParameter(std::string(name))) record.merged->remove(std::string(name), false);
 }
 
 bool Section::documenting() const { return state_->documenting; }
 
-std::string Section::path(std::string_view name) const { return name.empty() ? state_->list->path : state_->list->path_of(name); }
+std::string Section::path(std::string_view name) const { return name.empty() ? state_->record->path : state_->record->path_of(name); }
 
 }  // namespace tanktread::deck

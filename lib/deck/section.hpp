@@ -32,6 +32,12 @@ Rule between(double low, double high);  ///< both ends included
 /// Allowed values of a text. If empty, any text is allowed.
 using Choice = std::vector<std::string>;
 
+/// Returns the word for an enumerator. `words` are in the order of the enumerators.
+template <class Enumeration>
+const std::string& word(const Choice& words, Enumeration enumerator) {
+  return words[static_cast<std::size_t>(enumerator)];
+}
+
 /// A section (YAML mapping) of the deck, which is being read, checked or documented. An options struct declares its keys once:
 ///
 ///   void Options::declare(deck::Section& s) {
@@ -52,23 +58,22 @@ class Section {
   template <class Field>
   void key(std::string_view name, Field& field, const Choice& choice, std::string_view meaning);
 
-  /// Declares a key whose value is an enumerator. `words` are the names of the enumerators in their order.
-  template <class Field>
-    requires std::is_enum_v<Field>
-  void key(std::string_view name, Field& field, const Choice& words, std::string_view meaning) {
-    std::string word = words[static_cast<std::size_t>(field)];
-    key(name, word, words, meaning);
-    field = static_cast<Field>(std::find(words.begin(), words.end(), word) - words.begin());
-  }
-
-  /// Declares a key whose value is an enumerator, or nothing if the key is not given.
+  /// Declares a key whose value is an enumerator; if `field` is optional, the key need not have a value. `words` are the words for the enumerators in
+  /// their order.
   template <class Field>
     requires std::is_enum_v<Field>
   void key(std::string_view name, std::optional<Field>& field, const Choice& words, std::string_view meaning) {
-    std::optional<std::string> word;
-    if (field) word = words[static_cast<std::size_t>(*field)];
-    key(name, word, words, meaning);
-    if (word) field = static_cast<Field>(std::find(words.begin(), words.end(), *word) - words.begin());
+    std::optional<std::string> text;
+    if (field) text = word(words, *field);
+    key(name, text, words, meaning);
+    if (text) field = static_cast<Field>(std::find(words.begin(), words.end(), *text) - words.begin());
+  }
+  template <class Field>
+    requires std::is_enum_v<Field>
+  void key(std::string_view name, Field& field, const Choice& words, std::string_view meaning) {
+    std::optional<Field> value = field;
+    key(name, value, words, meaning);
+    field = *value;
   }
 
   void key(std::string_view name, bool& field, std::string_view meaning);
@@ -102,7 +107,7 @@ class Section {
   void take(std::shared_ptr<const Units> units);
 
   /// Allows a name in this section that is not declared. Messages about unknown keys list this name among the allowed names.
-  void mention(std::string_view list);
+  void mention(std::string_view name);
 
   /// Declares sections whose names the user chooses (Expect/<name>), by calling `use` with each name and its section. If `alike`, keys that a section
   /// does not set are taken from the section named by its key `like`, or from the section `defaults` if it has no key `like`. `use` is not called for

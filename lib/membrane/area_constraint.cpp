@@ -37,8 +37,8 @@ AreaConstraint::AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& 
   for (Eigen::Index i = 0; i < mobility_.size(); ++i) mobility_[i] = mobility[i / 3];
 }
 
-// Returns the conditions t and their scaled gradient D (4.25) at the shape x. A displacement u changes the invariant I2 by 2 J_s^2 g^ab x_,a . u_,b,
-// where J_s^2 g^ab is the cofactor matrix of g_ab divided by |G|.
+/// Returns the conditions t and their scaled gradient D (4.25) at the shape x. A displacement u changes the invariant I2 by 2 J_s^2 g^ab x_,a . u_,b,
+/// where J_s^2 g^ab is the cofactor matrix of g_ab divided by |G|.
 AreaConstraint::Rows AreaConstraint::rows(const Net& x) const {
   Rows result{{static_cast<Eigen::Index>(points_.size()), 3 * x.rows()}, Eigen::VectorXd(points_.size())};
   std::vector<Eigen::Triplet<double>> entries;
@@ -73,17 +73,16 @@ void AreaConstraint::factor(double time) {
 
 /// Returns the displacement time m D'(1 + time D m D')^-1 y, shape (N, 3). y: one value per Gauss point. `time`: argument of factor(). D: gradient of
 /// the area conditions, D' its transpose. m: mobility. If y = D r, this is the part of the displacement r that the operator P (4.25) removes.
-Net AreaConstraint::taken(const Eigen::VectorXd& at_points) const {
-  const Eigen::VectorXd all = time_ * mobility_.cwiseProduct(now_.d.transpose() * system_.solve(at_points));
-  return Eigen::Map<const Net>(all.data(), all.size() / 3, 3);
+Net AreaConstraint::removed(const Eigen::VectorXd& at_points) const {
+  return as_net(time_ * mobility_.cwiseProduct(now_.d.transpose() * system_.solve(at_points)));
 }
 
-void AreaConstraint::bring(Net& x, const Net& like, double time) {
+void AreaConstraint::restore_areas(Net& x, const Net& like, double time) {
   const Eigen::VectorXd wanted = rows(like).t;
   set_shape(x);
   for (int k = 0; k < 2; ++k) {
     factor(time);
-    x -= taken(now_.t - wanted);
+    x -= removed(now_.t - wanted);
     set_shape(x);
   }
 }

@@ -37,12 +37,12 @@ class AreaConstraint {
   void factor(double time);
 
   /// Returns P r, with the operator P of (4.25).
-  Net apply(const Net& r) const { return r - taken(now_.d * Eigen::Map<const Eigen::VectorXd>(r.data(), r.size())); }
+  Net apply(const Net& r) const { return r - removed(now_.d * flat(r)); }
 
   /// Moves the shape x so that the area at every Gauss point nearly equals the area in the shape `like`. Takes two steps with the operator P (4.25),
   /// for which `time` is the argument of factor(). The remaining area error is of second order in the initial error. Afterwards, t and D are
   /// evaluated at the new x, as by set_shape(x).
-  void bring(Net& x, const Net& like, double time);
+  void restore_areas(Net& x, const Net& like, double time);
 
  private:
   struct Point {
@@ -56,7 +56,7 @@ class AreaConstraint {
     Eigen::VectorXd t;
   };
   Rows rows(const Net& x) const;
-  Net taken(const Eigen::VectorXd& at_points) const;
+  Net removed(const Eigen::VectorXd& at_points) const;
 
   const spline::Space* space_;
   std::vector<Point> points_;

@@ -99,7 +99,7 @@ void MassMatrix::release() {
 }
 
 const Eigen::SparseMatrix<double>& MassMatrix::update(const Net& x) {
-  if (updated_.rows() == x.rows() && updated_ == x) return matrix_;
+  if (same(updated_, x)) return matrix_;
   updated_ = x;
   if (slots_.empty()) {
     matrix_ = pattern(*space_);

@@ -211,9 +211,29 @@ Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstress
   return result;
 }
 
-struct Tangent::Points {
+namespace {
+
+/// Stresses in the surface that are linear in a displacement or a velocity u, at the Gauss points of a set of elements.
+struct LinearStresses {
   std::shared_ptr<const Part> part;
-  std::vector<std::vector<TangentPoint>> of_group;
+  std::vector<std::vector<TangentPoint>> of_group;  // empty for groups without these stresses
+
+  /// Sets `sum` to the virtual work of the stresses due to u, one row per control point of the n_points points of the surface.
+  void apply(int n_points, const Net& u, Net& sum) const {
+    sum.setZero(n_points, 3);
+    part->each_batch([&](const Part::Points& at) {
+      if (of_group[at.g].empty()) return;
+      Pack gradient[6 * max_gauss], p[6 * max_gauss];
+      tangents(at.group, at.batch, u, gradient);
+      membrane::apply(at.n, &of_group[at.g][at.first], gradient, p);
+      add_transpose(at.group, at.batch, p, sum);
+    });
+  }
+};
+
+}  // namespace
+
+struct Tangent::Points : LinearStresses {
   std::vector<std::vector<Pack>> jets;  // per group: derivatives of x up to the second order at the Gauss points; only with bending
 };
 
@@ -239,13 +259,7 @@ void Tangent::update(const Net& x, std::span<const int> elements) {
 }
 
 void Tangent::apply(const Net& u, Net& hu) const {
-  hu.setZero(membrane_->space().n_points, 3);
-  points_->part->each_batch([&](const Part::Points& at) {
-    Pack gradient[6 * max_gauss], p[6 * max_gauss];
-    tangents(at.group, at.batch, u, gradient);
-    membrane::apply(at.n, &points_->of_group[at.g][at.first], gradient, p);
-    add_transpose(at.group, at.batch, p, hu);
-  });
+  points_->apply(membrane_->space().n_points, u, hu);
   points_->part->each_bending_batch([&](const Part::Points& at) {
     Pack gradient[15 * max_gauss], p[15 * max_gauss];
     jets(at.group, at.batch, u, gradient);
@@ -255,10 +269,7 @@ void Tangent::apply(const Net& u, Net& hu) const {
   });
 }
 
-struct ViscousLoad::Points {
-  std::shared_ptr<const Part> part;
-  std::vector<std::vector<TangentPoint>> of_group;  // empty for groups without viscosity
-};
+struct ViscousLoad::Points : LinearStresses {};
 
 ViscousLoad::ViscousLoad(const Membrane& membrane) : membrane_(&membrane), points_(std::make_unique<Points>()) {}
 ViscousLoad::~ViscousLoad() = default;
@@ -278,16 +289,7 @@ void ViscousLoad::update(const Net& x, std::span<const int> elements) {
   });
 }
 
-void ViscousLoad::apply(const Net& v, Net& cv) const {
-  cv.setZero(membrane_->space().n_points, 3);
-  points_->part->each_batch([&](const Part::Points& at) {
-    if (points_->of_group[at.g].empty()) return;
-    Pack gradient[6 * max_gauss], p[6 * max_gauss];
-    tangents(at.group, at.batch, v, gradient);
-    membrane::apply(at.n, &points_->of_group[at.g][at.first], gradient, p);
-    add_transpose(at.group, at.batch, p, cv);
-  });
-}
+void ViscousLoad::apply(const Net& v, Net& cv) const { points_->apply(membrane_->space().n_points, v, cv); }
 
 Net unstressed(const Net& rest, const Vec3& centre, double alpha) {
   return ((rest.rowwise() - centre.transpose()) / (1 + alpha)).rowwise() + centre.transpose();

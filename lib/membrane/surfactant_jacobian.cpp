@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "membrane/dual.hpp"
+#include "membrane/packed.hpp"
 #include "membrane/surfactant.hpp"
 #include "membrane/surfactant_kernel.hpp"
 
@@ -10,8 +11,7 @@ namespace tanktread::membrane {
 
 namespace {
 
-constexpr std::size_t most_gauss_points = 144, functions_of_element = 64;  // per element
-constexpr double shift_ratio = 1.25;                           // ratio of neighbouring values of the shift for which solve() computes factors
+constexpr double shift_ratio = 1.25;  // ratio of neighbouring values of the shift for which solve() computes factors
 
 /// Returns the power of shift_ratio that is nearest to `spread`, the shift times the diffusivity divided by the initial area. Factors
 /// computed for this power serve all shifts close to it. The result depends neither on earlier shifts nor on units.
@@ -36,7 +36,7 @@ struct Surfactant::Point {
 /// numbers, with their derivatives along (dx, dc).
 template <class Use>
 void Surfactant::each_change(const Net& dx, const Eigen::VectorXd& dc, const Use& use) const {
-  double s[4 * most_gauss_points], t[4 * most_gauss_points], c[most_gauss_points];
+  double s[4 * max_gauss], t[4 * max_gauss], c[max_gauss];
   for (std::size_t e = 0; e < known_.size(); ++e) {
     const ElementPoints& at = known_[e];
     const std::vector<int>& points = space_.elements[e].points;
@@ -77,7 +77,7 @@ void Surfactant::linearise(const Net& slip) {
 Eigen::VectorXd Surfactant::value_change(const Net& dx, const Eigen::VectorXd& dq) const {
   Eigen::VectorXd content = share_.cwiseProduct(dq);
   each_change(dx, Eigen::VectorXd::Zero(dq.size()), [&](std::size_t e, const ElementPoints& at, const auto& point) {
-    double spread[most_gauss_points], none[most_gauss_points] = {}, rows[functions_of_element];
+    double spread[max_gauss], none[max_gauss] = {}, rows[spline::most_functions];
     for (int q = 0; q < at.n; ++q) spread[q] = -at.c[static_cast<std::size_t>(q)] * point(q).area.slope;
     test(1, at.n, at.functions, at.value.data(), at.value.data(), spread, none, rows);
     add_rows(e, rows, content);
@@ -88,7 +88,7 @@ Eigen::VectorXd Surfactant::value_change(const Net& dx, const Eigen::VectorXd& d
 Net Surfactant::load_change(const Net& dx, const Eigen::VectorXd& dc) const {
   Net d = Net::Zero(space_.n_points, 3);
   each_change(dx, dc, [&](std::size_t e, const ElementPoints& at, const auto& point) {
-    double along_s[3 * most_gauss_points], along_t[3 * most_gauss_points], rows[3 * functions_of_element];
+    double along_s[3 * max_gauss], along_t[3 * max_gauss], rows[3 * spline::most_functions];
     for (int q = 0; q < at.n; ++q) {
       const Point p = point(q);
       const Changing tension{options_.tension(p.c.value) - 1, options_.tension_slope(p.c.value) * p.c.slope};
@@ -107,7 +107,7 @@ Net Surfactant::load_change(const Net& dx, const Eigen::VectorXd& dc) const {
 Eigen::VectorXd Surfactant::rate_change(const Net& dx, const Eigen::VectorXd& dc, const Net& slip_change) const {
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(space_.n_points);
   each_change(dx, dc, [&](std::size_t e, const ElementPoints& at, const auto& point) {
-    double dw[3 * most_gauss_points] = {}, along_s[most_gauss_points], along_t[most_gauss_points], rows[functions_of_element];
+    double dw[3 * max_gauss] = {}, along_s[max_gauss], along_t[max_gauss], rows[spline::most_functions];
     if (slip_change.rows() > 0)
       sample(3, at.n, at.functions, at.value.data(), RowMajor(slip_change(space_.elements[e].points, Eigen::all)).data(), dw);
     for (int q = 0; q < at.n; ++q) {
@@ -140,10 +140,10 @@ Eigen::SparseMatrix<double> Surfactant::stiffness() const {
     const ElementPoints& at = elements_[e];
     const std::vector<int>& points = space_.elements[e].points;
     for (std::size_t b = 0; b < points.size(); ++b) {
-      double along_s[most_gauss_points], along_t[most_gauss_points], rows[functions_of_element];
+      double along_s[max_gauss], along_t[max_gauss], rows[spline::most_functions];
       for (int q = 0; q < at.n; ++q) {
-        const std::size_t place = b * static_cast<std::size_t>(at.n) + static_cast<std::size_t>(q);
-        const auto [up_s, up_t] = at.raised(q, at.by_s[place], at.by_t[place]);
+        const std::size_t index = b * static_cast<std::size_t>(at.n) + static_cast<std::size_t>(q);
+        const auto [up_s, up_t] = at.raised(q, at.by_s[index], at.by_t[index]);
         along_s[q] = at.area()[q] * up_s, along_t[q] = at.area()[q] * up_t;
       }
       test(1, at.n, at.functions, at.by_s.data(), at.by_t.data(), along_s, along_t, rows);

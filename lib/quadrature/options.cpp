@@ -8,17 +8,11 @@
 
 namespace tanktread::quadrature {
 
-namespace {
-const deck::Choice rules{"adaptive", "fixed", "desingularised"};  // words for LayerRule, in the order of its enumerators
-}  // namespace
-
-std::string word(LayerRule rule) { return rules[static_cast<std::size_t>(rule)]; }
-
 void Options::declare(deck::Section& section) {
   section.key("tolerance", tolerance, deck::between(1e-13, 0.1), "1",
               "relative accuracy requested of every boundary integral (single and double layer) with Quadrature/rule `adaptive`. The error "
               "of the velocity is mostly less than a fifth of the tolerance, and less than a hundredth for tolerances of 1e-3 and above");
-  section.key("rule", rule, rules,
+  section.key("rule", rule, layer_rules,
               "quadrature of the boundary integrals (single and double layer). `adaptive`: integrals over singular, near-singular and far "
               "elements meet Quadrature/tolerance. `fixed`: Gauss rule with Quadrature/points per direction, with the Lachat-Watson "
               "transformation on singular elements, as by Maestre et al. (2017). `desingularised`: the same Gauss points; the singularity "

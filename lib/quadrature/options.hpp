@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "deck/forward.hpp"
 
@@ -11,7 +12,7 @@ namespace tanktread::quadrature {
 /// singularity subtracted by identities.
 enum class LayerRule { adaptive, fixed, desingularised };
 
-std::string word(LayerRule rule);  ///< returns the value of the key `rule`
+inline const std::vector<std::string> layer_rules{"adaptive", "fixed", "desingularised"};  ///< words for LayerRule in decks
 
 /// Options of the quadrature of layer integrals: `Quadrature/*` of the deck.
 struct Options {

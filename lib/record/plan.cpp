@@ -8,6 +8,7 @@
 
 #include "base/formatted.hpp"
 #include "base/instruction_set.hpp"
+#include "deck/section.hpp"
 #include "deck/units.hpp"
 #include "membrane/strain_energy.hpp"
 #include "scene/member.hpp"
@@ -353,7 +354,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                        formatted(scene.contact.limiter ? "gaps between particles are kept at %g R_C or above by repulsive forces (4.23)"
                                                        : "a gap between particles below %g R_C ends the run; no contact forces",
                                  scene.contact.limit));
-  lines.emplace_back("volume", word(scene.volume.constraint) + (several ? ", of each" : ""));
+  lines.emplace_back("volume", deck::word(coupling::volume_constraints, scene.volume.constraint) + (several ? ", of each" : ""));
   if (scene.runs_in_time())
     lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
   else

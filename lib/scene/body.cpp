@@ -79,7 +79,7 @@ FlowPlane flow_plane(const stokes::FlowOptions& flow) {
     plane.of_shear = axes_of_shear(l);
     return plane;
   }
-  const Vec3 vorticity(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1));
+  const Vec3 vorticity = axial_vector(l);
   FlowPlane plane = vorticity.norm() > 1e-10 * l.norm() ? plane_normal_to(vorticity) : FlowPlane();
   plane.holds_flow = false;
   return plane;

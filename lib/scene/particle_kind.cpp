@@ -163,7 +163,7 @@ void ParticleKind::reject(const ParticleScene& scene, Rejections& to) const {
   to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain,
           "the normal is not defined at the pole of a degenerate element");
   to.pair(!drop && scene.interface_motion() != coupling::MeshMotion::material,
-          {"Interface/motion `" + word(scene.interface_motion()) + "`", "Interface/motion other than `material`"}, law,
+          {"Interface/motion `" + deck::word(coupling::mesh_motions, scene.interface_motion()) + "`", "Interface/motion other than `material`"}, law,
           "an elastic membrane moves with the fluid, `material`");
   to.pair(surfactant && (rigid || !drop), "Interface/surfactant",
           {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"},

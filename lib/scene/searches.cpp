@@ -60,7 +60,7 @@ void reject_searches(const ParticleScene& scene, Rejections& to) {
   to.pair(search && !scene.posts.empty(), scene.sought(), "Particle/shape `cylinder`",
           "a particle among posts drifts past them, so that no shape is steady");
   to.pair(search && scene.volume.constraint != coupling::VolumeConservation::exact, scene.sought(),
-          {"Volume/constraint `" + word(scene.volume.constraint) + "`", "Volume/constraint other than `exact`"},
+          {"Volume/constraint `" + deck::word(coupling::volume_constraints, scene.volume.constraint) + "`", "Volume/constraint other than `exact`"},
           "the volume must be conserved exactly, because it distinguishes between steady shapes");
   to.pair(search && drop && scene.interface_motion() == coupling::MeshMotion::material, scene.sought(), "Interface/motion `material`",
           "mesh points that move along the interface with the fluid do not become steady; give `normal` or `relaxed`");

@@ -79,7 +79,7 @@ void WallOptions::reject(const ParticleScene& scene, Rejections& to) const {
           "the wall of a duct is given in a section Tube or Channel");
   to.pair(scene.tube.present, "Wall", scene.duct_choice(), "a plane wall is represented by images, which need a fluid without other walls");
   to.pair(scene.quadrature.rule != quadrature::LayerRule::adaptive, "Wall",
-          {"Quadrature/rule `" + word(scene.quadrature.rule) + "`", "Quadrature/rule `fixed` or `desingularised`"},
+          {"Quadrature/rule `" + deck::word(quadrature::layer_rules, scene.quadrature.rule) + "`", "Quadrature/rule `fixed` or `desingularised`"},
           "the film at a wall needs quadrature to a tolerance; give `adaptive`");
   to.pair(!scene.runs_in_time() && !distance, scene.sought(), {"Wall", "Wall without Wall/distance"},
           "a deformable particle next to a single wall moves away from it or towards it, so that no shape is steady");

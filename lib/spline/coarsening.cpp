@@ -163,11 +163,7 @@ struct Remover {
 
 TMesh take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removable, const RepairRules& rules) {
   Remover r{mesh, removable, rules.images};
-  bool going = true;
-  while (going) {
-    going = r.remove_bays();
-    if (!going) going = r.double_rings();
-  }
+  while (r.remove_bays() || r.double_rings()) continue;
   r.restore_ends();
   ExtendedMesh extended(std::move(r.mesh));
   repair(extended, rules);

@@ -19,7 +19,7 @@
 #include "spline/basis.hpp"
 #include "spline/lattice.hpp"
 #include "spline/limits.hpp"
-#include "spline/places.hpp"
+#include "spline/point_search.hpp"
 
 namespace tanktread::spline {
 
@@ -125,7 +125,7 @@ Site place_of_element(std::size_t p) { return {int(p / 9), p % 3 / 2.0, p % 9 / 
 std::vector<int> numbered_places(const Space& space, const Net& net) {
   std::vector<Vec3> all;
   for (std::size_t p = 0; p < 9 * space.elements.size(); ++p) all.push_back(frame(space, net, place_of_element(p)).x);
-  const Places places(std::move(all), 1e-7 * extent(net));
+  const PointSearch places(std::move(all), 1e-7 * extent(net));
   std::vector<int> numbers;
   for (const Vec3& x : places.all()) numbers.push_back(places.at(x));
   return numbers;

@@ -97,11 +97,8 @@ class LayerSources {
  private:
   /// The unstressed surface.
   struct Reference {
-    std::vector<double> bezier,
-        weight;                 // bezier: Bezier points of the unstressed surface. weight: quadrature weights of this surface at the far
-                                // nodes, areas included
-    std::vector<bool> present;  // used with Measure::by_element; one entry per element: true if the density is per current area of the
-                                // element, false if it is per unstressed area
+    std::vector<double> bezier, weight;  // Bezier points, and quadrature weights at the far nodes, which include the area
+    std::vector<bool> present;           // for Measure::by_element: for each element, whether the density is per current area
   };
   template <class Values>
   void set_moments_of(const Values& f);

@@ -111,7 +111,7 @@ void LayerSurface::set_symmetry(const surface::Symmetry& symmetry) {
 }
 
 bool LayerSurface::set_shape(const Net& x) {
-  if (x.rows() == placed_.rows() && x == placed_) return false;
+  if (same(x, placed_)) return false;
   placed_ = x;
   panels.bezier(x, bezier);
   node_values(panels, bezier, node);

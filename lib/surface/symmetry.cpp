@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/indices.hpp"
-#include "spline/places.hpp"
+#include "spline/point_search.hpp"
 #include "surface/bezier_points.hpp"
 
 namespace tanktread::surface {
@@ -134,7 +134,7 @@ class ImageSearch {
   double size_;
   BezierMap map_;
   std::vector<Eigen::MatrixX3d> bezier_;  // Bezier points of each element
-  spline::Places points_, centres_;
+  spline::PointSearch points_, centres_;
   Image image_;
 };
 

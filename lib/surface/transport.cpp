@@ -61,7 +61,7 @@ struct Circuit {
     turned += passed * (y[2] * moves[0] - y[0] * moves[2]) / (y[0] * y[0] + y[2] * y[2]);
   }
 
-  Treading treading() const {
+  TankTreading treading() const {
     if (!(length > 0)) return {};
     const bool turns = weight > 0 && std::isfinite(weight) && (elastic || onwards != backwards);
     return {circulation / length, turns ? turned / weight : 0};
@@ -84,7 +84,7 @@ struct Sums {
 
 }  // namespace
 
-Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre) {
+TankTreading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre) {
   Circuit circuit{centre, of_centre, unstressed != nullptr};
   // points are treated as points of the plane x2 = centre_2 if their distance from it is below this tolerance
   const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();

@@ -10,7 +10,7 @@ namespace tanktread::surface {
 
 /// Tank-treading of a surface, as means over the section curve: the intersection of the surface with the plane x2 = centre_2 through the centroid.
 /// Velocity and frequency are positive if the side of larger x3 moves in the direction of x1: clockwise with x1 to the right and x3 up.
-struct Treading {
+struct TankTreading {
   double velocity = 0;   ///< mean tangential velocity V_T (6.5), along e2 x n
   double frequency = 0;  ///< mean angular velocity omega (6.6) of the material points on this curve, radians/time
 };
@@ -20,7 +20,7 @@ struct Treading {
 /// mean frequency is weighted by length on the net `unstressed`. If `unstressed` is null, the weight of a part of the section curve is the time that
 /// a material point needs to pass it, and the frequency is zero if some point is at rest. The section curve is computed on a grid of flat triangles
 /// with six intervals per element and direction; the relative error is about 1e-4 on coarse meshes.
-Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre);
+TankTreading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre);
 
 /// Returns the sums over the given elements of the integrals that shape_velocity() needs, for a surface with control net x that moves with velocity
 /// v. The results for disjoint sets of elements add up to the result for the whole surface. The integrals use three Gauss points per direction.

@@ -10,12 +10,6 @@
 
 namespace tanktread::coupling {
 
-namespace {
-
-bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
-
-}  // namespace
-
 /// Sets the time. Cached results are kept unless the flow or the cell changes.
 void Capsule::at(double time, double start) {
   const bool other_flow = surroundings_.flow.at(time, start), other_cell = parameters_.cell && deform_cell(time);
@@ -26,32 +20,30 @@ void Capsule::at(double time, double start) {
 /// the surface integrals of the loads, summed over all ranks.
 Net Capsule::work_of_loads(const Net& x, std::vector<Net>& sums) {
   Net work = membranes_.work(x, sums);
-  for (const Net& of_forces : work_of_forces_)
-    if (of_forces.size() > 0) work -= of_forces;
+  for (const Net* of_forces : {&forces_.contacts, &forces_.fields})
+    if (of_forces->size() > 0) work -= *of_forces;
   clear_rigid(particles(), work);  // rows of rigid bodies are 0; push_bodies() applies the forces on rigid bodies instead
   return work;
 }
 
-void Capsule::set_forces(Forces of, Net work) {
-  Net& known = work_of_forces_[static_cast<std::size_t>(of)];
-  if (same(work, known)) return;
-  known = std::move(work);
+void Capsule::set_forces(Net Forces::* of, Net work) {
+  if (same(work, forces_.*of)) return;
+  forces_.*of = std::move(work);
   latest_.reset();
 }
 
 Net Capsule::response(Evaluation& at, const Net& work) {
-  Net& contacts = work_of_forces_[static_cast<std::size_t>(Forces::contacts)];
-  const Net base = at.velocity(), before = contacts;
-  set_forces(Forces::contacts, before.size() > 0 ? Net(before + work) : work);
+  const Net base = at.velocity(), before = forces_.contacts;
+  set_forces(&Forces::contacts, before.size() > 0 ? Net(before + work) : work);
   const Net change = velocity(at.x()) - base;
-  set_forces(Forces::contacts, before);
+  set_forces(&Forces::contacts, before);
   return change;
 }
 
 /// Sets the contact forces on rigid bodies and the forces of their loads (Particle::loads), in addition to the prescribed forces on the bodies.
 void Capsule::push_bodies(const Net& x) {
   if (bodies_.rigid.empty()) return;
-  Net push = work_of_forces_[static_cast<std::size_t>(Forces::contacts)];
+  Net push = forces_.contacts;
   if (std::ranges::any_of(particles(), [](const Particle& one) { return one.rigid && !one.loads.empty(); })) {
     Net work = Net::Zero(x.rows(), 3);
     membranes_.complete_work(x, work);
@@ -293,12 +285,17 @@ void Capsule::restore_volume(Net& x) {
 
 double Capsule::distance(const Net& from, const Net& to) const { return norm(Corotation::deformation(particles(), from, to)); }
 
+bool Capsule::evaluated_about(const Net& x, double distance) const {
+  if (!latest_) return false;
+  Net moved = x - latest_->x();
+  if (duct_.tube && !duct_.tube->fixed()) moved.col(0).array() -= moved.col(0).mean();
+  return norm(moved) <= distance;
+}
+
 double Capsule::norm(const Net& displacement) const {
-  const double along = duct_.tube && !duct_.tube->fixed() ? displacement.col(0).mean() : 0;
   double largest = 0;
   for (const Particle& particle : particles()) {
-    const Net moved = particle.block.rows(displacement).rowwise() - Eigen::RowVector3d(along, 0, 0);
-    const double norm = moved.norm() / (particle.radius * std::sqrt(static_cast<double>(particle.block.n_points)));
+    const double norm = particle.block.rows(displacement).norm() / (particle.radius * std::sqrt(static_cast<double>(particle.block.n_points)));
     largest = norm <= largest ? largest : norm;  // keeps NaN
   }
   return largest;

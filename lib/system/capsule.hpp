@@ -1,7 +1,6 @@
 #pragma once
 // Coupling of the Stokes flow to capsules, drops and rigid bodies: in unbounded flow, on a lattice, in front of walls or in a tube.
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -75,8 +74,7 @@ class Capsule : public Dynamics {
   ~Capsule() override;
 
   /// Evaluates the shape x: loads, unknowns and velocities. Returns the cached result if x is the shape evaluated last and forces and flow have not
-  /// changed. `guess`, if given, is the initial guess of the linear solve for the velocity, where GMRES solves for it alone. `error`: see
-  /// Evaluation::solve.
+  /// changed. `guess`: initial guess of the velocity; used if the velocity is the only unknown of the linear solve. `error`: see Evaluation::solve.
   std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {}, double error = 0);
 
   /// Returns an evaluation of the shape x that computes each quantity at its first use. `velocity`: velocity of the control points; no rows if
@@ -103,14 +101,15 @@ class Capsule : public Dynamics {
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override;
   double distance(const Net& from, const Net& to) const override;
-  double norm(const Net& displacement) const override;  ///< ignores the mean displacement along x1 in a straight tube, where all x1 are equivalent
+  double norm(const Net& displacement) const override;
   Net symmetric(Net field) const override { return parameters_.symmetry.completed(std::move(field)); }
 
-  /// Sets additional forces for all later calls. `work`: virtual work of these forces, one row per control point; an empty net removes the forces.
-  /// The forces are either contact forces (`contacts`), which keep their directions and material points, or loads due to the fields on surfaces
-  /// (`fields`). The work of these loads is minus their contribution to dE/dx (4.2).
-  enum class Forces { contacts, fields };
-  void set_forces(Forces of, Net work);
+  /// Virtual work of additional forces, one row per control point; empty nets if there are none. `contacts`: contact forces, which keep their
+  /// directions and material points. `fields`: loads due to the fields on surfaces, whose work is minus their contribution to dE/dx (4.2).
+  struct Forces {
+    Net contacts, fields;
+  };
+  void set_forces(Net Forces::* of, Net work);  ///< sets one kind of additional forces for all later calls
 
   /// Returns the change of the velocity at the shape of `at` due to additional forces with the virtual work `work`. Linear in `work`.
   Net response(Evaluation& at, const Net& work);
@@ -127,8 +126,8 @@ class Capsule : public Dynamics {
   /// Returns whether a membrane or interface is viscous, so that the load depends on the velocity.
   bool viscous() const { return membranes_.viscous(); }
 
-  /// Returns whether the shape evaluated last is within `distance` of x (in `norm`).
-  bool evaluated_about(const Net& x, double distance) const { return latest_ && norm(x - latest_->x()) <= distance; }
+  /// Returns whether the shape evaluated last is within `distance` of x (in `norm`), apart from a translation along a straight tube.
+  bool evaluated_about(const Net& x, double distance) const;
 
   /// Returns the rigid bodies among the particles, at their positions in x.
   RigidParticles rigid_at(Net x) const {
@@ -139,6 +138,7 @@ class Capsule : public Dynamics {
 
   const Membranes& membranes() const { return membranes_; }
   const membrane::Membrane& membrane() const { return membranes_.membrane(); }
+  const CapsuleParameters& parameters() const { return parameters_; }
   const std::vector<Particle>& particles() const { return parameters_.particles; }
   double volume_error(double volume, std::size_t p = 0) const { return volumes_.error(volume, p); }  ///< V/V0 - 1 of particle p
   Tube* tube() { return duct_.tube.get(); }  ///< null if there is no tube
@@ -192,24 +192,27 @@ class Capsule : public Dynamics {
   bool eliminates_walls() const { return !duct_.tube || bodies_.tractions || parameters_.solvers.tube == "schur"; }
   bool has_velocity_system() const { return layers_.has_double() || viscous() || !eliminates_walls(); }
   bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // velocities of control points
-  bool has_forces() const { return work_of_forces_[0].size() > 0 || work_of_forces_[1].size() > 0; }
-  bool deform_cell(double time);
-  Vec3 cell_origin(const Net& x) const;
-  void set_tube_shape(const Net& x);
-  void place_among_solids(const Net& x);
-  void make_solid_response();
+  bool has_forces() const { return forces_.contacts.size() > 0 || forces_.fields.size() > 0; }
+  // Evaluation of a shape (capsule.cpp).
+  Net solve_in_cell(Evaluation& e, Net x, const Net& guess);
+  bool admits(const Net& x);
   bool inside_tube(const Net& x);
   bool in_fluid(const Net& x);
-  bool admits(const Net& x);
-  Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
-  void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
-  Net in_cell(Evaluation& e, const Net& guess);
-  Net solve_in_cell(Evaluation& e, Net x, const Net& guess);
+  void push_bodies(const Net& x);
   Net work_of_loads(const Net& x, std::vector<Net>& sums);
   Net membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume = nullptr);
-  void push_bodies(const Net& x);
   Net explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer);
   Net defect_here(const Net& x, const Net& u);
+  // Cells of lattices, tubes, plates and posts (capsule_cell.cpp).
+  bool deform_cell(double time);
+  Vec3 cell_origin(const Net& x) const;
+  Net in_cell(Evaluation& e, const Net& guess);
+  void set_tube_shape(const Net& x);
+  void make_solid_response();
+  void set_solid_shape(const Net& x);
+  void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
+  Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
+  // Linear systems (capsule_unknowns.cpp).
   Net velocity_load(const Net& x, const Net& v);
   Net velocity_product(const Net& x, const Net& v, const Net& load);
   Apply velocity_preconditioner(const Net& x);
@@ -220,7 +223,7 @@ class Capsule : public Dynamics {
   Net traction_product(const Net& x, const VolumeConstraint& volume, const Net& y, const Net& caused);
   Net solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint& volume, const Net& flow);
   Mat3 moment_by_traction(Evaluation& at, std::size_t p);
-  void note(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
+  void record_solve(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
 
   const spline::Space& space_;
   Net rest_;
@@ -240,7 +243,7 @@ class Capsule : public Dynamics {
   Krylov velocity_solver_;
   CapsuleJacobian jacobian_;
   std::shared_ptr<Evaluation> latest_;
-  std::array<Net, 2> work_of_forces_;  // virtual work of contact forces, then of loads due to fields; empty nets if there are none
+  Forces forces_;
 };
 
 }  // namespace tanktread::coupling

@@ -40,7 +40,7 @@ std::vector<CellShift> Capsule::move_into_cell(Net& x, Net* v) {
 }
 
 void Capsule::set_tube_shape(const Net& x) {
-  if (duct_.net.rows() == x.rows() && duct_.net == x && duct_.origin == duct_.origin_of_net) return;
+  if (same(duct_.net, x) && duct_.origin == duct_.origin_of_net) return;
   duct_.tube->set_shape(x, duct_.origin);
   duct_.net = x, duct_.origin_of_net = duct_.origin;
 }
@@ -57,7 +57,7 @@ Vec3 Capsule::cell_origin(const Net& x) const {
 /// the particles. If `with_empty`, also adds the velocity that the solids cause without particles.
 void Capsule::add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u) {
   const auto clock = phases_.time("wall");
-  place_among_solids(x);
+  set_solid_shape(x);
   Solids::Flow flow = surroundings_.solids->respond(f, moves);
   if (with_empty) flow = flow + surroundings_.solids->empty();
   Net part = targets_.zero();
@@ -83,7 +83,7 @@ void Capsule::make_solid_response() {
   if (bodies_.tractions) bodies_.tractions->set_solids(*surroundings_.solids);
 }
 
-void Capsule::place_among_solids(const Net& x) {
+void Capsule::set_solid_shape(const Net& x) {
   surroundings_.solids->set_shape(x, targets_.values() * x, targets_.own());
 }
 

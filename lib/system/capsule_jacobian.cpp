@@ -126,12 +126,10 @@ Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Ne
 Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& work) {
   const Net rhs = product({}, dx, -1, work);
   if (!has_system()) return rhs;
-  const Eigen::Index n = dx.rows();
-  const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = product(Eigen::Map<const Net>(in, n, 3), {}, 0, {}); };
-  Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
-  const Eigen::VectorXd right = v;
-  counts_.solver_iterations += inner_solver_.solve({velocity_blocks(parameters_.particles), apply, {}}, right, v, 1e-3).iterations;
-  return Eigen::Map<const Net>(v.data(), n, 3);
+  const LinearSystem system{velocity_blocks(parameters_.particles), on_nets(dx.rows(), [this](const Net& u) { return product(u, {}, 0, {}); }), {}};
+  Eigen::VectorXd v = flat(rhs);
+  counts_.solver_iterations += inner_solver_.solve(system, flat(rhs), v, 1e-3).iterations;
+  return as_net(v);
 }
 
 CapsuleJacobian::RateChange CapsuleJacobian::velocity_change(const Net& dx, const Net& work) {
@@ -153,14 +151,10 @@ void CapsuleJacobian::prepare_step(double shift) {
 }
 
 Net CapsuleJacobian::solve(double shift, const Net& rhs, double tolerance, const Secants& secants) {
-  const Eigen::Index n = rhs.rows();
-  const auto apply = [&](const double* in, double* out) {
-    const Net delta = Eigen::Map<const Net>(in, n, 3);
-    Eigen::Map<Net>(out, n, 3) = step_change(delta, shift, {}).rate - shift * secants(delta);
-  };
+  const auto apply = [&](const Net& delta) -> Net { return step_change(delta, shift, {}).rate - shift * secants(delta); };
   prepare_step(shift);
-  const auto keep_area = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = step_preconditioner(Eigen::Map<const Net>(in, n, 3)); };
-  return parameters_.symmetry.completed(solve_step(apply, area_ ? Apply(keep_area) : Apply(), rhs, tolerance));
+  const Apply precondition = area_ ? on_nets(rhs.rows(), [this](const Net& r) { return step_preconditioner(r); }) : Apply();
+  return parameters_.symmetry.completed(solve_step(on_nets(rhs.rows(), apply), precondition, rhs, tolerance));
 }
 
 /// Returns the factor of the relative residual at high viscosity ratios. B weighs deformation by about lambda/2 but rigid rotation by 1, so that a
@@ -178,16 +172,15 @@ double CapsuleJacobian::weight_of_rotation() const {
 Net CapsuleJacobian::solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance) {
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(rhs.size());
   const LinearSystem system{{{"displacement", rhs.size()}}, product, precondition};
-  const SolveReport report =
-      step_solver_.solve(system, Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size()), solution, tolerance * weight_of_rotation());
+  const SolveReport report = step_solver_.solve(system, flat(rhs), solution, tolerance * weight_of_rotation());
   ++counts_.solves;
   counts_.solver_iterations += report.iterations;
-  return Eigen::Map<const Net>(solution.data(), rhs.rows(), 3);
+  return as_net(solution);
 }
 
 void CapsuleJacobian::improve_start(Net& y, const Net& before, double shift) {
   if (!area_) return;
-  area_->bring(y, before, shift);
+  area_->restore_areas(y, before, shift);
   y = parameters_.symmetry.completed(std::move(y));
 }
 

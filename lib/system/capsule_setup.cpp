@@ -44,8 +44,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& r
                 counts_) {
   if (std::ranges::any_of(particles(), &Particle::by_traction))
     bodies_.tractions =
-        std::make_unique<RigidTractions>(space, membranes_.unstressed(), rest, particles(), parameters.viscosity, parameters.quadrature,
-                                         parameters.solvers, parameters.medium, duct_.tube.get(), layout_.points(), ranks);
+        std::make_unique<RigidTractions>(space, membranes_.unstressed(), rest, parameters_, duct_.tube.get(), layout_.points(), ranks);
   if (parameters_.cell) deform_cell(0);
   make_solid_response();
   if (!duct_.tube) return;

@@ -13,7 +13,7 @@
 
 namespace tanktread::coupling {
 
-void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v, double tolerance) {
+void Capsule::record_solve(const SolveReport& report, const Eigen::VectorXd& v, double tolerance) {
   ++counts_.velocity_solves;
   counts_.velocity_iterations += report.iterations;
   counts_.most_velocity_iterations = std::max<long>(counts_.most_velocity_iterations, report.iterations);
@@ -47,13 +47,12 @@ Apply Capsule::velocity_preconditioner(const Net& x) {
   if (bodies_.isolated->empty()) return {};
   const auto films = std::make_shared<FilmInverses>(particles(), *bodies_.isolated, bodies_.rigid, x,
                                                     [&](std::span<const int> sites) { return layers_.double_rows(sites); });
-  return [this, films, n = x.rows()](const double* in, double* out) {
-    Net y = Eigen::Map<const Net>(in, n, 3);
-    bodies_.isolated->take_to_sites(y);
+  return on_nets(x.rows(), [this, films](Net y) {
+    bodies_.isolated->evaluate_at_sites(y);
     films->add(y);
     bodies_.isolated->solve(bodies_.rigid, y);
-    Eigen::Map<Net>(out, n, 3) = y;
-  };
+    return y;
+  });
 }
 
 /// Solves P B P v = rhs for v, with the operator B of (4.2), the projection P (2.8) of `volume`, and P rhs = rhs. In a tube, B includes the response
@@ -61,27 +60,24 @@ Apply Capsule::velocity_preconditioner(const Net& x) {
 /// together. The initial guess is rhs if `guess` is empty or there are rigid bodies, and otherwise `guess`. `error`: see Evaluation::solve.
 Net Capsule::solve_velocity(const Net& x, const Net& f, const VolumeConstraint& volume, const Net& rhs, const Net& guess, double error) {
   const auto clock = phases_.time("velocity system");
-  const Eigen::Index n = x.rows();
   layers_.assemble(x, viscous());
   if (!eliminates_walls()) return solve_blocks(x, f, volume, rhs);
-  const auto apply = [&](const double* in, double* out) {
-    Net v = Eigen::Map<const Net>(in, n, 3);
+  const auto apply = [&](Net v) {
     volumes_.constrain(v, volume);
     const Net load = velocity_load(x, v);
     Net bv = velocity_product(x, v, load);
     if (duct_.tube || solids()) bv -= velocity_by_walls(x, load, v);
     volumes_.constrain(bv, volume);
-    Eigen::Map<Net>(out, n, 3) = bv;
+    return bv;
   };
-  const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
-  Eigen::VectorXd v = right;
-  if (guess.size() > 0 && bodies_.rigid.empty()) v = Eigen::Map<const Eigen::VectorXd>(guess.data(), guess.size());
-  const LinearSystem system{velocity_blocks(particles()), apply, velocity_preconditioner(x)};
+  const Eigen::VectorXd right = flat(rhs);
+  Eigen::VectorXd v = flat(guess.size() > 0 && bodies_.rigid.empty() ? guess : rhs);
+  const LinearSystem system{velocity_blocks(particles()), on_nets(x.rows(), apply), velocity_preconditioner(x)};
   const auto least = [](const Particle& one) { return one.radius * std::sqrt(static_cast<double>(one.block.n_points)); };
   const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
   const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
-  note(velocity_solver_.solve(system, right, v, tolerance), v, tolerance);
-  Net solution = Eigen::Map<const Net>(v.data(), n, 3);
+  record_solve(velocity_solver_.solve(system, right, v, tolerance), v, tolerance);
+  Net solution = as_net(v);
   volumes_.constrain(solution, volume);
   return solution;
 }
@@ -101,8 +97,8 @@ Net Capsule::solve_blocks(const Net& x, const Net& f, const VolumeConstraint& vo
   Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(right.size());
   unknowns.head(rhs.size()) = right.head(rhs.size());
   const LinearSystem linear = system.linear_system(velocity_blocks(particles()), parameters_.solvers.tube);
-  note(velocity_solver_.solve(linear, right, unknowns, parameters_.solvers.tolerance), unknowns, parameters_.solvers.tolerance);
-  return Eigen::Map<const Net>(unknowns.data(), rhs.rows(), 3);
+  record_solve(velocity_solver_.solve(linear, right, unknowns, parameters_.solvers.tolerance), unknowns, parameters_.solvers.tolerance);
+  return as_net(unknowns.head(rhs.size()));
 }
 
 /// Returns the velocity of deformable particles for the unknowns y of solve_tractions(); 0 in the rows of bodies.
@@ -160,8 +156,7 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.holds(p)) bodies_.rigid.move(p, body->motion, body->force, body->torque, v), ++body;
   e.load_ = load(bodies_.tractions->unknowns());
-  for (const SolveReport& report : bodies_.tractions->reports())
-    note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()), parameters_.solvers.tolerance);
+  for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, flat(v), parameters_.solvers.tolerance);
   if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, bodies_.tractions->pressure_correction());
   return v;
 }
@@ -174,8 +169,7 @@ Mat3 Capsule::moment_by_traction(Evaluation& at, std::size_t p) {
   if (!latest_ || !same(at.x(), latest_->x())) at.solve_again();
   const Mat3 moment = bodies_.tractions->moment(static_cast<std::size_t>(std::ranges::count_if(
       std::span(particles()).first(p), [](const Particle& one) { return one.rigid.has_value(); })));
-  for (const SolveReport& report : bodies_.tractions->reports())
-    note(report, Eigen::Map<const Eigen::VectorXd>(at.x().data(), at.x().size()), parameters_.solvers.tolerance);
+  for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, flat(at.x()), parameters_.solvers.tolerance);
   return -moment;
 }
 

@@ -13,19 +13,19 @@ BetweenSites between_sites(const spline::Space& space, const Net& surface) {
 }
 
 BetweenSites between_sites(const spline::Space& space, const Net& surface, std::span<const spline::Block> blocks) {
-  stokes::Sites places;
+  stokes::Sites sites;
   std::vector<double> areas;
   for (const spline::Block& block : blocks)
     for (int e = block.first_element; e < block.first_element + block.n_elements; ++e) {
       const quadrature::TensorRule& rule = quadrature::tensor_gauss(space.elements[static_cast<std::size_t>(e)].degree);
       for (int q = 0; q < rule.size(); ++q) {
-        const spline::Site place{e, rule.s[q], rule.t[q]};
-        places.push_back({place});
-        areas.push_back(rule.weights[q] * surface::point(space, surface, place).jacobian);
+        const spline::Site site{e, rule.s[q], rule.t[q]};
+        sites.push_back({site});
+        areas.push_back(rule.weights[q] * surface::point(space, surface, site).jacobian);
       }
     }
-  const Eigen::SparseMatrix<double> values = value_matrix(space, places);
-  return {places, values, values.transpose() * Eigen::Map<const Eigen::VectorXd>(areas.data(), values.rows()).asDiagonal()};
+  const Eigen::SparseMatrix<double> values = value_matrix(space, sites);
+  return {sites, values, values.transpose() * Eigen::Map<const Eigen::VectorXd>(areas.data(), values.rows()).asDiagonal()};
 }
 
 Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites, Eigen::VectorXd spline::Basis::* which) {

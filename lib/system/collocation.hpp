@@ -20,7 +20,7 @@ Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stoke
 /// it is about h^4 times a quartic polynomial. The number of Gauss points per direction is the spline degree, which is enough to integrate this
 /// polynomial exactly.
 struct BetweenSites {
-  stokes::Sites places;
+  stokes::Sites sites;                  ///< parametric points q
   Eigen::SparseMatrix<double> values;   ///< N_A at the points, shape (points, N)
   Eigen::SparseMatrix<double> weights;  ///< N_A at point q times the quadrature weight and area element of q, shape (N, points)
 };

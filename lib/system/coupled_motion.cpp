@@ -12,10 +12,10 @@ namespace {
 Net rows_of(const spline::Block& block, const Net& net) { return net.rows() > 0 ? Net(block.rows(net)) : Net(); }
 }  // namespace
 
-CoupledMotion::CoupledMotion(Capsule& capsule, std::vector<On> fields)
+CoupledMotion::CoupledMotion(Capsule& capsule, std::vector<FieldOnParticle> fields)
     : capsule_(capsule), fields_(std::move(fields)), n_(capsule.n_points()) {
   Eigen::Index first = 3 * n_;
-  for (const On& on : fields_) {
+  for (const FieldOnParticle& on : fields_) {
     const Particle& particle = capsule.particles()[on.particle];
     const Eigen::Index size = on.field->size();
     const double length = on.length > 0 ? on.length : particle.radius;
@@ -55,12 +55,12 @@ Eigen::SparseMatrix<double> CoupledMotion::basis(std::size_t k, const surface::S
 }
 
 bool CoupledMotion::knows_images(const surface::Symmetry& symmetry) const {
-  return symmetry.order() == 1 || std::ranges::none_of(fields_, [&](const On& on) { return on.field->images(symmetry.images()[0]).empty(); });
+  return symmetry.order() == 1 || std::ranges::none_of(fields_, [&](const auto& on) { return on.field->images(symmetry.images()[0]).empty(); });
 }
 
 Net CoupledMotion::start(const Net& shape) const {
   Net y = with_shape(Net::Zero(rows_, 3), shape);
-  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(y, k, blocks_[k].on.field->start(blocks_[k].rows.rows(shape)));
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(y, k, blocks_[k].field->start(blocks_[k].rows.rows(shape)));
   return y;
 }
 
@@ -78,14 +78,14 @@ void CoupledMotion::set_coefficients(Net& y, std::size_t k, const Eigen::VectorX
 }
 
 void CoupledMotion::set_fields(const Net& y) {
-  for (std::size_t k = 0; k < blocks_.size(); ++k) blocks_[k].on.field->set_state(blocks_[k].rows.rows(y), coefficients(y, k));
+  for (std::size_t k = 0; k < blocks_.size(); ++k) blocks_[k].field->set_state(blocks_[k].rows.rows(y), coefficients(y, k));
 }
 
 void CoupledMotion::set_state(const Net& y) {
   set_fields(y);
   Net load = Net::Zero(n_, 3);
-  for (const Block& block : blocks_) block.rows.rows(load) -= block.on.field->load();
-  capsule_.set_forces(Capsule::Forces::fields, std::move(load));
+  for (const Block& block : blocks_) block.rows.rows(load) -= block.field->load();
+  capsule_.set_forces(&Capsule::Forces::fields, std::move(load));
 }
 
 Net CoupledMotion::velocity(const Net& y) {
@@ -95,7 +95,7 @@ Net CoupledMotion::velocity(const Net& y) {
   if (!u.allFinite()) return not_a_number(y);
   Net rate = with_shape(Net::Zero(rows_, 3), u);
   const Net slip = slip_at(x);
-  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(rate, k, blocks_[k].on.field->rate(rows_of(blocks_[k].rows, slip)));
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(rate, k, blocks_[k].field->rate(rows_of(blocks_[k].rows, slip)));
   return rate;
 }
 
@@ -111,19 +111,19 @@ Net CoupledMotion::defect(const Net& y, const Net& u) {
   if (!y.allFinite()) return not_a_number(y);
   set_state(y);
   Net missing = with_shape(-u, capsule_.defect(shape(y), shape(u)));
-  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(missing, k, blocks_[k].on.field->rate({}) - coefficients(u, k));
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(missing, k, blocks_[k].field->rate({}) - coefficients(u, k));
   return missing;
 }
 
 void CoupledMotion::freeze(const Net& y) {
   capsule_.freeze(shape(y));
-  for (const Block& block : blocks_) block.on.field->freeze(block.rows.rows(y));
+  for (const Block& block : blocks_) block.field->freeze(block.rows.rows(y));
 }
 
 void CoupledMotion::linearise(const Net& y) {
   set_state(y);
   const Net slip = slip_at(shape(y));
-  for (const Block& block : blocks_) block.on.field->linearise(rows_of(block.rows, slip));
+  for (const Block& block : blocks_) block.field->linearise(rows_of(block.rows, slip));
   capsule_.linearise(shape(y));
 }
 
@@ -146,8 +146,8 @@ CoupledMotion::FieldChange CoupledMotion::field_change(const Net& delta) const {
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const Block& block = blocks_[k];
     const Net dx = block.rows.rows(delta);
-    change.values.push_back(block.on.field->value_change(dx, coefficients(delta, k)));
-    block.rows.rows(change.load) += block.on.field->load_change(dx, change.values.back());
+    change.values.push_back(block.field->value_change(dx, coefficients(delta, k)));
+    block.rows.rows(change.load) += block.field->load_change(dx, change.values.back());
   }
   return change;
 }
@@ -155,22 +155,18 @@ CoupledMotion::FieldChange CoupledMotion::field_change(const Net& delta) const {
 /// Returns the change of the rate of field k. `slip`: change of the slip velocity of all particles; empty if no control points slide.
 Eigen::VectorXd CoupledMotion::field_rate(std::size_t k, const Net& delta, const FieldChange& fields, const Net& slip) const {
   const Block& block = blocks_[k];
-  return block.on.field->rate_change(block.rows.rows(delta), fields.values[k], rows_of(block.rows, slip));
+  return block.field->rate_change(block.rows.rows(delta), fields.values[k], rows_of(block.rows, slip));
 }
 
 /// Solves step(delta) - shift secants(delta) = rhs for the change of state delta.
 Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   capsule_.jacobian().prepare_step(shift);
-  const auto apply = [&](const double* in, double* out) {
-    const Net delta = Eigen::Map<const Net>(in, rows_, 3);
-    Eigen::Map<Net>(out, rows_, 3) = step(delta, shift) - shift * secants(delta);
-  };
-  const auto precondition = [&](const double* in, double* out) {
-    Net delta = Eigen::Map<const Net>(in, rows_, 3);
+  const auto apply = [&](const Net& delta) -> Net { return step(delta, shift) - shift * secants(delta); };
+  const auto precondition = [&](Net delta) {
     delta = with_shape(std::move(delta), capsule_.jacobian().step_preconditioner(shape(delta)));
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const Block& block = blocks_[k];
-      membrane::Field& field = *block.on.field;
+      membrane::Field& field = *block.field;
       Eigen::VectorXd r = coefficients(delta, k);
       if (field.follows_shape()) {
         const Net dx = block.rows.rows(delta);
@@ -178,12 +174,12 @@ Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const 
       }
       set_coefficients(delta, k, field.solve(shift, r));
     }
-    Eigen::Map<Net>(out, rows_, 3) = delta;
+    return delta;
   };
-  Net delta = capsule_.jacobian().solve_step(apply, precondition, rhs, tolerance);
+  Net delta = capsule_.jacobian().solve_step(on_nets(rows_, apply), on_nets(rows_, precondition), rhs, tolerance);
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     Eigen::VectorXd q = coefficients(delta, k);
-    blocks_[k].on.field->conserve(coefficients(rhs, k), q);
+    blocks_[k].field->conserve(coefficients(rhs, k), q);
     set_coefficients(delta, k, q);
   }
   return symmetric(std::move(delta));
@@ -235,12 +231,12 @@ Net CoupledMotion::moved(const Net& y, const RigidMotion& motion) const {
 Net CoupledMotion::slid(const Net& y, const Net& along) {
   set_fields(y);
   Net change = with_shape(Net::Zero(rows_, 3), along);
-  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(change, k, blocks_[k].on.field->relabelled(blocks_[k].rows.rows(along)));
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(change, k, blocks_[k].field->relabelled(blocks_[k].rows.rows(along)));
   return change;
 }
 
 Net CoupledMotion::conserved(std::size_t k) const {
-  const Eigen::VectorXd of_q = blocks_[k].on.field->conserved();
+  const Eigen::VectorXd of_q = blocks_[k].field->conserved();
   if (of_q.size() == 0) return {};
   Net gradient = Net::Zero(rows_, 3);
   set_coefficients(gradient, k, of_q / (blocks_[k].scale * blocks_[k].scale));

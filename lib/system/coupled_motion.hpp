@@ -22,21 +22,21 @@ namespace tanktread::coupling {
 /// every rank stores all fields.
 class CoupledMotion : public Dynamics {
  public:
-  struct On {
+  struct FieldOnParticle {
     std::size_t particle;
     membrane::Field* field;
     double length = 0;  ///< length by which the values of the field are multiplied in a state; 0: R_C of the particle
   };
 
   /// `capsule` and the fields must outlive this object.
-  CoupledMotion(Capsule& capsule, std::vector<On> fields);
+  CoupledMotion(Capsule& capsule, std::vector<FieldOnParticle> fields);
 
   Net start(const Net& shape) const;                         ///< state at the start of a run with this shape
   Net shape(const Net& y) const { return y.topRows(n_); }    ///< control net
   Net with_shape(Net y, const Net& shape) const;             ///< the state y with `shape` as its control net
   Eigen::VectorXd coefficients(const Net& y, std::size_t k) const;
   void set_coefficients(Net& y, std::size_t k, const Eigen::VectorXd& q) const;
-  const std::vector<On>& fields() const { return fields_; }
+  const std::vector<FieldOnParticle>& fields() const { return fields_; }
   Eigen::Index n_rows() const { return rows_; }  ///< number of rows of a state
 
   /// Returns an orthonormal basis, one vector per column, of the coefficients of field k that have this parity under the symmetry. If the field
@@ -82,8 +82,7 @@ class CoupledMotion : public Dynamics {
   double norm(const Net& displacement) const override;
 
  private:
-  struct Block {
-    On on;
+  struct Block : FieldOnParticle {
     Eigen::Index first, size;  // position and number of the coefficients within a state
     double scale;
     spline::Block rows;        // rows of the particle in the control net
@@ -102,7 +101,7 @@ class CoupledMotion : public Dynamics {
   Net slip_at(const Net& x);
 
   Capsule& capsule_;
-  std::vector<On> fields_;
+  std::vector<FieldOnParticle> fields_;
   std::vector<Block> blocks_;
   Eigen::Index n_, rows_;  // n_: number of control points. rows_: number of rows of a state
 };

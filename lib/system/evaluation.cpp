@@ -92,7 +92,7 @@ Evaluation::SolidFlow Evaluation::solid_flow() {
   find_unknowns();
   Net inside = x_;
   system_->move_into_cell(inside);
-  system_->place_among_solids(inside);
+  system_->set_solid_shape(inside);
   SolidResponse& solids = *system_->solids();
   SolidFlow found{.flow = {}, .caused = solids.respond(load_, unknowns_)};
   found.flow = found.caused + solids.empty();

@@ -62,7 +62,7 @@ Net along_interface(const Net& normals, Net field) {
 }
 
 /// Returns the change of n (n.field), the normal part of `field`, if the normals n change by `change` and the field does not change.
-Net turned(const Net& normals, const Net& change, Net field) {
+Net normal_part_change(const Net& normals, const Net& change, Net field) {
   for (Eigen::Index i = 0; i < field.rows(); ++i) {
     const double across = normals.row(i).dot(field.row(i)), tilted = change.row(i).dot(field.row(i));
     field.row(i) = across * change.row(i) + tilted * normals.row(i);
@@ -82,7 +82,7 @@ Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v)
 Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
   const Mat3 volume = b.transpose() * from_mean, flux = b.transpose() * (v.rowwise() - v.colwise().mean());
   const Mat3 gradient = volume.partialPivLu().solve(flux).transpose();
-  return Vec3(gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0), gradient(1, 0) - gradient(0, 1)) / 2;
+  return axial_vector(gradient) / 2;
 }
 
 /// Returns the velocity of the points y in a rotation about the origin.
@@ -186,7 +186,8 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
     const auto own = [&](const Net& net) { return drop.block.rows(net); };
     shapes.push_back(motion_of_shape({own(x), own(b), own(v), own(places), own(normals), own(u)}, drop.turns));
   }
-  const auto cross = [&](const Net& at, const Net& n, const Net& along, std::vector<int> Drop::* rows, Net& velocities) {
+  // Replaces `velocities` v at the points `at` with the normals n by W + `along` + n n.(v - W - `along`), and adds v - W - `along` to `rest`.
+  const auto combine = [&](const Net& at, const Net& n, const Net& along, std::vector<int> Drop::* rows, Net& velocities) {
     for (size_t d = 0; d < drops_.size(); ++d) {
       const auto& [centre, motion] = shapes[d];
       for (const int i : drops_[d].*rows) {
@@ -205,7 +206,7 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
     const Net free = values * collocation_.solve(w), along = along_interface(n, free);
     rest = -free;
     const Net slid = projection_->control_values(along);
-    cross(values * x, n, Net::Zero(n.rows(), 3), &Drop::places, u);
+    combine(values * x, n, Net::Zero(n.rows(), 3), &Drop::places, u);
     const Eigen::VectorXd leak = values * projection_->scalar_values((values * slid).cwiseProduct(n).rowwise().sum());
     return projection_->control_values(u - leak.asDiagonal() * n) + slid;
   }
@@ -213,7 +214,7 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
   Net w = Net::Zero(x.rows(), 3);
   slide(x, f, w);
   return collocation_.solve(ranks_.filled(x.rows(), [&](Net& own) {
-    cross(places, normals, w, &Drop::points, u);
+    combine(places, normals, w, &Drop::points, u);
     own = u;
   }));
 }
@@ -251,7 +252,7 @@ Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v, const Ne
 void InterfaceMotion::linearise(const Net& x, const Net& b) {
   x_ = x, flux_ = b;
   normals_ = normals_at(x);
-  known_ = latest_.x.rows() == x.rows() && latest_.x == x ? latest_ : Latest();
+  known_ = same(latest_.x, x) ? latest_ : Latest();
   if (relaxed_) tangent_.update(x, own_elements_);
 }
 
@@ -263,16 +264,16 @@ Net InterfaceMotion::derivative(const Net& dv, const Net& delta) {
   if (turns) there = x_ + aside * delta, change = (normals_at(there) - normals_) / aside;
   if (relaxed_) {
     density = along_interface(normals_, sites_ * mass_.solve(ranks_.filled(delta.rows(), [&](Net& h) { tangent_.apply(delta, h); })));
-    if (turns) density -= turned(normals_, change, known_.density);
+    if (turns) density -= normal_part_change(normals_, change, known_.density);
     density = collocation_.solve(density);
   }
   const Net kept = combined(x_, flux_, normals_, dv, density, rest);
   if (!turns) return kept;
   if (projection_) {
     const Net n = projection_->normals(x_);
-    return kept + projection_->control_values(turned(n, (projection_->normals(there) - n) / aside, known_.rest));
+    return kept + projection_->control_values(normal_part_change(n, (projection_->normals(there) - n) / aside, known_.rest));
   }
-  return kept + collocation_.solve(ranks_.filled(x_.rows(), [&](Net& u) { u = turned(normals_, change, known_.rest); }));
+  return kept + collocation_.solve(ranks_.filled(x_.rows(), [&](Net& u) { u = normal_part_change(normals_, change, known_.rest); }));
 }
 
 }  // namespace tanktread::coupling

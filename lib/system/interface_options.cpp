@@ -4,14 +4,8 @@
 
 namespace tanktread::coupling {
 
-namespace {
-const deck::Choice motions{"material", "normal", "relaxed"};  // words for MeshMotion, in the order of its enumerators
-}  // namespace
-
-std::string word(MeshMotion motion) { return motions[static_cast<std::size_t>(motion)]; }
-
 void InterfaceOptions::declare(deck::Section& section) {
-  section.key("motion", motion, motions,
+  section.key("motion", motion, mesh_motions,
               "motion of the control points of a drop's interface. `material`: with the fluid. `normal`: only normal to the interface. "
               "`relaxed`: with the fluid in the normal direction, and tangentially so that elements keep their shape. If not "
               "given, `relaxed` for Membrane/law `surface tension`, and `material` for all other laws");
@@ -19,7 +13,8 @@ void InterfaceOptions::declare(deck::Section& section) {
               "dimensionless speed at which the mesh of a drop slides along the interface to keep its elements well shaped, with "
               "Interface/motion `relaxed`: it slides like an elastic membrane of capillary number 1/relaxation. Increase it if elements "
               "become distorted");
-  if (motion && *motion != MeshMotion::relaxed) section.without_effect({"relaxation"}, "with Interface/motion `" + word(*motion) + "`");
+  if (motion && *motion != MeshMotion::relaxed)
+    section.without_effect({"relaxation"}, "with Interface/motion `" + deck::word(mesh_motions, *motion) + "`");
 }
 
 }  // namespace tanktread::coupling

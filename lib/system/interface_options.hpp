@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "deck/forward.hpp"
 
@@ -12,7 +13,7 @@ namespace tanktread::coupling {
 /// the normal direction, and tangentially so that elements keep their shape.
 enum class MeshMotion { material, normal, relaxed };
 
-std::string word(MeshMotion motion);  ///< returns the value of the key `motion`
+inline const std::vector<std::string> mesh_motions{"material", "normal", "relaxed"};  ///< words for MeshMotion in decks
 
 /// Options `Interface/*` of the deck: tangential motion of the control points along an interface. Without a membrane this motion is arbitrary.
 struct InterfaceOptions {

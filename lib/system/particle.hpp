@@ -120,7 +120,7 @@ class Loads {
     std::shared_ptr<membrane::Load> load;
     std::size_t first_sum;
 
-    std::vector<Net> own(const std::vector<Net>& sums) const;
+    std::vector<Net> own(const std::vector<Net>& sums) const;  // sum nets of this load, with the rows of its particle
   };
   std::vector<One> all_;
   std::size_t n_sums_ = 0;

@@ -70,20 +70,20 @@ Net ParticleLayers::apply_double(const Net& v) {
 void ParticleLayers::assemble(const Net& x, bool single) {
   const auto n = static_cast<double>(x.rows());
   constexpr double most_bytes = 1e9;
-  const auto assemble = [&](stokes::Layer& layer, bool by_clusters, stokes::Rows<double>& rows) {
+  const auto assemble_or_clear = [&](stokes::Layer& layer, bool by_clusters, stokes::Rows<double>& rows) {
     if (!repeats_ && parameters_.solvers.assembled(by_clusters)) layer.assemble(targets_.own(), rows);
     else rows.resize(0, 0);
   };
   // With rigid bodies, the solver may take many iterations, because films between them are thin. Assembling the matrix (72 n^2 bytes) is then faster.
   const bool many_iterations = parameters_.any_rigid() && 72 * n * n < most_bytes;
-  if (auto& layer = pair_.double_layer) layer->set_shape(x), assemble(*layer, layer->by_clusters() && !many_iterations, double_rows_);
-  if (single) pair_.single_layer.set_shape(x, pair_.measure), assemble(pair_.single_layer, pair_.single_layer.by_clusters(), single_rows_);
+  if (auto& layer = pair_.double_layer) layer->set_shape(x), assemble_or_clear(*layer, layer->by_clusters() && !many_iterations, double_rows_);
+  if (single) pair_.single_layer.set_shape(x, pair_.measure), assemble_or_clear(pair_.single_layer, pair_.single_layer.by_clusters(), single_rows_);
 }
 
 /// Returns the product of the assembled rows of all ranks with a field.
 Net ParticleLayers::product(const stokes::Rows<double>& rows, const Net& field) const {
   Net at_targets = targets_.zero();
-  const Eigen::VectorXd own = rows * Eigen::Map<const Eigen::VectorXd>(field.data(), field.size());
+  const Eigen::VectorXd own = rows * flat(field);
   for (Eigen::Index k = 0; const int i : targets_.own()) at_targets.row(i) = own.segment<3>(3 * k++).transpose();
   targets_.gather(false, at_targets);
   return at_targets;

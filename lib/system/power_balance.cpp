@@ -44,10 +44,11 @@ void Powers::add_columns(Columns& to) const {
          {"power_residual", "1", "residual of the power balance (6.13), divided by half the sum of the magnitudes of its terms"});
 }
 
-PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,
-                           const quadrature::Options& quadrature, const stokes::Medium* medium, const Ranks& ranks)
-    : capsule_(capsule), space_(space), viscosity_(viscosity), ranks_(ranks), gauss_points_(gauss_points(space)),
-      values_(value_matrix(space, gauss_points_)), mass_(space), layers_(space, gauss_points_, unstressed, capsule.particles(), quadrature, medium) {}
+PowerBalance::PowerBalance(Capsule& capsule, const Ranks& ranks)
+    : capsule_(capsule), space_(capsule.membrane().space()), ranks_(ranks), gauss_points_(gauss_points(space_)),
+      values_(value_matrix(space_, gauss_points_)), mass_(space_),
+      layers_(space_, gauss_points_, capsule.membranes().unstressed(), capsule.particles(), capsule.parameters().quadrature,
+              capsule.parameters().medium.get()) {}
 
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const std::shared_ptr<Evaluation> e = capsule_.evaluate_on_demand(x, slope, 0);
@@ -57,7 +58,7 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const Net measured = capsule_.membranes().measured_net(x);
   const Net work = mass_.update(measured) * load, inside = density(v, rigid);
   Powers powers;
-  powers.flow = of_flow(*e, work, inside);
+  powers.flow = flow_power(*e, work, inside);
   Net stored = Net::Zero(x.rows(), 3);
   const std::vector<int> all = indices(space_.elements.size());
   capsule_.membrane().load(x, all, stored);
@@ -79,7 +80,7 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
 /// two plates or among posts, it is sum_s V_s.F_s + g.int u dV. V_s is the velocity of solid s, F_s the change of its force on the fluid due to the
 /// particles, g the pressure gradient, and u the velocity that the particles cause. All other flows are affine or parabolic, and their power is
 /// (6.11). If there is a tube or a plane wall, the wall moves with this flow.
-double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) {
+double PowerBalance::flow_power(Evaluation& e, const Net& work, const Net& inside) {
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (flow.duct()) {
     const Tube& tube = *capsule_.tube();
@@ -99,7 +100,7 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
   for (Eigen::Index i = 0; i < at.rows(); ++i) {
     const double pressure = 2 * flow.curvature().trace() * flow.quadratic_direction().dot(at.row(i));  // divided by the viscosity
     const Mat3& gradient = gradients[static_cast<std::size_t>(i)];
-    stressed.row(i) = viscosity_ * stressed.row(i) * (gradient + gradient.transpose() - pressure * Mat3::Identity());
+    stressed.row(i) = capsule_.parameters().viscosity * stressed.row(i) * (gradient + gradient.transpose() - pressure * Mat3::Identity());
   }
   stressed = targets.collocated(stressed);
   double power = product(work, targets.collocated(flow.velocities(at)));
@@ -117,10 +118,10 @@ double PowerBalance::residual_power(const Net& load, const Net& residual_velocit
     double area = 0, pressure = 0, flux = 0;
     const int first = particle.block.first_element * rule().size(), n = particle.block.n_elements * rule().size();
     for (int i = first; i < first + n; ++i) {
-      const spline::Site& place = gauss_points_[static_cast<std::size_t>(i)].front();
+      const spline::Site& site = gauss_points_[static_cast<std::size_t>(i)].front();
       const double weight = rule().weights[i % rule().size()];
-      const surface::Point at = surface::point(space_, x, place);
-      const Vec3 force = weight * surface::point(space_, measured, place).jacobian * loads.row(i).transpose(), residual = residual_velocity.row(i);
+      const surface::Point at = surface::point(space_, x, site);
+      const Vec3 force = weight * surface::point(space_, measured, site).jacobian * loads.row(i).transpose(), residual = residual_velocity.row(i);
       sum += force.dot(residual);
       area += weight * at.jacobian, pressure += force.dot(at.n), flux += weight * at.jacobian * at.n.dot(residual);
     }
@@ -149,7 +150,7 @@ Net PowerBalance::residual_velocity(Evaluation& e, Net v, const RigidParticles& 
   layers_.set_shape(x);
   return values_ * v - flow.velocities(at) - ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
     Net part = u;
-    layers_.apply(load, inside, viscosity_, own, u);
+    layers_.apply(load, inside, capsule_.parameters().viscosity, own, u);
     if (SolidResponse* solids = capsule_.solids()) solids->velocity_at(at, own, by_solids, part), u(own, Eigen::all) += part(own, Eigen::all);
     if (Tube* tube = capsule_.tube()) tube->velocity_at(values_, x, e.response(), own, part), u(own, Eigen::all) += part(own, Eigen::all);
   });

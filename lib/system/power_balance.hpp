@@ -8,7 +8,6 @@
 #include "base/columns.hpp"
 #include "base/types.hpp"
 #include "membrane/mass.hpp"
-#include "quadrature/options.hpp"
 #include "system/capsule.hpp"
 #include "system/layer_pair.hpp"
 #include "system/ranks.hpp"
@@ -36,8 +35,7 @@ double turnover(double flow, double forces, double fluids);
 class PowerBalance {
  public:
   /// `capsule`: the system with its particles on their current meshes. References must outlive this object.
-  PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity, const quadrature::Options& quadrature,
-               const stokes::Medium* medium, const Ranks& ranks);
+  PowerBalance(Capsule& capsule, const Ranks& ranks);
 
   /// Returns the powers at x, where control points move with the velocity `slope`. Evaluates the layers once at 2 x 2 Gauss points per element.
   /// Collective.
@@ -47,11 +45,10 @@ class PowerBalance {
   double residual_power(const Net& load, const Net& residual_velocity, const Net& x, const Net& measured) const;
   Net residual_velocity(Evaluation& e, Net v, const RigidParticles& rigid, const Net& load);
   Net density(const Net& v, const RigidParticles& rigid) const;
-  double of_flow(Evaluation& e, const Net& work, const Net& inside);
+  double flow_power(Evaluation& e, const Net& work, const Net& inside);
 
   Capsule& capsule_;
   const spline::Space& space_;
-  double viscosity_;
   const Ranks& ranks_;
   stokes::Sites gauss_points_;
   Eigen::SparseMatrix<double> values_;  // N_A at `gauss_points_`

@@ -2,6 +2,7 @@
 // Options of the conservation of volume.
 
 #include <string>
+#include <vector>
 
 #include "deck/forward.hpp"
 
@@ -11,7 +12,7 @@ namespace tanktread::coupling {
 /// constraint.
 enum class VolumeConservation { exact, flux, none };
 
-std::string word(VolumeConservation constraint);  ///< returns the value of the key `constraint`
+inline const std::vector<std::string> volume_constraints{"exact", "flux", "none"};  ///< words for VolumeConservation in decks
 
 /// Options `Volume/*` of the deck: how the volume of the particle is conserved.
 struct VolumeOptions {

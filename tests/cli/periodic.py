@@ -119,7 +119,7 @@ def a_drop_in_a_pulsating_tube_flow_has_a_periodic_shape_further_along_the_tube(
         close(series("found", name)[-1], series("run", name)[-1], 1e-4, name)  # ten times Periodic/tolerance
     at = series("run", "time")
     places = [x for t, x in zip(at, series("run", "centroid_x1")) if abs(t - round(t)) < 1e-9 and t > 6.5]
-    close(series("found", "mean_velocity_x1")[-1], places[-1] - places[-2], 1e-4, "mean velocity")
+    close(series("found", "mean_particle_velocity_x1")[-1], places[-1] - places[-2], 1e-4, "mean velocity")
 
 
 main()

@@ -208,8 +208,7 @@ class Deforming : public ParticleSystem {
 
   coupling::Powers powers(const motion::State& state) {
     const auto clock = phases_.time("power balance");
-    if (!power_)
-      power_.emplace(*capsule_, body().space, body().unstressed, scene_.flow.viscosity, scene_.quadrature, scene_.medium().get(), ranks_);
+    if (!power_) power_.emplace(*capsule_, ranks_);
     coupling::Powers powers = (*power_)(state.x, state.history.front());
     if (!fields_->empty()) powers.forces += fields_->power(capsule_->evaluate_on_demand(state.x, state.history.front(), 0)->fluid_velocity());
     return powers;
@@ -217,7 +216,7 @@ class Deforming : public ParticleSystem {
 
   /// Sets the current contact forces as loads of the system for all later evaluations.
   void apply_contacts() {
-    capsule_->set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_->particles(), contacts_, body().space.n_points));
+    capsule_->set_forces(&coupling::Capsule::Forces::contacts, coupling::work(capsule_->particles(), contacts_, body().space.n_points));
   }
 
   /// Returns the stresslet of two opposite contact forces that act at the centroids of the two particles. It is needed for the total stresslet,

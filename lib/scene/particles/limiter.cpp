@@ -39,12 +39,12 @@ bool Limiter::hold(motion::State& state, double step, coupling::Contacts& contac
     holds = round < most_rounds && respond(state) && (x = moved(start)).allFinite() && find(x);
   }
   if (!holds || (held_.empty() && contacts.all.empty())) {
-    capsule_.set_forces(coupling::Capsule::Forces::contacts, load_);
+    capsule_.set_forces(&coupling::Capsule::Forces::contacts, load_);
     return holds;
   }
   contacts = with_forces(x, contacts.impulse);
   state.x = x;
-  capsule_.set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_.particles(), contacts, x.rows()));
+  capsule_.set_forces(&coupling::Capsule::Forces::contacts, coupling::work(capsule_.particles(), contacts, x.rows()));
   state.history = {capsule_.velocity(x)};
   state.places.clear();
   return state.history.front().allFinite();
@@ -111,7 +111,7 @@ bool Limiter::respond(const motion::State& state) {
   for (Held& one : held_) {
     if (one.response.size() > 0) continue;
     if (!base_) {
-      capsule_.set_forces(coupling::Capsule::Forces::contacts, load_);
+      capsule_.set_forces(&coupling::Capsule::Forces::contacts, load_);
       base_ = capsule_.evaluate(start);
       if (stiff && base_->velocity().allFinite()) capsule_.linearise(start);
     }

@@ -19,7 +19,7 @@ struct ParticleRow {
   surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};
   surface::Deformation shape{0, 0, 0, Vec3::Zero()};
   surface::PrincipalAxes axes;
-  surface::Treading treading;
+  surface::TankTreading treading;
   Mat3 stresslet = Mat3::Zero();
   Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero();
   double energy = 0, intrinsic_viscosity = 0, phase = 0;

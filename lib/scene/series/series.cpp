@@ -149,8 +149,9 @@ void SteadyRow::add_columns(const Scene& scene, Columns& to) const {
   if (scene.periodic.present) {
     to.add(period, {"period", "time", "period of the periodic motion, after which the shape recurs"});
     to.add(mean_velocity, "x1 x2 x3",
-           {"mean_velocity_", "length/time",
-            "component # of the mean velocity over the period, along directions in which walls and flow do not change; with Periodic/turn only x2"});
+           {"mean_particle_velocity_", "length/time",
+            "component # of the mean velocity of the particles over the period, along directions in which walls and flow do not change; with "
+            "Periodic/turn only x2"});
   }
   const auto rigid = [](const ParticleScene& one) { return one.particle.rigid(); };
   if (scene.spectrum.present) motion::add_columns(modes, scene.spectrum.number, std::ranges::all_of(scene.particle_scenes(), rigid), to);

@@ -34,7 +34,7 @@ SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsu
       all_.push_back({p, part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}), nullptr, &part});
   }
   if (all_.empty()) return;
-  std::vector<coupling::CoupledMotion::On> on;
+  std::vector<coupling::CoupledMotion::FieldOnParticle> on;
   for (const One& one : all_) on.push_back({one.particle, one.field.get(), members[one.particle].scene.field_length});
   motion_.emplace(capsule, std::move(on));
 }

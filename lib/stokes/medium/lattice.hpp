@@ -12,9 +12,8 @@ namespace tanktread::stokes {
 
 /// Options for the periodic images of the surfaces on a lattice.
 struct Repetition {
-  bool assembled =
-      false;  ///< true: assembled rows include the near images, and Layer::assemble_rest() adds all other images (PeriodicSum). false:
-              ///< assembled rows include no images
+  bool assembled = false;  ///< true: assembled rows include the near images, and Layer::assemble_rest() adds all other images (PeriodicSum). false:
+                           ///< assembled rows include no images
   std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off the
                                                                               ///< surfaces
 
@@ -52,9 +51,7 @@ class Lattice : public LayerMedium {
   NodeVectors node_;           // far nodes, wrapped into the cell
   std::vector<Vec3> near_;     // lattice vectors of images whose panels may be close to a target
   std::vector<Vec3> rest_at_;  // targets at which rest_stress_ was computed, wrapped into the cell
-  std::vector<Mat3>
-      rest_stress_;  // at the targets rest_at_: double layer over all images except the near ones, column c for the constant density
-                     // e_c
+  std::vector<Mat3> rest_stress_;  // at the targets rest_at_: double layer of all images except the near ones; column c for the constant density e_c
 };
 
 }  // namespace tanktread::stokes

@@ -58,7 +58,7 @@ void WallImages::add_far(LayerSources& sources, const LayerTargets& targets, Net
     sums = sum_.sum(sources.density);
   } else {
     const Vec3 mean = sources.mean_density();
-    if (others) take_image_stress(sources);
+    if (others) compute_image_stress(sources);
     sources.set_moments(mean);
     sums = sum_.sum(sources.moment);
     for (std::size_t k = 0; k < targets.far_rows.size(); ++k)
@@ -68,7 +68,7 @@ void WallImages::add_far(LayerSources& sources, const LayerTargets& targets, Net
   for (std::size_t k = 0; k < targets.far_rows.size(); ++k) u.row(targets.far_rows[k]) += sums.row(static_cast<Eigen::Index>(k));
 }
 
-void WallImages::take_image_stress(LayerSources& sources) {
+void WallImages::compute_image_stress(LayerSources& sources) {
   for (int c = 0; c < 3; ++c) {
     sources.set_moments_of_constant(c);
     const Net sums = sum_.sum(sources.moment);

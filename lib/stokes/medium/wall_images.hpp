@@ -23,14 +23,12 @@ class WallImages : public LayerMedium {
 
  private:
   void add_far(LayerSources& sources, const LayerTargets& targets, Net& u);
-  void take_image_stress(LayerSources& sources);
+  void compute_image_stress(LayerSources& sources);
   Vec3 beyond_far_sum(LayerSources& sources, int e, const PointTable& table, const Vec3& mirrored, const Vec3& at, const Vec3& f0) const;
   void panel_moments(LayerSources& sources, int e, const Vec3& at, std::vector<Mat3>& moments);
 
   ImageSum sum_;
-  std::vector<Mat3>
-      image_stress_;  // for each target, the far sum of the double layer of the images for the constant densities e_1, e_2 and e_3, as
-                      // columns
+  std::vector<Mat3> image_stress_;  // for each target, far sum of the double layer of the images; column c for the constant density e_c
   std::vector<Pack> scratch_;
 };
 

@@ -91,17 +91,17 @@ int TreeSum::row(std::size_t k) const {
 }
 
 void TreeSum::want(std::span<const int> rows) {
-  mark(rows);
+  mark_targets(rows);
   pairs_.clear();
   for (int image = 0; image < static_cast<int>(images_.size()); ++image)
-    for (int k = 0; k < n_trees_; ++k) meet(targets_[k * target_tree_.all().size()], sources_.all().front(), image);
-  if (parts_ > 1) take_part();
-  ask();
+    for (int k = 0; k < n_trees_; ++k) pair_up(targets_[k * target_tree_.all().size()], sources_.all().front(), image);
+  if (parts_ > 1) keep_part();
+  mark_sources();
 }
 
 /// Keeps only the pairs of clusters that belong to the part of the sum set by share(). Each part has an equal share of the work. A part contains
 /// adjacent source clusters, so that only few parts compute the strengths of a given cluster.
-void TreeSum::take_part() {
+void TreeSum::keep_part() {
   std::ranges::stable_sort(pairs_, {}, &Pair::source);
   long long before = 0, all = 0;
   for (const Pair& pair : pairs_) all += work(pair);
@@ -113,7 +113,7 @@ void TreeSum::take_part() {
 }
 
 /// Marks the source clusters whose Chebyshev nodes need strengths: clusters whose nodes enter a pair, and all their descendants that have nodes.
-void TreeSum::ask() {
+void TreeSum::mark_sources() {
   const std::vector<Cluster>& all = sources_.all();
   in_use_.assign(all.size(), 0);
   for (const Pair& pair : pairs_)
@@ -126,12 +126,12 @@ void TreeSum::ask() {
 
 void TreeSum::sum(const std::array<const double*, 6>& strengths, double* values) {
   interactions_ = 0;
-  collect(strengths);
+  spread_strengths(strengths);
   target_u_.assign(target_at_.size() / 3 * out_, 0);
   node_u_.assign(node_at_.size() / 3 * out_, 0);
   has_nodes_.assign(targets_.size(), 0);
   for (const Pair& pair : pairs_) add(pair);
-  hand_down();
+  interpolate_downwards();
   for (const Cluster& t : targets_) {
     if (!t.leaf()) continue;
     for (std::size_t k = t.first; k < static_cast<std::size_t>(t.last); ++k)
@@ -143,7 +143,7 @@ void TreeSum::sum(const std::array<const double*, 6>& strengths, double* values)
 
 /// Copies the source strengths into the order of the tree, and computes the strengths at the Chebyshev nodes of all clusters in use, from the leaves
 /// upwards.
-void TreeSum::collect(const std::array<const double*, 6>& strengths) {
+void TreeSum::spread_strengths(const std::array<const double*, 6>& strengths) {
   for (int c = 0; c < in_; ++c) {
     q_[c].resize(sources_.order().size());
     for (std::size_t k = 0; k < q_[c].size(); ++k) q_[c][k] = strengths[c][sources_.order()[k]];
@@ -151,7 +151,7 @@ void TreeSum::collect(const std::array<const double*, 6>& strengths) {
   }
   const std::vector<Cluster>& all = sources_.all();
   const Charges points = charges(sources_.points(), q_), nodes = charges(sources_.nodes(), node_q_);
-  const auto take = [&](const Cluster& c, const Charges& from) {
+  const auto spread_to = [&](const Cluster& c, const Charges& from) {
     std::array<double*, 6> to{};
     for (int d = 0; d < in_; ++d) to[d] = &node_q_[d][c.first_node];
     scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(in_) * c.n_nodes()));
@@ -160,15 +160,15 @@ void TreeSum::collect(const std::array<const double*, 6>& strengths) {
   for (auto c = all.rbegin(); c != all.rend(); ++c) {
     if (!in_use_[&*c - all.data()]) continue;
     if (c->leaf())
-      take(*c, points.part(c->first, c->n_points()));
+      spread_to(*c, points.part(c->first, c->n_points()));
     else
-      for (const int child : c->child)
-        take(*c, all[child].bare ? points.part(all[child].first, all[child].n_points()) : nodes.part(all[child].first_node, all[child].n_nodes()));
+      for (const int k : c->child)
+        spread_to(*c, all[k].bare ? points.part(all[k].first, all[k].n_points()) : nodes.part(all[k].first_node, all[k].n_nodes()));
   }
 }
 
-/// Determines which target clusters contain a target whose row is in `wanted`.
-void TreeSum::mark(std::span<const int> wanted) {
+/// Marks the rows `wanted` and the target clusters that contain a target of these rows.
+void TreeSum::mark_targets(std::span<const int> wanted) {
   row_.assign(n_trees_ * target_tree_.order().size(), 0);
   for (const int i : wanted) row_[i] = 1;
   wanted_.assign(targets_.size(), 0);
@@ -182,22 +182,22 @@ void TreeSum::mark(std::span<const int> wanted) {
 
 /// Divides the pair of clusters `target` and `source` recursively, and stores the pairs that are far apart or cannot be divided further. The sources
 /// are displaced by the lattice vector images_[image].
-void TreeSum::meet(const Cluster& target, const Cluster& source, int image) {
+void TreeSum::pair_up(const Cluster& target, const Cluster& source, int image) {
   if (!wanted_[&target - targets_.data()]) return;
   const Vec3& beyond = images_[static_cast<std::size_t>(image)];
   const bool source_far = source.serves(target, -beyond), target_far = target.serves(source, beyond);
   const bool many_targets = !target.bare, many_nodes = !source.bare;
-  if ((source_far || !many_nodes) && (target_far || !many_targets)) return note(target, many_targets, source, many_nodes, image);
-  if (target.leaf() && source.leaf()) return note(target, false, source, false, image);
+  if ((source_far || !many_nodes) && (target_far || !many_targets)) return add_pair(target, many_targets, source, many_nodes, image);
+  if (target.leaf() && source.leaf()) return add_pair(target, false, source, false, image);
   const bool source_to_blame = many_nodes && !source_far, target_to_blame = many_targets && !target_far;
   const bool halve_source = source_to_blame == target_to_blame ? source.radius > target.radius : source_to_blame;
   if (target.leaf() || (halve_source && !source.leaf()))
-    for (const int child : source.child) meet(target, sources_.all()[child], image);
+    for (const int child : source.child) pair_up(target, sources_.all()[child], image);
   else
-    for (const int child : target.child) meet(targets_[child], source, image);
+    for (const int child : target.child) pair_up(targets_[child], source, image);
 }
 
-void TreeSum::note(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes, int image) {
+void TreeSum::add_pair(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes, int image) {
   const auto number = [](const std::vector<Cluster>& all, const Cluster& cluster) { return static_cast<int>(&cluster - all.data()); };
   pairs_.push_back({number(targets_, target), number(sources_.all(), source), image, target_nodes, source_nodes});
 }
@@ -231,7 +231,7 @@ void TreeSum::add(const Pair& pair) {
 
 /// Interpolates the values at the Chebyshev nodes of each target cluster to the nodes of its children. In a leaf, and for a child that has no nodes,
 /// interpolates to the targets themselves.
-void TreeSum::hand_down() {
+void TreeSum::interpolate_downwards() {
   const std::vector<Cluster>& all = targets_;
   for (std::size_t t = 0; t < all.size(); ++t) {
     if (!has_nodes_[t]) continue;

@@ -51,21 +51,21 @@ class TreeSum {
 
  private:
   void sum(const std::array<const double*, 6>& strengths, double* values);
-  void collect(const std::array<const double*, 6>& strengths);
-  void mark(std::span<const int> wanted);
+  void spread_strengths(const std::array<const double*, 6>& strengths);
+  void mark_targets(std::span<const int> wanted);
   int row(std::size_t k) const;
-  void take_part();
-  void ask();
+  void keep_part();
+  void mark_sources();
   /// A pair of interacting clusters. Each of the two acts through its Chebyshev nodes (true) or through its points (false).
   struct Pair {
     int target, source, image;
     bool target_nodes, source_nodes;
   };
-  void meet(const Cluster& target, const Cluster& source, int image);
-  void note(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes, int image);
+  void pair_up(const Cluster& target, const Cluster& source, int image);
+  void add_pair(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes, int image);
   long long work(const Pair& pair) const;
   void add(const Pair& pair);
-  void hand_down();
+  void interpolate_downwards();
 
   Precision precision_;
   int part_ = 0, parts_ = 1;

@@ -10,10 +10,6 @@ namespace tanktread::coupling {
 
 namespace {
 
-using Flat = Eigen::Map<const Eigen::VectorXd>;
-
-Flat flat(const Net& net) { return {net.data(), net.size()}; }
-
 std::vector<Particle> without_others(std::span<const Particle> bodies) {
   std::vector<Particle> placed(bodies.begin(), bodies.end());
   set_blocks(placed);
@@ -28,13 +24,12 @@ spline::Space common_space(std::span<const Particle> bodies) {
 
 }  // namespace
 
-BodyLayer::BodyLayer(std::span<const Particle> bodies, double viscosity, const quadrature::Options& quadrature,
-                     const stokes::Medium* medium, std::span<const int> own, Ranks& ranks)
+BodyLayer::BodyLayer(std::span<const Particle> bodies, const CapsuleParameters& parameters, std::span<const int> own, Ranks& ranks)
     : bodies_(without_others(bodies)),
       space_(common_space(bodies_)),
-      viscosity_(viscosity),
+      viscosity_(parameters.viscosity),
       ranks_(ranks),
-      layer_(stokes::Layer::Kernel::single_layer, space_, space_.collocation, quadrature) {
+      layer_(stokes::Layer::Kernel::single_layer, space_, space_.collocation, parameters.quadrature) {
   for (const Particle& body : bodies) {
     in_.push_back(body.block);
     for (int a = body.block.first_point; a < body.block.first_point + body.block.n_points; ++a) {
@@ -43,9 +38,10 @@ BodyLayer::BodyLayer(std::span<const Particle> bodies, double viscosity, const q
     }
   }
   std::ranges::set_difference(own, points_, std::back_inserter(others_));
-  if (!others_.empty()) beyond_.emplace(stokes::Layer::Kernel::single_layer, space_, stokes::Sites(), quadrature);
-  if (medium) layer_.set_medium(*medium);
-  if (medium && beyond_) beyond_->set_medium(*medium);
+  if (!others_.empty()) beyond_.emplace(stokes::Layer::Kernel::single_layer, space_, stokes::Sites(), parameters.quadrature);
+  if (!parameters.medium) return;
+  layer_.set_medium(*parameters.medium);
+  if (beyond_) beyond_->set_medium(*parameters.medium);
 }
 
 /// Sets the two vectors of the regularising term (2.10) of each body. flux_: flux vector b = dV/dx, with the volume V. outward_: s (R c)/(b.c), with

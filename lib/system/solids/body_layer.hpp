@@ -7,11 +7,9 @@
 
 #include "base/dense_factors.hpp"
 #include "base/types.hpp"
-#include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/layer.hpp"
-#include "stokes/medium/medium.hpp"
-#include "system/particle.hpp"
+#include "system/capsule_parameters.hpp"
 #include "system/ranks.hpp"
 
 namespace tanktread::coupling {
@@ -21,9 +19,8 @@ namespace tanktread::coupling {
 class BodyLayer {
  public:
   /// `bodies`: the rigid bodies; their blocks are rows of nets of all particles. `own`: indices, in these nets, of the collocation points at which
-  /// this rank computes velocities. References must outlive this object.
-  BodyLayer(std::span<const Particle> bodies, double viscosity, const quadrature::Options& quadrature,
-            const stokes::Medium* medium, std::span<const int> own, Ranks& ranks);
+  /// this rank computes velocities. `ranks` must outlive this object.
+  BodyLayer(std::span<const Particle> bodies, const CapsuleParameters& parameters, std::span<const int> own, Ranks& ranks);
 
   /// Sets the shape x with the collocation sites `at`. Assembles and factors the single layer A at the sites of the bodies, without images on a
   /// lattice. `keep_rows`: true to store the matrix for many calls of velocity(); false to save memory, and velocity() is then zero in the rows of

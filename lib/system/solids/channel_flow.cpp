@@ -1,6 +1,7 @@
 #include "system/solids/channel_flow.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include "base/indices.hpp"
 #include "surface/geometry.hpp"
@@ -12,16 +13,17 @@ namespace {
 constexpr Eigen::Index few = 64;    // number of points from which on the ranks share the points; with fewer points, each rank evaluates all of them
 constexpr double sharpness = 1e-2;  // tolerance of `layer_` divided by the tolerance of all other layers
 
-/// Returns the fully developed flow in the cross-section at the start of the channel.
-stokes::DuctFlow at_inlet(const surface::Channel& channel, double viscosity, double mean_velocity) {
-  const surface::Outline outline = channel.outline(channel.start());
-  return {outline, stokes::duct_profile(channel.tube(channel.start()), outline), viscosity, mean_velocity};
+/// Returns the fully developed flow in the cross-section at the arc length s of the centre line, or at the start of the channel if s is not given.
+stokes::DuctFlow developed_flow(const surface::Channel& channel, double viscosity, double mean_velocity, std::optional<double> s = {}) {
+  const double at = s.value_or(channel.start());
+  const surface::Outline outline = channel.outline(at);
+  return {outline, stokes::duct_profile(channel.tube(at), outline), viscosity, mean_velocity};
 }
 }  // namespace
 
 ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
                          const WallSolver& solver)
-    : DuctFlow(at_inlet(surface::Channel(options), viscosity, mean_velocity)),
+    : DuctFlow(developed_flow(surface::Channel(options), viscosity, mean_velocity)),
       channel_(std::make_shared<const surface::Channel>(options)),
       surface_(std::make_shared<const surface::TubeWall>(surface::channel_wall(channel_, options.azimuthal_elements))),
       options_(options),
@@ -37,11 +39,7 @@ ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, 
 stokes::DuctEnd ChannelFlow::section(double s, int inward) const {
   const surface::Channel::Section at = channel_->section(s);
   const double area = channel_->outline().area() * at.factor.prod();
-  surface::TubeOptions tube = channel_->tube(s);
-  std::shared_ptr<const stokes::DuctProfile> profile;
-  const surface::Outline outline = channel_->outline(s);
-  profile = stokes::duct_profile(tube, outline);
-  return {DuctFlow(outline, profile, viscosity(), flow_rate() / area), at, inward};
+  return {developed_flow(*channel_, viscosity(), flow_rate() / area, s), at, inward};
 }
 
 std::shared_ptr<Wall> ChannelFlow::wall(Phases* phases) const {
@@ -62,7 +60,7 @@ std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry&
 /// Returns the velocity that drives the flow, without the velocity due to the wall traction. In an open channel it is P_I + P_O of (2.30), the
 /// contributions of both ends. In a periodic channel it is Poiseuille flow in a circular tube with a unit pressure gradient, for any shape of the
 /// section.
-Net ChannelFlow::ends(const Net& x) const {
+Net ChannelFlow::driving_velocity(const Net& x) const {
   if (!channel_->repeats()) return ends_[0].velocities(x) + ends_[1].velocities(x);
   Net v = Net::Zero(x.rows(), 3);
   v.col(0) = (std::pow(outline().radius(), 2) - x.rightCols<2>().rowwise().squaredNorm().array()) / (4 * viscosity());
@@ -75,7 +73,7 @@ const ChannelFlow::Solved& ChannelFlow::solved() const {
   Solved solved;
   const std::vector<int>& own = wall->points().own_targets();
   Net of_ends(wall->points().targets().rows(), 3);
-  of_ends(own, Eigen::all) = ends(wall->points().targets()(own, Eigen::all));
+  of_ends(own, Eigen::all) = driving_velocity(wall->points().targets()(own, Eigen::all));
   const Net without = viscosity() * wall->solve(wall->points().collocated(of_ends)), &with = wall->pumped();
   const double middle = (channel_->start() + channel_->end()) / 2;
   const stokes::DuctEnd::Points points = section(middle, 1).points();
@@ -100,8 +98,8 @@ quadrature::Options ChannelFlow::quadrature_of_flow() const {
   return options;
 }
 
-/// Returns the velocity at the points x due to the wall traction and the pressure drop, plus `driving` times the velocity ends(x) that drives the
-/// flow. If there are many points, ranks share them.
+/// Returns the velocity at the points x due to the wall traction and the pressure drop, plus `driving` times driving_velocity(x). If there are many
+/// points, ranks share them.
 Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const {
   const std::shared_ptr<Wall> wall = this->wall();
   if (!layer_) {
@@ -115,7 +113,7 @@ Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_d
     layer_->apply(density, x, own, v);
     Net rest = Net::Zero(at.rows(), 3);
     if (!wall->cell()) rest = pressure_drop / viscosity() * wall->inlet().integral(at);
-    if (driving != 0) rest += driving * ends(at);
+    if (driving != 0) rest += driving * driving_velocity(at);
     v(own, Eigen::all) = rest - v(own, Eigen::all) / viscosity();
   };
   if (x.rows() >= few) return wall->points().ranks().divided<Net>(static_cast<int>(x.rows()), 3, evaluate);
@@ -124,14 +122,14 @@ Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_d
   return v;
 }
 
-Net ChannelFlow::at(const Net& x) const {
+Net ChannelFlow::evaluated(const Net& x) const {
   const Solved& known = solved();
   return velocities(x, known.traction, known.pressure_drop, known.driving);
 }
 
 Net ChannelFlow::velocities(const Net& x) const {
-  if (x.rows() < few) return at(x);
-  if (latest_at_.rows() != x.rows() || latest_at_ != x) latest_ = at(x), latest_at_ = x;
+  if (x.rows() < few) return evaluated(x);
+  if (!same(latest_at_, x)) latest_ = evaluated(x), latest_at_ = x;
   return latest_;
 }
 
@@ -141,7 +139,7 @@ std::vector<Mat3> ChannelFlow::gradients(const Net& x) const {
   const Net here = velocities(x);
   for (int d = 0; d < 3; ++d) {
     const Eigen::RowVector3d step = h * Eigen::RowVector3d::Unit(d);
-    const Net slope = (at(x.rowwise() + step) - here) / h;
+    const Net slope = (evaluated(x.rowwise() + step) - here) / h;
     for (Eigen::Index i = 0; i < x.rows(); ++i) all[static_cast<std::size_t>(i)].col(d) = slope.row(i).transpose();
   }
   return all;
@@ -160,7 +158,7 @@ std::vector<double> ChannelFlow::flow_rates_at(const std::vector<double>& s) con
   Net all(n, 3);
   n = 0;
   for (const stokes::DuctEnd::Points& of : points) all.middleRows(n, of.x.rows()) = of.x, n += of.x.rows();
-  const Net v = at(all);
+  const Net v = evaluated(all);
   std::vector<double> rates;
   n = 0;
   for (std::size_t k = 0; k < s.size(); ++k) {

@@ -61,14 +61,14 @@ class ChannelFlow : public stokes::DuctFlow {
 
  private:
   struct Solved {
-    double pressure_drop = 0, driving = 1;  // driving: factor of the velocity ends(), which drives the flow
+    double pressure_drop = 0, driving = 1;  // driving: factor of driving_velocity()
     Net traction;
   };
   const Solved& solved() const;
-  Net ends(const Net& x) const;
+  Net driving_velocity(const Net& x) const;
   quadrature::Options quadrature_of_flow() const;
   Net velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const;
-  Net at(const Net& x) const;
+  Net evaluated(const Net& x) const;  // velocities at x, not cached
   stokes::DuctEnd section(double s, int inward) const;
 
   std::shared_ptr<const surface::Channel> channel_;

@@ -45,7 +45,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
       layer.apply(field / particle.radius, all, at_sites);
       at_sites += factors->sites * bodies.self_correction(p, k) / particle.radius;
     }
-    matrix += Eigen::Map<const Eigen::VectorXd>(at_sites.data(), at_sites.size()) * bodies.mean_functional(p, k).transpose();
+    matrix += flat(at_sites) * bodies.mean_functional(p, k).transpose();
   }
   factors->inverse = DenseFactors(matrix).inverse();
   return factors;
@@ -56,7 +56,7 @@ const OneBodyInverses::Use* OneBodyInverses::of_particle(std::size_t p) const {
   return use == factors_.end() ? nullptr : &*use;
 }
 
-void OneBodyInverses::take_to_sites(Net& y) const {
+void OneBodyInverses::evaluate_at_sites(Net& y) const {
   for (const auto& [particle, block, factors] : factors_) block.rows(y) = factors->sites * Net(block.rows(y));
 }
 
@@ -64,8 +64,8 @@ void OneBodyInverses::solve(const RigidParticles& placed, Net& y) const {
   for (const auto& [particle, block, factors] : factors_) {
     const Mat3 turn = placed.turn(particle);
     const Net right = block.rows(y) * turn;
-    const Eigen::VectorXd solution = factors->inverse * Eigen::Map<const Eigen::VectorXd>(right.data(), right.size());
-    block.rows(y) = Eigen::Map<const Net>(solution.data(), right.rows(), 3) * turn.transpose();
+    const Eigen::VectorXd solution = factors->inverse * flat(right);
+    block.rows(y) = as_net(solution) * turn.transpose();
   }
 }
 
@@ -120,10 +120,10 @@ FilmInverses::FilmInverses(std::span<const Particle> particles, const OneBodyInv
                            const RowsOf& rows_of) {
   if (alone.empty()) return;
   Net sites = x;
-  alone.take_to_sites(sites);
+  alone.evaluate_at_sites(sites);
   std::vector<Side> sides;
   for (std::size_t p = 0; p < particles.size(); ++p)
-    if (alone.serves(p)) sides.emplace_back(p, particles[p], sites);
+    if (alone.has(p)) sides.emplace_back(p, particles[p], sites);
   for (auto one = sides.begin(); one != sides.end(); ++one)
     for (auto other = one + 1; other != sides.end(); ++other) {
       const double reach = widest * std::min(one->radius, other->radius);
@@ -147,8 +147,8 @@ void FilmInverses::add(Net& y) const {
   const Net before = y;
   for (const Film& film : films_) {
     const Net own = before(film.sites, Eigen::all);
-    const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(own.data(), own.size()), change = film.one_and_coupling.solve(right) - right;
-    y(film.sites, Eigen::all) += Eigen::Map<const Net>(change.data(), own.rows(), 3);
+    const Eigen::VectorXd right = flat(own), change = film.one_and_coupling.solve(right) - right;
+    y(film.sites, Eigen::all) += as_net(change);
   }
 }
 

@@ -28,12 +28,10 @@ class OneBodyInverses {
   OneBodyInverses(std::span<const Particle> particles, const RigidParticles& bodies, const Net& rest, const quadrature::Options& quadrature);
 
   bool empty() const { return factors_.empty(); }
-
-  /// Returns whether the inverse of the system (2.23) of particle p is stored.
-  bool serves(std::size_t p) const { return of_particle(p) != nullptr; }
+  bool has(std::size_t p) const { return of_particle(p) != nullptr; }  ///< returns whether the inverse of the system of particle p is stored
 
   /// Replaces control values by values at the collocation sites, in the rows of all bodies whose inverse is stored.
-  void take_to_sites(Net& y) const;
+  void evaluate_at_sites(Net& y) const;
 
   /// Solves the system (2.23) of every isolated body whose inverse is stored. In the rows of the body, y has the right-hand sides at the collocation
   /// sites on entry, and the control values of the solution on return. `placed`: current positions of the bodies.

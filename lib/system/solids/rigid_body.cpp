@@ -27,10 +27,7 @@ Eigen::Matrix<double, 5, 1> strain_components(const Mat3& e) {
   return c;
 }
 
-Eigen::Quaterniond quaternion(const Net& place) { return {place(2, 0), place(1, 0), place(1, 1), place(1, 2)}; }
-
-/// Returns half the curl of a flow with gradient L_ij = dv_i/dx_j.
-Vec3 angular_velocity(const Mat3& l) { return 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1)); }
+Eigen::Quaterniond quaternion(const Net& position) { return {position(2, 0), position(1, 0), position(1, 1), position(1, 2)}; }
 
 }  // namespace
 
@@ -71,7 +68,7 @@ RigidModes::RigidModes(RigidTractions& body, const Net& surface, const Vec3& cen
   for (int k = 0; k < velocities.cols(); ++k) velocities.col(k) = field(k).reshaped<Eigen::RowMajor>();
   const Eigen::MatrixXd densities = body.layer().solved(velocities);
   for (int k = 0; k < densities.cols(); ++k) {
-    density.push_back(Eigen::Map<const Net>(densities.col(k).data(), at.rows(), 3));
+    density.push_back(as_net(densities.col(k)));
     const SolvedBody found = body.integrals(0, density.back());
     response.col(k) << found.force, found.torque;
     stresslet.push_back(found.stresslet());
@@ -79,15 +76,37 @@ RigidModes::RigidModes(RigidTractions& body, const Net& surface, const Vec3& cen
 }
 
 Net placed(const Vec3& centre) {
-  Net place = Net::Zero(3, 3);
-  place.row(0) = centre.transpose();
-  place(2, 0) = 1;
-  return place;
+  Net position = Net::Zero(3, 3);
+  position.row(0) = centre.transpose();
+  position(2, 0) = 1;
+  return position;
 }
 
-Vec3 centre_of(const Net& place) { return place.row(0).transpose(); }
+Vec3 centre_of(const Net& position) { return position.row(0).transpose(); }
 
-Mat3 rotation_of(const Net& place) { return quaternion(place).normalized().toRotationMatrix(); }
+Mat3 rotation_of(const Net& position) { return quaternion(position).normalized().toRotationMatrix(); }
+
+Net LoneRigidBody::velocity(const Net& position) {
+  ++evaluations_;
+  const RigidMotion now = motion(position);
+  const Eigen::Quaterniond q = quaternion(position);
+  const Eigen::Quaterniond rate = Eigen::Quaterniond(0, now.angular_velocity[0], now.angular_velocity[1], now.angular_velocity[2]) * q;
+  Net slope = Net::Zero(3, 3);
+  slope.row(0) = now.velocity.transpose();
+  slope.row(1) = 0.5 * rate.vec().transpose();
+  slope(2, 0) = 0.5 * rate.w();
+  return slope;
+}
+
+void LoneRigidBody::restore_volume(Net& position) { position.bottomRows<2>() /= quaternion(position).norm(); }
+
+double LoneRigidBody::norm(const Net& displacement) const {
+  return std::hypot(displacement.row(0).norm() / radius_, 2 * displacement.bottomRows<2>().norm());
+}
+
+Net LoneRigidBody::moved(const Net& x, const Net& position) const {
+  return ((x.rowwise() - centre_.transpose()) * rotation_of(position).transpose()).rowwise() + position.row(0);
+}
 
 FreeBody::FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
                    const RigidDrive& driven)
@@ -98,8 +117,8 @@ FreeBody::FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre,
 
 /// Returns the amplitudes of the modes (RigidModes) of the disturbance velocity on the body, in body-fixed axes. These are the rigid motion relative
 /// to the flow, the negative strain rate of the flow and, if the flow is quadratic, its negative quadratic coefficients.
-Eigen::VectorXd FreeBody::amplitudes(const Net& place) const {
-  const Mat3 turn = rotation_of(place), l = turn.transpose() * flow_.gradient(centre_of(place)) * turn;
+Eigen::VectorXd FreeBody::amplitudes(const Net& position) const {
+  const Mat3 turn = rotation_of(position), l = turn.transpose() * flow_.gradient(centre_of(position)) * turn;
   Eigen::VectorXd a(modes_.response.cols());
   a.segment<5>(6) = -strain_components(0.5 * (l + l.transpose()));
   if (!flow_.affine()) {
@@ -116,47 +135,25 @@ Eigen::VectorXd FreeBody::amplitudes(const Net& place) const {
   return a;
 }
 
-RigidMotion FreeBody::motion(const Net& place) const {
-  const Eigen::VectorXd a = amplitudes(place);
-  const Mat3 turn = rotation_of(place);
-  const Vec3 centre = centre_of(place);
-  return {flow_.velocity(centre) + turn * a.segment<3>(0), angular_velocity(flow_.gradient(centre)) + turn * a.segment<3>(3)};
+RigidMotion FreeBody::motion(const Net& position) const {
+  const Eigen::VectorXd a = amplitudes(position);
+  const Mat3 turn = rotation_of(position);
+  const Vec3 centre = centre_of(position);
+  return {flow_.velocity(centre) + turn * a.segment<3>(0), 0.5 * axial_vector(flow_.gradient(centre)) + turn * a.segment<3>(3)};
 }
 
-Net LoneRigidBody::velocity(const Net& place) {
-  ++evaluations_;
-  const RigidMotion now = motion(place);
-  const Eigen::Quaterniond q = quaternion(place);
-  const Eigen::Quaterniond rate = Eigen::Quaterniond(0, now.angular_velocity[0], now.angular_velocity[1], now.angular_velocity[2]) * q;
-  Net slope = Net::Zero(3, 3);
-  slope.row(0) = now.velocity.transpose();
-  slope.row(1) = 0.5 * rate.vec().transpose();
-  slope(2, 0) = 0.5 * rate.w();
-  return slope;
-}
-
-void LoneRigidBody::restore_volume(Net& place) { place.bottomRows<2>() /= quaternion(place).norm(); }
-
-double LoneRigidBody::norm(const Net& displacement) const {
-  return std::hypot(displacement.row(0).norm() / radius_, 2 * displacement.bottomRows<2>().norm());
-}
-
-Net LoneRigidBody::moved(const Net& x, const Net& place) const {
-  return ((x.rowwise() - centre_.transpose()) * rotation_of(place).transpose()).rowwise() + place.row(0);
-}
-
-Net FreeBody::force_density(const Net& place) const {
-  const Eigen::VectorXd a = amplitudes(place);
+Net FreeBody::force_density(const Net& position) const {
+  const Eigen::VectorXd a = amplitudes(position);
   Net f = Net::Zero(surface_.rows(), 3);
   for (Eigen::Index k = 0; k < a.size(); ++k) f += a[k] * modes_.density[static_cast<size_t>(k)];
-  return f * rotation_of(place).transpose();
+  return f * rotation_of(position).transpose();
 }
 
-Mat3 FreeBody::stresslet(const Net& place) const {
-  const Eigen::VectorXd a = amplitudes(place);
+Mat3 FreeBody::stresslet(const Net& position) const {
+  const Eigen::VectorXd a = amplitudes(position);
   Mat3 s = Mat3::Zero();
   for (Eigen::Index k = 0; k < a.size(); ++k) s -= a[k] * modes_.stresslet[static_cast<size_t>(k)];
-  const Mat3 turn = rotation_of(place);
+  const Mat3 turn = rotation_of(position);
   return turn * s * turn.transpose();
 }
 

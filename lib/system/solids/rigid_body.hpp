@@ -33,8 +33,8 @@ struct RigidModes {
 /// Returns the state of a rigid body in its initial orientation. A state is a net of three rows: the centre, and the vector part and the scalar part
 /// of the quaternion that rotates the body from its initial orientation.
 Net placed(const Vec3& centre);
-Vec3 centre_of(const Net& place);
-Mat3 rotation_of(const Net& place);
+Vec3 centre_of(const Net& position);
+Mat3 rotation_of(const Net& position);
 
 /// Centre and orientation of a single rigid body as a system dx/dt = v(x).
 class LoneRigidBody : public Dynamics {
@@ -47,19 +47,19 @@ class LoneRigidBody : public Dynamics {
   void at(double time, double start) override { flow_.at(time, start); }
   double next_kink(double time) const override { return flow_.next_kink(time); }
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< flow at the time set last
-  Net velocity(const Net& place) override;
+  Net velocity(const Net& position) override;
   void freeze(const Net&) override {}
   void linearise(const Net&) override {}
   Net solve(double, const Net& r, double, const Secants&) override { return r; }  ///< returns r: the Jacobian is taken as 0, because the motion is
                                                                                   ///< not stiff
   Net jacobian_error(const Net& change, const Net& delta, double shift) override { return change + delta / shift; }
-  void restore_volume(Net& place) override;                       ///< normalises the quaternion; the volume of a rigid body needs no correction
+  void restore_volume(Net& position) override;                       ///< normalises the quaternion; the volume of a rigid body needs no correction
   double norm(const Net& displacement) const override;            ///< combines the displacement of the centre, divided by R_C, and the angle of
                                                                   ///< rotation
 
-  virtual RigidMotion motion(const Net& place) const = 0;
-  virtual Net force_density(const Net& place) const = 0;  ///< force density on the fluid, control values
-  virtual Mat3 stresslet(const Net& place) const = 0;     ///< int [(t_i x_j + t_j x_i)/2 - delta_ij t.x/3] dG; t: traction on the body
+  virtual RigidMotion motion(const Net& position) const = 0;
+  virtual Net force_density(const Net& position) const = 0;  ///< force density on the fluid, control values
+  virtual Mat3 stresslet(const Net& position) const = 0;     ///< int [(t_i x_j + t_j x_i)/2 - delta_ij t.x/3] dG; t: traction on the body
   virtual double pressure_drop(const Net&) const { return 0; }  ///< additional pressure drop due to the body, in a tube
 
   /// Returns the latest solution of the linear system; empty if no system is solved iteratively. The next solve starts from this solution.
@@ -70,12 +70,12 @@ class LoneRigidBody : public Dynamics {
   virtual long linear_solves() const = 0;               ///< number of linear systems solved for the motion, including the construction
   virtual long solver_iterations() const { return 0; }  ///< number of iterations of the linear solver since construction
 
-  Net surface(const Net& place) const { return moved(surface_, place); }  ///< control net of the surface in the laboratory frame
+  Net surface(const Net& position) const { return moved(surface_, position); }  ///< control net of the surface in the laboratory frame
   const Vec3& centre() const { return centre_; }  ///< centre at the initial position
   long evaluations() const { return evaluations_; }
 
  protected:
-  Net moved(const Net& x, const Net& place) const;  ///< returns points of the body in its initial position, moved to `place`
+  Net moved(const Net& x, const Net& position) const;  ///< returns points of the body in its initial position, moved to `position`
 
   Net surface_;
   Vec3 centre_;
@@ -95,13 +95,13 @@ class FreeBody : public LoneRigidBody {
   FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
            const RigidDrive& driven = {});
 
-  RigidMotion motion(const Net& place) const override;
-  Net force_density(const Net& place) const override;
-  Mat3 stresslet(const Net& place) const override;
+  RigidMotion motion(const Net& position) const override;
+  Net force_density(const Net& position) const override;
+  Mat3 stresslet(const Net& position) const override;
   long linear_solves() const override { return modes_.response.cols(); }
 
  private:
-  Eigen::VectorXd amplitudes(const Net& place) const;
+  Eigen::VectorXd amplitudes(const Net& position) const;
 
   RigidModes modes_;
   Eigen::Matrix<double, 6, 6> mobility_;            ///< column k: rigid motion due to the unit force (k = 0, 1, 2) or unit torque (k = 3, 4, 5)
@@ -124,12 +124,12 @@ class BoundedFreeBody : public LoneRigidBody {
                  const RigidDrive& driven = {});
 
   void at(double time, double start) override {
-    if (flow_.at(time, start)) place_ = {};
+    if (flow_.at(time, start)) position_ = {};
   }
-  RigidMotion motion(const Net& place) const override { return solution(place).motion; }
-  Net force_density(const Net& place) const override { return solution(place).density; }
-  Mat3 stresslet(const Net& place) const override { return solution(place).stresslet; }
-  double pressure_drop(const Net& place) const override;
+  RigidMotion motion(const Net& position) const override { return solution(position).motion; }
+  Net force_density(const Net& position) const override { return solution(position).density; }
+  Mat3 stresslet(const Net& position) const override { return solution(position).stresslet; }
+  double pressure_drop(const Net& position) const override;
   Eigen::VectorXd unknowns() const override { return unknowns_; }
   void start_from(const Eigen::VectorXd& unknowns) override { unknowns_ = unknowns; }
   long linear_solves() const override { return evaluations(); }
@@ -141,18 +141,18 @@ class BoundedFreeBody : public LoneRigidBody {
     Net density;
     Mat3 stresslet;
   };
-  const Solution& solution(const Net& place) const;
-  Solution in_tube(const Net& place) const;
-  Solution in_medium(const Net& place) const;
+  const Solution& solution(const Net& position) const;
+  Solution in_tube(const Net& position) const;
+  Solution in_medium(const Net& position) const;
   Net caused(const Net& f, const Mat3& turn) const;
-  Net density_at_rest(const Net& place, const Net& velocities) const;
+  Net density_at_rest(const Net& position, const Net& velocities) const;
 
   RigidTractions& body_;
   double viscosity_;
   std::optional<RigidModes> modes_;  // force densities for unit motions and unit flows, without the effect of the tube
-  mutable Net place_;                 // position of the body (centre and quaternion, see placed()) at the latest solve; empty if there is no valid
+  mutable Net position_;                 // state of the body (centre and quaternion, see placed()) at the latest solve; empty if there is no valid
                                       // solution
-  mutable Solution solution_;         // solution at the position `place_`
+  mutable Solution solution_;         // solution at `position_`
   mutable Eigen::VectorXd unknowns_;  // traction and rigid motion found by the latest solve, from which the next solve starts
   mutable long iterations_ = 0;
 };

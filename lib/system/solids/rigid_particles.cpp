@@ -74,9 +74,9 @@ SelfCorrection::SelfCorrection(const spline::Space& space, const Net& surface, c
   const Eigen::MatrixXd collocated = weighted_double_layer(space.collocation, identity, space, surface, quadrature);
   density.resize(3 * n, 3 * n);
   for (int column = 0; column < 3 * n; ++column) {
-    const auto field = [&](const Eigen::MatrixXd& of) { return Eigen::Map<const Net>(of.col(column).data(), n, 3); };
+    const auto field = [&](const Eigen::MatrixXd& of) { return as_net(of.col(column)); };
     const Net correction = mass.solve(field(projected)) - interpolation.solve(Net(field(collocated)));
-    density.col(column) = Eigen::Map<const Eigen::VectorXd>(correction.data(), correction.size());
+    density.col(column) = flat(correction);
   }
 }
 
@@ -134,7 +134,7 @@ void RigidParticles::fit_to(Net& x) {
   }
 }
 
-RigidMotion RigidParticles::Body::carrying(const Vec3& f, const Vec3& t) const {
+RigidMotion RigidParticles::Body::with_integrals(const Vec3& f, const Vec3& t) const {
   Motions right;
   right << turn.transpose() * f, turn.transpose() * t;
   const Motions motions = inertia.partialPivLu().solve(right);
@@ -144,7 +144,7 @@ RigidMotion RigidParticles::Body::carrying(const Vec3& f, const Vec3& t) const {
 RigidMotion RigidParticles::Body::mean(const Net& w) const {
   const auto rows = block.rows(w);
   const Mat3 moments = turn * (moment.transpose() * rows);  // int r w
-  return carrying(rows.transpose() * weight, Vec3(moments(1, 2) - moments(2, 1), moments(2, 0) - moments(0, 2), moments(0, 1) - moments(1, 0)));
+  return with_integrals(rows.transpose() * weight, axial_vector(moments.transpose()));
 }
 
 Net RigidParticles::Body::field(const RigidMotion& of) const { return rigid_velocity(rest * turn.transpose(), of, Vec3::Zero()); }
@@ -166,7 +166,7 @@ RigidDrive RigidParticles::Body::given() const {
 
 void RigidParticles::add_load(Net& load) const {
   for (const Body& body : bodies_)
-    if (const RigidDrive given = body.given(); !given.prescribed) body.block.rows(load) -= body.field(body.carrying(given.force, given.torque));
+    if (const RigidDrive given = body.given(); !given.prescribed) body.block.rows(load) -= body.field(body.with_integrals(given.force, given.torque));
 }
 
 Net RigidParticles::Body::single_layer_correction(const RigidMotion& load) const {
@@ -182,14 +182,14 @@ Net RigidParticles::Body::single_layer_correction(const RigidMotion& load) const
 Net RigidParticles::Body::double_layer_correction(const Net& w) const {
   if (self_correction->density.size() == 0) return Net::Zero(rest.rows(), 3);
   const Net own = block.rows(w) * turn;
-  const Eigen::VectorXd sum = self_correction->density * Eigen::Map<const Eigen::VectorXd>(own.data(), own.size());
-  return Eigen::Map<const Net>(sum.data(), rest.rows(), 3) * turn.transpose();
+  const Eigen::VectorXd sum = self_correction->density * flat(own);
+  return as_net(sum) * turn.transpose();
 }
 
 void RigidParticles::add_load_correction(Net& v) const {
   for (const Body& body : bodies_)
     if (const RigidDrive given = body.given(); !given.prescribed)
-      body.block.rows(v) += body.single_layer_correction(body.carrying(given.force, given.torque)) / body.viscosity;
+      body.block.rows(v) += body.single_layer_correction(body.with_integrals(given.force, given.torque)) / body.viscosity;
 }
 
 void RigidParticles::subtract_prescribed(Net& v) const {
@@ -254,13 +254,13 @@ Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
   const Motions row = of.inertia.inverse().row(k).transpose();
   Net functional = of.weight * row.head<3>().transpose();
   for (Eigen::Index a = 0; a < functional.rows(); ++a) functional.row(a) += row.tail<3>().cross(Vec3(of.moment.row(a).transpose())).transpose();
-  return Eigen::Map<const Eigen::VectorXd>(functional.data(), functional.size());
+  return flat(functional);
 }
 
 /// Computes int df r dG in closed form for the load df = -(a + b x r). The vectors a and b follow from the force and torque on body p.
 Mat3 RigidParticles::load_moment(std::size_t p) const {
   const Body& of = body(p);
-  const RigidMotion load = of.carrying(of.force, of.torque);
+  const RigidMotion load = of.with_integrals(of.force, of.torque);
   const Mat3 second = of.turn * of.second * of.turn.transpose();
   return -(load.velocity * (of.turn * of.first).transpose() + cross(load.angular_velocity) * second);
 }

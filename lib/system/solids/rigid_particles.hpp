@@ -127,7 +127,7 @@ class RigidParticles {
 
     RigidDrive given() const;
     RigidMotion mean(const Net& w) const;      // rigid motion <w> of (2.23): least-squares fit over the body. `w`: net of all particles
-    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // load a + b x r with the given force and torque
+    RigidMotion with_integrals(const Vec3& force, const Vec3& torque) const;  // a + b x r with these integrals
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
     Net single_layer_correction(const RigidMotion& load) const;         // SelfCorrection of the single layer R^-1 A f of the load f = a + b x r
     Net double_layer_correction(const Net& w) const;                    // SelfCorrection of the double layer R^-1 H w with density w; `w`: net of

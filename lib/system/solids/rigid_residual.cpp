@@ -26,12 +26,11 @@ quadrature::Options for_residual(quadrature::Options options) {
 
 }  // namespace
 
-RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles,
-                             double viscosity, const quadrature::Options& quadrature, const stokes::Medium* medium, Ranks& ranks)
-    : viscosity_(viscosity),
+RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, Ranks& ranks)
+    : viscosity_(parameters.viscosity),
       ranks_(ranks),
-      between_(between_sites(space, rest, blocks_of_bodies(particles))),
-      layers_(space, between_.places, unstressed, particles, for_residual(quadrature), medium) {}
+      between_(between_sites(space, rest, blocks_of_bodies(parameters.particles))),
+      layers_(space, between_.sites, unstressed, parameters.particles, for_residual(parameters.quadrature), parameters.medium.get()) {}
 
 Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls) {
   layers_.set_shape(x);

@@ -9,11 +9,10 @@
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "stokes/medium/medium.hpp"
+#include "system/capsule_parameters.hpp"
 #include "system/collocation.hpp"
 #include "system/layer_pair.hpp"
-#include "system/particle.hpp"
 #include "system/ranks.hpp"
-#include "system/solids/solid_response.hpp"
 #include "system/solids/tube.hpp"
 
 namespace tanktread::coupling {
@@ -29,9 +28,8 @@ struct FluidWalls {
 /// collocation error. Calls are collective.
 class RigidResidual {
  public:
-  /// The arguments are explained at the constructor of RigidTractions. Only `particles` that are rigid bodies have Gauss points.
-  RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles, double viscosity,
-                const quadrature::Options& quadrature, const stokes::Medium* medium, Ranks& ranks);
+  /// The arguments are explained at the constructor of RigidTractions. Only rigid bodies have Gauss points.
+  RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, Ranks& ranks);
 
   void repeat(const stokes::PeriodicCell& cell) { layers_.repeat(cell); }
 

@@ -11,12 +11,6 @@ namespace tanktread::coupling {
 
 namespace {
 
-using Flat = Eigen::Map<const Eigen::VectorXd>;
-
-Flat flat(const Net& net) { return {net.data(), net.size()}; }
-
-Eigen::Map<const Net> as_net(const Eigen::Ref<const Eigen::VectorXd>& numbers) { return {numbers.data(), numbers.size() / 3, 3}; }
-
 /// Sets six columns to the velocities of a body's unit motions at x, in the rows of the body. If x is a control net, the columns contain control
 /// values.
 void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
@@ -38,17 +32,16 @@ std::vector<Particle> bodies_among(std::span<const Particle> particles) {
   return bodies;
 }
 
-Particle single(const spline::Space& space, double radius) {
-  Particle body;
+/// Returns the parameters of a single body. The options of `Solvers/traction` replace the options of `Solvers/velocity`.
+CapsuleParameters single(const spline::Space& space, double radius, double viscosity, const quadrature::Options& quadrature,
+                         const SolverOptions& solvers, std::shared_ptr<const stokes::Medium> medium) {
+  CapsuleParameters parameters;
+  Particle& body = parameters.particles.front();
   body.space = &space, body.block = spline::whole(space), body.radius = radius;
   body.rigid.emplace(), body.by_traction = true;
-  return body;
-}
-
-/// Returns the options for the system of a single body: the options of `Solvers/traction` replace the options of `Solvers/velocity`.
-SolverOptions for_single(SolverOptions solvers) {
-  solvers.velocity = solvers.traction;
-  return solvers;
+  parameters.viscosity = viscosity, parameters.quadrature = quadrature, parameters.medium = std::move(medium);
+  parameters.solvers = solvers, parameters.solvers.velocity = solvers.traction;
+  return parameters;
 }
 
 /// Returns the indices 6 p + k of the unit motions k = 0 .. 5 of all bodies p whose motion is not prescribed.
@@ -89,23 +82,21 @@ Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& res
 
 }  // namespace
 
-RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles,
-                               double viscosity, const quadrature::Options& quadrature, const SolverOptions& solvers,
-                               std::shared_ptr<const stokes::Medium> medium, Tube* tube, const std::vector<int>& own, Ranks& ranks)
-    : particles_(bodies_among(particles)),
-      walls_{tube, nullptr, std::move(medium)},
-      layer_(particles_, viscosity, quadrature, walls_.medium.get(), own, ranks),
-      residual_(space, unstressed, rest, particles, viscosity, quadrature, walls_.medium.get(), ranks),
+RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, Tube* tube,
+                               const std::vector<int>& own, Ranks& ranks)
+    : particles_(bodies_among(parameters.particles)),
+      walls_{tube, nullptr, parameters.medium},
+      layer_(particles_, parameters, own, ranks),
+      residual_(space, unstressed, rest, parameters, ranks),
       collocation_(collocation_matrix(space)),
       mass_(space, 8),  // mass matrix by eight Gauss points per direction, because the area element is not a polynomial
-      krylov_(solvers.of(solvers.velocity)),
-      tolerance_(solvers.tolerance),
+      krylov_(parameters.solvers.of(parameters.solvers.velocity)),
+      tolerance_(parameters.solvers.tolerance),
       bodies_(particles_.size()) {}
 
 RigidTractions::RigidTractions(const spline::Space& space, const Net& surface, double radius, double viscosity, const quadrature::Options& quadrature,
                                const SolverOptions& solvers, Ranks& ranks, Tube* tube, std::shared_ptr<const stokes::Medium> medium)
-    : RigidTractions(space, surface, surface, std::vector{single(space, radius)}, viscosity, quadrature, for_single(solvers), std::move(medium), tube,
-                     {}, ranks) {
+    : RigidTractions(space, surface, surface, single(space, radius, viscosity, quadrature, solvers, std::move(medium)), tube, {}, ranks) {
   if (tube) tube->particles().set_reference(surface);
 }
 
@@ -130,11 +121,10 @@ Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
   if (!responds()) return layer_.solved(velocities);
   const Eigen::Index n = velocities.rows();
-  const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n / 3, 3) = product(Eigen::Map<const Net>(in, n / 3, 3)); };
   const auto precondition = [&](const double* in, double* out) {
     Eigen::Map<Eigen::VectorXd>(out, n) = layer_.solved(Eigen::Map<const Eigen::VectorXd>(in, n));
   };
-  const LinearSystem system{{{"traction", n}}, apply, precondition};
+  const LinearSystem system{{{"traction", n}}, on_nets(n / 3, [this](const Net& y) { return product(y); }), precondition};
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, velocities.cols());
   for (Eigen::Index k = 0; k < all.cols(); ++k) {
     if (velocities.col(k).isZero(0)) continue;
@@ -243,7 +233,7 @@ SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {
   SolvedBody body;
   body.force = weighted.colwise().sum().transpose();
   body.moment = weighted.transpose() * (block.rows(x_).rowwise() - centres_[p].transpose());
-  body.torque << body.moment(2, 1) - body.moment(1, 2), body.moment(0, 2) - body.moment(2, 0), body.moment(1, 0) - body.moment(0, 1);
+  body.torque = axial_vector(body.moment);
   return body;
 }
 

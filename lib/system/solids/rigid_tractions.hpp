@@ -14,13 +14,12 @@
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "stokes/medium/medium.hpp"
-#include "system/particle.hpp"
+#include "system/capsule_parameters.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/body_layer.hpp"
 #include "system/solids/rigid_motion.hpp"
 #include "system/solids/rigid_residual.hpp"
 #include "system/solvers/krylov.hpp"
-#include "system/solvers/options.hpp"
 
 namespace tanktread::coupling {
 
@@ -49,10 +48,9 @@ namespace tanktread::coupling {
 ///   error of v_inf (2.41).
 class RigidTractions {
  public:
-  /// `space`: common space of all particles. `unstressed`, `rest`: control nets of all particles, unstressed and at rest. `own`: collocation points
-  /// whose rows this rank computes. References must outlive this object.
-  RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles, double viscosity,
-                 const quadrature::Options& quadrature, const SolverOptions& solvers, std::shared_ptr<const stokes::Medium> medium, Tube* tube,
+  /// `space`: common space of all particles. `unstressed`, `rest`: control nets of all particles, unstressed and at rest. `tube`: null if there is no
+  /// tube. `own`: collocation points whose rows this rank computes. References, except `parameters`, must outlive this object.
+  RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, Tube* tube,
                  const std::vector<int>& own, Ranks& ranks);
 
   /// Constructs the equation of a single body, in a tube or in a medium if they are given. `surface`: net of the body.

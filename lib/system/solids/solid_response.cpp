@@ -36,7 +36,7 @@ SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space
       particles_(space, scene.solids->viscosity(), scene.quadrature, &scene.solids->cell(), {.across = scene.solids->across()}) {}
 
 void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> own) {
-  if (shape_.rows() == x.rows() && shape_ == x && at_.rows() == at.rows() && at_ == at && std::ranges::equal(own, own_)) return;
+  if (same(shape_, x) && same(at_, at) && std::ranges::equal(own, own_)) return;
   shape_ = x, at_ = at;
   own_.assign(own.begin(), own.end());
   particles_.set_shape(x);

@@ -154,7 +154,7 @@ Solids::Flow Solids::solve(const Net& u, const Vec3& force) const {
   if (plates_) f = plates_->solve(u, given);
   const Eigen::Index n = given.size();
   Eigen::VectorXd right(n + m);
-  right.head(n) = Eigen::Map<const Eigen::VectorXd>(given.data(), n);
+  right.head(n) = flat(given);
   for (Eigen::Index k = 0; k < m; ++k) right[n + k] = parameters_.free[static_cast<std::size_t>(k)].dot(force) / viscosity();
   const Eigen::VectorXd solution = factors_.solve(right);
   const Eigen::Map<const Net> found(solution.data(), n / 3, 3);

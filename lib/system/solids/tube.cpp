@@ -10,8 +10,7 @@ Tube::Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const sp
     : flow_(std::make_shared<stokes::DuctFlow>(flow)), phases_(phases) {
   const auto clock = phases_.time("wall assembly");
   wall_ = std::make_shared<Wall>(wall, parameters.quadrature, &phases_);
-  particle_ = std::make_unique<Contents>(particle, parameters, *wall_);
-  particle_->ranks.measure(phases_);
+  particle_ = std::make_unique<ParticleData>(particle, parameters, *wall_, phases_);
 }
 
 Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases)
@@ -21,14 +20,12 @@ Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particl
     wall_ = flow->wall(phases_, parameters.symmetry);
     flow->pressure_drop();
   }
-  particle_ = std::make_unique<Contents>(particle, parameters, *wall_);
-  particle_->ranks.measure(phases_);
+  particle_ = std::make_unique<ParticleData>(particle, parameters, *wall_, phases_);
 }
 
-Tube::Tube(const Tube& tube, const spline::Space& particle) : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_) {
-  particle_ = std::make_unique<Contents>(particle, tube.particle_->parameters, *wall_);
-  particle_->ranks.measure(phases_);
-}
+Tube::Tube(const Tube& tube, const spline::Space& particle)
+    : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_),
+      particle_(std::make_unique<ParticleData>(particle, tube.particle_->parameters, *wall_, phases_)) {}
 
 Tube::~Tube() = default;
 
@@ -105,7 +102,7 @@ Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correct
   const bool moves = v.size() > 0 && particle_->sources.has_double(), by_flow = moves && fixed();
   if (moves && !fixed()) response.pressure_drop += dot(particle_->pressure_of_velocity, v);
   if (cell()) {
-    Contents::Cause cause = particle_->cause(f, v);
+    ParticleData::Cause cause = particle_->cause(f, v);
     const Net on_wall = wall_->points().collocated(cause.at_wall);
     if (by_flow) response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? particle_on_wall({}, v) : on_wall);
     response.wall_traction = solve_wall(on_wall);
@@ -170,7 +167,7 @@ void Tube::freeze() {
 
 Net Tube::frozen_response(const Net& f, const Net& v) {
   if (wall_->iterates()) return Net::Zero(particle_->sites().rows(), 3);
-  const Contents::Frozen& frozen = particle_->frozen;
+  const ParticleData::Frozen& frozen = particle_->frozen;
   const double pressure = dot(frozen.pressure_of_load, f) + dot(frozen.pressure_of_velocity, v);
   const auto add = [](double factor, const FrozenOperator& of, const Net& strength, Net& to) {
     Net part = Net::Zero(to.rows(), 3);

@@ -166,7 +166,7 @@ class Tube {
   stokes::Evaluations kernel_evaluations() const;  ///< number of kernel evaluations, including the assembly of the wall
 
  private:
-  struct Contents;
+  struct ParticleData;
   struct BetweenSitesOfWall;
   double viscosity() const;
   double cap_velocity(const Net& f, const Net& v, const Response& response);
@@ -182,7 +182,7 @@ class Tube {
   std::shared_ptr<const stokes::DuctFlow> flow_;
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
-  std::unique_ptr<Contents> particle_;
+  std::unique_ptr<ParticleData> particle_;
   std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which leak() evaluates the velocity; set up at the first call of leak()
   Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate through the inlet and in the axial force. weigh_flow() sets
                                       // these and all following members

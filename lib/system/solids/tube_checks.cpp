@@ -59,7 +59,7 @@ void Tube::weigh_flow() {
 /// Returns the errors of the response in the conditions (2.14). By reciprocity, a force f at y causes the flow rate f.c(y)/mu through the inlet, with
 /// c of (2.13). Therefore no quadrature over the inlet is needed.
 Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
-  Contents& particle = *particle_;
+  ParticleData& particle = *particle_;
   const double mu = viscosity(), dp = response.pressure_drop;
   const double area = wall_->surface().outline.area();
   weigh_flow();
@@ -102,7 +102,7 @@ Tube::BetweenSitesOfWall::BetweenSitesOfWall(const surface::TubeWall& wall, cons
                                              const BetweenSites& between, const quadrature::Options& options)
     : at(between.values * wall.net),
       weights(between.weights),
-      layer(stokes::Layer::Kernel::single_layer, wall.space, between.places, for_leak(options)) {
+      layer(stokes::Layer::Kernel::single_layer, wall.space, between.sites, for_leak(options)) {
   if (cell) layer.repeat(*cell);
   layer.set_shape(wall.net);
 }

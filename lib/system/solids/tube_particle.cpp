@@ -24,7 +24,7 @@ void set_columns(const Net& net, std::vector<double> (&columns)[3]) {
 
 }  // namespace
 
-Tube::Contents::Contents(const spline::Space& particle, const TubeParameters& how, const Wall& wall)
+Tube::ParticleData::ParticleData(const spline::Space& particle, const TubeParameters& how, const Wall& wall, Phases& phases)
     : space(particle),
       parameters(how),
       geometry(particle),
@@ -34,9 +34,10 @@ Tube::Contents::Contents(const spline::Space& particle, const TubeParameters& ho
       periodic(wall.cell()) {
   own = ranks.divide_points(space, parameters.symmetry.order() > 1 ? parameters.symmetry : surface::Symmetry(space.n_points));
   from_sites.factor(sources.collocation());
+  ranks.measure(phases);
 }
 
-void Tube::Contents::set_shape(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
+void Tube::ParticleData::set_shape(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
   centroid = origin;
   shape = x;
   shape.col(0).array() -= centroid;
@@ -57,13 +58,13 @@ void Tube::Contents::set_shape(const Net& x, double origin, const stokes::DuctFl
   if (periodic) inlet = ambient / pressure_drop;
 }
 
-Tube::Contents::Cause Tube::Contents::cause(const Net& f, const Net& v) {
+Tube::ParticleData::Cause Tube::ParticleData::cause(const Net& f, const Net& v) {
   Net u = Net::Zero(target_points.rows(), 3);
   sources.add_velocity(f, v, target_points, own_targets, u, prepared_targets);
   return {u.topRows(n_on_wall), u.bottomRows(u.rows() - n_on_wall)};
 }
 
-const Net& Tube::Contents::flow_of_strength(const Wall& wall) {
+const Net& Tube::ParticleData::flow_of_strength(const Wall& wall) {
   if (flow_of_strength_.size() > 0) return flow_of_strength_;
   Layer& layer = *sources.double_layer;
   const auto &node = layer.nodes(), &normal = layer.normals();
@@ -82,7 +83,7 @@ const Net& Tube::Contents::flow_of_strength(const Wall& wall) {
 /// f_inf (2.7) are evaluated at the quadrature nodes, so that the flow rate of the disturbance is 0 for every load. In a channel v_inf is
 /// interpolated from the collocation points, because its values at the nodes would require integrals over the wall. In a channel only the weights of
 /// f are computed.
-void Tube::Contents::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
+void Tube::ParticleData::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
   ambient = ambient_of(flow);
   Layer& layer = sources.single_layer;
   const auto n = static_cast<std::size_t>(layer.n_nodes());
@@ -106,7 +107,7 @@ void Tube::Contents::weigh_pressure(const stokes::DuctFlow& flow, bool straight)
 }
 
 /// Returns the duct flow at the sites. In a symmetric scene the flow is evaluated at the fundamental points only and completed by symmetry.
-Net Tube::Contents::ambient_of(const stokes::DuctFlow& flow) const {
+Net Tube::ParticleData::ambient_of(const stokes::DuctFlow& flow) const {
   const surface::Symmetry& symmetry = parameters.symmetry;
   if (symmetry.order() == 1) return flow.velocities(sites());
   const std::vector<int>& rows = symmetry.fundamental();
@@ -116,7 +117,7 @@ Net Tube::Contents::ambient_of(const stokes::DuctFlow& flow) const {
   return all;
 }
 
-void Tube::Contents::freeze(Wall& wall, const Net& pressure_of_wall) {
+void Tube::ParticleData::freeze(Wall& wall, const Net& pressure_of_wall) {
   using Targets = std::span<const int>;
   const auto on_wall = [&](Layer& layer) {
     return [&](Targets targets, stokes::Rows<float>& rows) {

@@ -18,8 +18,8 @@ namespace tanktread::coupling {
 /// The surface of all particles in a tube, in the frame of the wall: what it causes at the wall, the weights with which its load and velocity enter
 /// the pressure drop (2.7), and the frozen operators of the Jacobian. set_shape() sets all members that depend on the shape, except those of
 /// `frozen`, which freeze() sets. Calls are collective.
-struct Tube::Contents {
-  Contents(const spline::Space& space, const TubeParameters& parameters, const Wall& wall);
+struct Tube::ParticleData {
+  ParticleData(const spline::Space& space, const TubeParameters& parameters, const Wall& wall, Phases& phases);
 
   /// Sets the shape. `origin`: position along x1 of the origin of the wall's frame. `pressure_drop`: pressure drop of the empty duct.
   void set_shape(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);

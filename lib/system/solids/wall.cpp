@@ -27,6 +27,7 @@ std::vector<int> around(const surface::TubeWall& wall, int point, int distance) 
   return points;
 }
 
+/// Returns the symmetric matrix with the entries 11, 12, 13, 22, 23, 33.
 Mat3 block(const double* entries) {
   return (Mat3() << entries[0], entries[1], entries[2], entries[1], entries[3], entries[4], entries[2], entries[4], entries[5]).finished();
 }
@@ -125,14 +126,23 @@ void Wall::find_pressure() {
   pressure_ *= surface_.radius() / dot(flux_, pressure_);
 }
 
+template <class Real>
+void Wall::from_space(stokes::Rows<Real>& rows) const {
+  if (!cell_) return;
+  using RealNet = Eigen::Matrix<Real, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  const stokes::Rows<Real> on_space = std::exchange(rows, stokes::Rows<Real>(rows.rows(), 3 * n_sites()));
+  for (Eigen::Index r = 0; r < rows.rows(); ++r) {
+    const Net of_row = Eigen::Map<const RealNet>(on_space.row(r).data(), surface_.space.n_points, 3).template cast<double>();
+    Eigen::Map<RealNet>(rows.row(r).data(), n_sites(), 3) = from_space(of_row).template cast<Real>();
+  }
+}
+template void Wall::from_space(stokes::Rows<float>& rows) const;
+
 /// Assembles the rows of the single layer of the wall at targets on the wall itself. The columns belong to the control values of f.
 void Wall::assemble_rows(std::span<const int> targets, stokes::Rows<double>& rows) {
   on_itself_->assemble(targets, rows);
-  if (!cell_) return;
-  on_itself_->assemble_rest(targets, rows);
-  const stokes::Rows<double> on_space = std::exchange(rows, stokes::Rows<double>(rows.rows(), 3 * n_sites()));
-  for (Eigen::Index r = 0; r < rows.rows(); ++r)
-    Eigen::Map<Net>(rows.row(r).data(), n_sites(), 3) = from_space(Eigen::Map<const Net>(on_space.row(r).data(), surface_.space.n_points, 3));
+  if (cell_) on_itself_->assemble_rest(targets, rows);
+  from_space(rows);
 }
 
 /// Returns, on every rank, the matrix of the wall's operator A. Its rows and columns are the components at fundamental points that symmetry does not
@@ -182,16 +192,6 @@ Eigen::MatrixXd Wall::assembled() {
   });
   if (cell_) complete += Eigen::Map<const Eigen::VectorXd>(pressure_.data(), n) * Eigen::Map<const Eigen::RowVectorXd>(flux_.data(), n);
   return complete;
-}
-
-void Wall::from_space(stokes::Rows<float>& rows) const {
-  if (!cell_) return;
-  const stokes::Rows<float> on_space = std::exchange(rows, stokes::Rows<float>(rows.rows(), 3 * n_sites()));
-  for (Eigen::Index r = 0; r < rows.rows(); ++r) {
-    const Net of_row = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(on_space.row(r).data(), surface_.space.n_points, 3)
-                           .cast<double>();
-    Eigen::Map<Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(rows.row(r).data(), n_sites(), 3) = from_space(of_row).cast<float>();
-  }
 }
 
 Net Wall::apply(const Net& f) const {

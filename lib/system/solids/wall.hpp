@@ -94,7 +94,8 @@ class Wall {
   /// this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
-  void from_space(stokes::Rows<float>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
+  template <class Real>
+  void from_space(stokes::Rows<Real>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
 
   /// Returns A f = points().collocated(u), where u is the velocity of the single layer at the targets x_i:
   /// u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In a periodic wall, A includes the condition int f.n dG = 0.

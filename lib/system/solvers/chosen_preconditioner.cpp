@@ -29,6 +29,8 @@ void RecycledProducts::apply(const Eigen::VectorXd& in, const Apply& other, Eige
   out += known;
 }
 
+/// Makes y orthogonal to the stored y by Gram-Schmidt orthogonalisation, done twice because of rounding, and stores the product unless y nearly
+/// depends on the stored ones.
 void RecycledProducts::keep(Product product) {
   const double size = product.y.norm();
   for (int twice = 0; twice < 2; ++twice)

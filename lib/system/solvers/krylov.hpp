@@ -4,10 +4,12 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "base/types.hpp"
 #include "system/solvers/options.hpp"
 
 namespace tanktread::coupling {
@@ -22,6 +24,11 @@ using Blocks = std::vector<UnknownBlock>;
 
 /// A linear map on the unknowns of all blocks, stored one block after another.
 using Apply = std::function<void(const double* in, double* out)>;
+
+/// Returns `map`, a linear map of nets of n rows, as a map of their components.
+inline Apply on_nets(Eigen::Index n, std::function<Net(const Net&)> map) {
+  return [n, map = std::move(map)](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = map(Eigen::Map<const Net>(in, n, 3)); };
+}
 
 /// A linear system. Its operators may be distributed internally, but must return equal values on every rank, up to round-off.
 struct LinearSystem {

@@ -34,9 +34,9 @@ double unit_of(const FixedPoint::Norm& norm, Eigen::Index rows) {
   return size > 0 && std::isfinite(size) ? small * std::exp2(-std::round(std::log2(size))) : small;
 }
 
-Net net(const Eigen::VectorXd& numbers, double unit) { return unit * Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }
+Net net(const Eigen::VectorXd& numbers, double unit) { return unit * as_net(numbers); }
 
-Eigen::VectorXd numbers(const Net& net, double unit) { return Eigen::Map<const Eigen::VectorXd>(net.data(), net.size()) / unit; }
+Eigen::VectorXd numbers(const Net& net, double unit) { return flat(net) / unit; }
 
 /// Residual F(x) = g(x) - x. Products F' d are computed by finite differences, with steps that exceed the noise of adaptive quadrature.
 class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
@@ -76,7 +76,7 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
 
   void evalModelImpl(const InArgs& in, const OutArgs& out) const override {
     const Net x = net(numbers_of(*in.get_x()), unit_);
-    if (x_.size() == 0 || x != x_) {
+    if (!same(x, x_)) {
       f_ = g_(x) - x;
       x_ = x;
     }
@@ -84,12 +84,11 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
     if (!out.get_f().is_null()) Thyra::assign(out.get_f().ptr(), *vector_of(space_, numbers(f_, unit_)));
     if (out.get_W_op().is_null()) return;
     chosen_.refresh();
-    newton_ = {{{"places", x.size()}}, [this, x, f = f_](const double* in_numbers, double* out_numbers) {
-      const Net direction = Eigen::Map<const Net>(in_numbers, x.rows(), 3);
+    newton_ = {{{"places", x.size()}}, on_nets(x.rows(), [this, x, f = f_](const Net& direction) -> Net {
       const double size = norm_(direction), e = size > 0 ? 1e-4 / size : 1;
       const Net y = x + e * direction;
-      Eigen::Map<Net>(out_numbers, x.rows(), 3) = (g_(y) - y - f) / e;
-    }, {}};
+      return (g_(y) - y - f) / e;
+    }), {}};
     const LinearSystem joined = chosen_.join(newton_);
     dynamic_cast<FunctionOperator&>(*out.get_W_op()).function = joined.product;
     if (!preconditioner_.is_null()) preconditioner_->function = joined.precondition;

@@ -39,7 +39,7 @@ TEST(AreaConstraint, TransfersTensionsToAnotherShape) {
   for (const Law& law : laws) {
     AreaConstraint constraint(with_points(s, law), mobility(like.rows()));
     Net x = start;
-    constraint.bring(x, like, 1e6);
+    constraint.restore_areas(x, like, 1e6);
     EXPECT_LT(area_load(s, law, x).norm(), 1e-4 * area_load(s, law, start).norm());  // there are no tensions at rest
     EXPECT_LT((x - start).norm(), 2 * (like - start).norm());
   }

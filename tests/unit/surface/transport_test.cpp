@@ -47,7 +47,7 @@ struct TreadingEllipsoid {
     v.col(0) = rate * axes[0] / axes[2] * x.col(2);
     v.col(2) = -rate * axes[2] / axes[0] * x.col(0);
   }
-  Treading treading(const Net* unstressed) const { return tank_treading(map, x, v, unstressed, Vec3::Zero(), Vec3::Zero()); }
+  TankTreading treading(const Net* unstressed) const { return tank_treading(map, x, v, unstressed, Vec3::Zero(), Vec3::Zero()); }
 };
 
 TEST(Transport, TheFrequencyIsThatOfTheMaterial) {

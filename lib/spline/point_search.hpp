@@ -9,27 +9,28 @@
 
 namespace tanktread::spline {
 
-class Places {
+/// Points in space, sorted along one direction, in which a point is found by its position.
+class PointSearch {
  public:
-  Places(std::vector<Vec3> places, double tolerance) : places_(std::move(places)), tolerance_(tolerance) {
-    for (std::size_t i = 0; i < places_.size(); ++i) order_.emplace_back(along(places_[i]), static_cast<int>(i));
+  PointSearch(std::vector<Vec3> points, double tolerance) : points_(std::move(points)), tolerance_(tolerance) {
+    for (std::size_t i = 0; i < points_.size(); ++i) order_.emplace_back(along(points_[i]), static_cast<int>(i));
     std::ranges::sort(order_);
   }
 
-  const std::vector<Vec3>& all() const { return places_; }
+  const std::vector<Vec3>& all() const { return points_; }
 
   /// Returns the index of the first point (in ascending order of the coordinate `along`) within the tolerance of x, or -1 if there is none.
   int at(const Vec3& x) const {
     const double from = along(x) - 2 * tolerance_;
     for (auto i = std::ranges::lower_bound(order_, std::pair(from, 0)); i != order_.end() && i->first <= from + 4 * tolerance_; ++i)
-      if ((places_[i->second] - x).norm() <= tolerance_) return i->second;
+      if ((points_[i->second] - x).norm() <= tolerance_) return i->second;
     return -1;
   }
 
  private:
   static double along(const Vec3& x) { return x.dot(Vec3(0.61, 0.53, 0.59)); }  // coordinate along a direction with which no mesh is aligned
 
-  std::vector<Vec3> places_;
+  std::vector<Vec3> points_;
   double tolerance_;
   std::vector<std::pair<double, int>> order_;
 };
