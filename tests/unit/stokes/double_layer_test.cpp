@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "deck/section.hpp"
 #include "spline/extraction.hpp"
 #include "spline/space.hpp"
 #include "surface/geometry.hpp"
@@ -53,7 +54,7 @@ TEST(DoubleLayer, AssembledRowsTimesAVelocityAreTheSum) {
     Rows<double> a;
     layer.assemble(scene().x, scene().all, a);
     rows.reshaped<Eigen::RowMajor>() = a * scene().v.reshaped<Eigen::RowMajor>();
-    EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << word(rule);  // round-off of sums in another order
+    EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << deck::word(quadrature::layer_rules, rule);  // round-off of sums in another order
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 
+#include "deck/section.hpp"
 #include "spline/extraction.hpp"
 #include "spline/space.hpp"
 #include "surface/geometry.hpp"
@@ -78,10 +79,11 @@ TEST(SingleLayer, AssembledRowsTimesADensityAreTheSum) {
       Rows<double> a;
       layer.assemble(scene().x, measure, scene().all, a);
       rows.reshaped<Eigen::RowMajor>() = a * scene().f.reshaped<Eigen::RowMajor>();
-      EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << word(rule);  // round-off of sums in another order
+      EXPECT_LT(largest(u - rows), 1e-12 * largest(u)) << deck::word(quadrature::layer_rules, rule);  // round-off of sums in another order
       Rows<float> single;
       layer.assemble(scene().x, measure, scene().all, single);
-      EXPECT_LT((single.cast<double>() - a).cwiseAbs().maxCoeff(), 1e-5 * a.cwiseAbs().maxCoeff()) << word(rule);  // single precision
+      EXPECT_LT((single.cast<double>() - a).cwiseAbs().maxCoeff(), 1e-5 * a.cwiseAbs().maxCoeff())
+          << deck::word(quadrature::layer_rules, rule);  // single precision
     }
   }
 }
@@ -106,7 +108,7 @@ TEST(SingleLayer, BlocksOfNearControlPointsAreThoseOfTheRows) {
       for (std::size_t j = near.first[i]; j < near.first[i + 1]; ++j) {
         const Mat3 block = a.block<3, 3>(3 * i, 3 * near.point[j]);
         const double upper[6] = {block(0, 0), block(0, 1), block(0, 2), block(1, 1), block(1, 2), block(2, 2)};
-        for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(entries[6 * j + c], upper[c], allowed) << word(rule);
+        for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(entries[6 * j + c], upper[c], allowed) << deck::word(quadrature::layer_rules, rule);
       }
   }
 }

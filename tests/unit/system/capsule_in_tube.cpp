@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/timing.hpp"
+#include "deck/section.hpp"
 #include "membrane/laws.hpp"
 #include "spline/extraction.hpp"
 #include "surface/shapes.hpp"
@@ -87,7 +88,7 @@ TEST(CapsuleInTube, PressureDropOfADropIsThatOfTheFluidHoweverControlPointsMove)
     for (const MeshMotion motion : {MeshMotion::normal, MeshMotion::relaxed}) {
       Confined sliding(ratio, "schur", motion);
       EXPECT_NEAR(sliding.capsule->evaluate(sliding.x)->response().pressure_drop, drop, 1e-8 * std::abs(drop))
-          << ratio << " " << word(motion);  // residuals of 1e-11, condition numbers of 1e3
+          << ratio << " " << deck::word(mesh_motions, motion);  // residuals of 1e-11, condition numbers of 1e3
       EXPECT_GT((sliding.capsule->velocity(sliding.x) - material.capsule->velocity(material.x)).norm(), 1e-2);
     }
   }

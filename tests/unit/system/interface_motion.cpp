@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "deck/section.hpp"
 #include "system/collocation.hpp"
 #include "tests/unit/system/sphere_in_flow.hpp"
 
@@ -42,8 +43,8 @@ TEST(InterfaceMotion, AllMotionsCrossTheInterfaceAlike) {
   for (const MeshMotion motion : {MeshMotion::normal, MeshMotion::relaxed}) {
     const Net difference = drop.velocity(motion, x) - material;
     const auto [across, along] = drop.components(x, difference);
-    EXPECT_LT(across, 1e-13) << word(motion);  // projected and interpolated at the sites that are compared
-    EXPECT_GT(along, 1e-2) << word(motion);
+    EXPECT_LT(across, 1e-13) << deck::word(mesh_motions, motion);  // projected and interpolated at the sites that are compared
+    EXPECT_GT(along, 1e-2) << deck::word(mesh_motions, motion);
   }
 }
 
@@ -71,8 +72,8 @@ TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
       Capsule capsule = drop.capsule();
       const Mat3 s = capsule.evaluate(drop.sphere)->stresslet();
       const double exact = 2 * 4 * std::numbers::pi / 3 * 5 * (ratio - 1) / (2 * ratio + 3);
-      EXPECT_NEAR(s(0, 0) / exact, 1, 1e-4) << ratio << " " << word(motion);  // error of the sphere's mesh
-      EXPECT_NEAR(s(2, 2) / exact, -1, 1e-4) << ratio << " " << word(motion);
+      EXPECT_NEAR(s(0, 0) / exact, 1, 1e-4) << ratio << " " << deck::word(mesh_motions, motion);  // error of the sphere's mesh
+      EXPECT_NEAR(s(2, 2) / exact, -1, 1e-4) << ratio << " " << deck::word(mesh_motions, motion);
     }
 }
 
@@ -84,12 +85,12 @@ TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
   drop.parameters.volume.constraint = VolumeConservation::none;
   for (const MeshMotion motion : {MeshMotion::normal, MeshMotion::relaxed}) {
     const Net v = drop.velocity(motion, drop.sphere);
-    ASSERT_TRUE(v.allFinite()) << word(motion);
+    ASSERT_TRUE(v.allFinite()) << deck::word(mesh_motions, motion);
     for (const auto& sites : drop.space.collocation)
       if (sites.size() > 4) {  // a pole, near which the flow is (x1, 0, -x3)
         const Vec3 x = surface::value(drop.space, drop.sphere, sites.front()), u = surface::value(drop.space, v, sites.front());
-        EXPECT_LT(u.head<2>().norm(), 1e-10 * std::abs(u[2])) << word(motion);  // round-off
-        EXPECT_LT(u[2] * x[2], -0.1) << word(motion);
+        EXPECT_LT(u.head<2>().norm(), 1e-10 * std::abs(u[2])) << deck::word(mesh_motions, motion);  // round-off
+        EXPECT_LT(u[2] * x[2], -0.1) << deck::word(mesh_motions, motion);
       }
   }
 }
@@ -105,7 +106,7 @@ TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
   const Eigen::RowVector3d away(2, -3, 10), carried = away * drop.flow.gradient->transpose();
   for (const MeshMotion motion : {MeshMotion::material, MeshMotion::normal, MeshMotion::relaxed}) {
     const Net here = drop.velocity(motion, x), there = drop.velocity(motion, x.rowwise() + away);
-    EXPECT_LT(((there.rowwise() - carried) - here).norm(), 1e-12 * there.norm()) << word(motion);  // round-off
+    EXPECT_LT(((there.rowwise() - carried) - here).norm(), 1e-12 * there.norm()) << deck::word(mesh_motions, motion);  // round-off
   }
 }
 
@@ -125,7 +126,7 @@ TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
   };
   for (const MeshMotion motion : {MeshMotion::material, MeshMotion::normal, MeshMotion::relaxed}) {
     const Net held = velocity(motion, x, strain), turned = velocity(motion, x, strain + turns);
-    EXPECT_LT((turned - x * turns.transpose() - held).norm(), 1e-12 * turned.norm()) << word(motion);  // round-off
+    EXPECT_LT((turned - x * turns.transpose() - held).norm(), 1e-12 * turned.norm()) << deck::word(mesh_motions, motion);  // round-off
   }
   const Net carried = velocity(MeshMotion::material, drop.sphere, strain + turns) - velocity(MeshMotion::material, drop.sphere, strain);
   EXPECT_LT((carried - drop.sphere * turns.transpose()).norm(), 1e-12 * carried.norm());  // round-off
@@ -139,7 +140,8 @@ TEST(InterfaceMotion, AFlowThatTurnsASphereDoesNotTurnItsMesh) {
   const Mat3 turns = (Mat3() << 0, -0.7, 2, 0.7, 0, 0.4, -2, -0.4, 0).finished();
   drop.flow.gradient = turns;
   for (const MeshMotion motion : {MeshMotion::normal, MeshMotion::relaxed})
-    EXPECT_LT(drop.velocity(motion, drop.sphere).norm(), 1e-2 * (drop.sphere * turns.transpose()).norm()) << word(motion);  // mesh error
+    EXPECT_LT(drop.velocity(motion, drop.sphere).norm(), 1e-2 * (drop.sphere * turns.transpose()).norm())
+        << deck::word(mesh_motions, motion);  // mesh error
   // A mesh whose points crowd on one side: their mean is not the centre.
   Net crowded = drop.sphere;
   for (auto point : crowded.rowwise()) {
@@ -175,7 +177,7 @@ TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
     capsule.freeze(drop.sphere);
     const Net change = capsule.derivative(drop.sphere, Net::Zero(moved.rows(), 3), moved);
     // The normals do not turn, but round-off in their difference is divided by a step of about 1e-6.
-    EXPECT_LT((change - moved * drop.flow.gradient->transpose()).norm(), 1e-7 * change.norm()) << word(motion);
+    EXPECT_LT((change - moved * drop.flow.gradient->transpose()).norm(), 1e-7 * change.norm()) << deck::word(mesh_motions, motion);
   }
 }
 
@@ -196,10 +198,10 @@ TEST(InterfaceMotion, TheJacobianKnowsHowNormalsTurn) {
     constexpr double aside = 1e-4;
     const Net change = (capsule.velocity(x + aside * delta) - capsule.velocity(x - aside * delta)) / (2 * aside);
     const Net v = capsule.velocity(x), known = capsule.derivative(x, v, delta);
-    EXPECT_LT((known - change).norm(), 1e-5 * change.norm()) << word(motion);  // error of the finite differences
+    EXPECT_LT((known - change).norm(), 1e-5 * change.norm()) << deck::word(mesh_motions, motion);  // error of the finite differences
     Capsule resumed = drop.capsule();  // has not evaluated the velocity yet
     resumed.freeze(x);
-    EXPECT_LT((resumed.derivative(x, v, delta) - known).norm(), 1e-12 * known.norm()) << word(motion);
+    EXPECT_LT((resumed.derivative(x, v, delta) - known).norm(), 1e-12 * known.norm()) << deck::word(mesh_motions, motion);
   }
 }
 
