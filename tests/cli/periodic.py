@@ -122,4 +122,40 @@ def a_drop_in_a_pulsating_tube_flow_has_a_periodic_shape_further_along_the_tube(
     close(series("found", "mean_particle_velocity_x1")[-1], places[-1] - places[-2], 1e-4, "mean velocity")
 
 
+def positions_along_a_tube_meet_the_tolerance_of_time_steps():
+    """In a flow that oscillates about zero, two rigid spheres on the axis of a tube return to their places."""
+    text = """Tanktread:
+  Flow: {type: duct, history: {type: sine, mean: 0.0, amplitude: 0.5, frequency: 1.0, phase: 40}}
+  Tube: {radius: 1, azimuthal elements: 10}
+  Particles:
+    defaults: {Surface: {elements per side: 3}, motion: free}
+    behind: {radius: 0.4, center: [-0.6, 0, 0]}
+    ahead: {radius: 0.4, center: [0.6, 0, 0]}
+  Time: {final time: 1.0, tolerance: 1.0e-4}
+  Output: {interval: 1}
+"""
+    run(deck(text), "--output", "tube", "--quiet")
+    for name, place in ("behind", -0.6), ("ahead", 0.6):
+        close(series("tube", f"{name}/centroid_x1")[-1], place, 1e-3 * 0.4, name)  # ten tolerances, times the radius
+
+
+def a_capsule_between_plates_moves_periodically():
+    """The mean velocities of the fluid and of the particles are series of different names."""
+    text = """Tanktread:
+  Flow: {type: quiescent, pressure gradient: [-1, 0, 0], history: {type: sine, mean: 1.0, amplitude: 0.5, frequency: 1.0}}
+  Domain: {periodic: x1 x2, side lengths: [3, 3, 1]}
+  Wall: {point: [0, 0, -1], distance: 2, elements per period: 6}
+  Particle: {radius: 0.5}
+  Membrane: {law: Skalak, shear modulus: 2, pre-inflation: 0.05}
+  Surface: {elements per side: 3}
+  Time: {tolerance: 1.0e-4%s}
+  %s
+"""
+    run(deck(text % ("", "Periodic: {period: 1.0, tolerance: 1.0e-4}")), "--output", "plates", "--quiet")
+    run(deck(text % (", final time: 6", "Output: {interval: 1.0}")), "--output", "plates_run", "--quiet")
+    places = [x for t, x in zip(series("plates_run", "time"), series("plates_run", "centroid_x1")) if abs(t - round(t)) < 1e-9]
+    close(series("plates", "mean_particle_velocity_x1")[-1], places[-1] - places[-2], 1e-3, "mean velocity of the capsule")
+    check(series("plates", "mean_velocity_x1")[-1] > 0, "the fluid moves")
+
+
 main()
