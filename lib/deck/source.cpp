@@ -1,5 +1,6 @@
 #include "deck/source.hpp"
 
+#include <filesystem>
 #include <regex>
 
 #include <Teuchos_ParameterList.hpp>
@@ -56,6 +57,8 @@ std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const 
 }
 
 std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file) {
+  if (std::error_code error; file.find('=') != file.npos && !std::filesystem::exists(file, error))
+    throw UserError("The deck " + shortened(file, 80) + " does not exist. If it is a setting, it needs a --set of its own.");
   const std::string text = text_of_file(file, "The deck " + shortened(file, 80), 1'000'000);
   return file.ends_with(".xml") ? xml_list(text, file) : yaml_list(text, file);
 }

@@ -70,7 +70,9 @@ void add_columns(const std::vector<Mode>& modes, int number, bool all_rigid, Col
       leading = std::fmax(leading, mode.rate.real()), unstable += mode.rate.real() > 0;
   to.add(leading, {"leading_rate", "1/time",
                    "largest growth rate of the eigenmodes that change the shape, without translations and rotations of the whole; negative if "
-                   "the steady shape is stable. Motions of several particles relative to each other count as changes of the shape",
+                   "the steady shape is stable. Motions of several particles relative to each other count as changes of the shape. "
+                   "Translations and rotations that grow, such as a tilt out of the plane of shear, have a positive rate_k; the summary gives "
+                   "the kind of each mode",
                    "none of the reported modes changes the shape"});
   to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes (positive growth rate) among those that change the shape"});
   for (std::size_t k = 0; k < static_cast<std::size_t>(number); ++k)

@@ -291,6 +291,7 @@ def wrong_deck_texts_are_rejected():
 
 def wrong_files_are_rejected():
     refused(["missing.yaml", "does not exist"], "missing.yaml")
+    refused(["Time/final time=3", "does not exist", "--set of its own"], "Time/final time=3")
     os.mkdir("folder.yaml")
     refused(["folder.yaml", "directory"], "folder.yaml")
     pathlib.Path("latin.yaml").write_bytes(GOOD.encode() + "  Expect: {area: {value: 1, tolerance: 99, source: Müller}}\n".encode("latin-1"))
