@@ -75,7 +75,7 @@ TEST(Laws, SkalakHasTheSurfacePoissonRatioOfItsC) {
   for (double c : {0., 1., 10.}) {
     const double pull = 1e-6, thin = -pull * c / (1 + c);
     const auto t = principal_tensions(Skalak{1, c}, 1 + pull, 1 + thin);
-    EXPECT_LT(std::abs(t[1]), 1e-4 * t[0]);  // relative nonlinear remainder: c times pull
+    EXPECT_LT(std::abs(t[1]), 1e-4 * t[0]);  // the error of linear elasticity is about C times the strain `pull`
   }
 }
 
