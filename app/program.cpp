@@ -308,7 +308,8 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   }
   coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
   for (const auto& sentences : {check_expectations(scene), scene.idle_keys})
-    for (const std::string& sentence : sentences) if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
+    for (const std::string& sentence : sentences)
+      if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
   accuracy::check_series(scene.accuracy.requests, names_of_series(scene));
 
   if (arguments.check) {

@@ -275,7 +275,7 @@ class SteadyRun {
       if (!options.shift) options.shift = system_->scene.rate();
       found_.modes = motion::spectrum(*system->motion, shapes, state_.x, kept, options, scene_.solvers.of(scene_.solvers.spectrum));
     }
-    if (system != system_) counts_ = counts_ + system->particle->counts(), kernel_ = kernel_ + system->particle->kernel_evaluations();
+    if (system != system_) count_out(*system);
     system_->motion->velocity(state_.x);
   }
 

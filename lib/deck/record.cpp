@@ -61,19 +61,18 @@ void add_inner(const Record& section, const Sentences& sentences, std::vector<st
     }
 }
 
+/// Returns the sentences of one kind about a section, followed by those about its inner sections.
+std::vector<std::string> all_of(const Record& section, std::vector<std::string> Record::* sentences) {
+  std::vector<std::string> all = section.*sentences;
+  add_inner(section, [sentences](const Record& inner) { return all_of(inner, sentences); }, all);
+  return all;
+}
+
 }  // namespace
 
-std::vector<std::string> mistakes(const Record& section) {
-  std::vector<std::string> all = section.mistakes;
-  add_inner(section, [](const Record& inner) { return mistakes(inner); }, all);
-  return all;
-}
+std::vector<std::string> mistakes(const Record& section) { return all_of(section, &Record::mistakes); }
 
-std::vector<std::string> idle_keys(const Record& section) {
-  std::vector<std::string> all = section.idle;
-  add_inner(section, idle_keys, all);
-  return all;
-}
+std::vector<std::string> idle_keys(const Record& section) { return all_of(section, &Record::idle); }
 
 std::vector<std::string> unknown_keys(const Record& section, const Record& root) {
   std::vector<std::string> all;

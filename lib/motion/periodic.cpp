@@ -14,6 +14,7 @@
 #include "base/formatted.hpp"
 #include "deck/section.hpp"
 #include "motion/integrator.hpp"
+#include "motion/spectrum.hpp"
 #include "system/solids/rigid_motion.hpp"
 #include "system/solvers/eigenvalues.hpp"
 #include "system/solvers/nonlinear.hpp"
@@ -160,8 +161,7 @@ PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::Para
 
 Net ReturnMap::derivative(const Net& x, const Net& d) {
   const double radius = 1 / dynamics_.norm(dynamics_.moved(x, coupling::unit_motion(1)));  // R_C
-  const double e = options_.difference * radius / d.rowwise().norm().maxCoeff();
-  return ((*this)(x + e * d) - (*this)(x - e * d)) / (2 * e);
+  return central_difference(*this, x, d, options_.difference * radius);
 }
 
 std::vector<coupling::Eigenpair> multipliers(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& derivative, Eigen::Index n, int number) {

@@ -55,10 +55,7 @@ class ReturnMap {
   /// Mean velocity over the period of the latest return, along free translations. With a rotation R, only its component along x2 is known and not 0.
   const Vec3& mean_velocity() const { return mean_velocity_; }
 
-  /// Returns the derivative of P at its fixed point x along the displacement d, by a central difference:
-  ///
-  ///   P'(x) d = (P(x + e d) - P(x - e d))/2e,   e max |d| = difference x R_C
-  ///
+  /// Returns the derivative of P at its fixed point x along the displacement d, by central_difference() with displacements of up to difference x R_C.
   /// Errors of the time steps change the result by about resolution() |d|.
   Net derivative(const Net& x, const Net& d);
   double resolution() const { return time_.tolerance / options_.difference; }  ///< smallest multiplier that errors of time steps do not hide

@@ -113,8 +113,7 @@ Net Linearised::velocity(const Net& x) const {
 Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
   const Net d = shapes_.displacement(keeping(y));
   if (d.isZero(0)) return Eigen::VectorXd::Zero(y.size());
-  const double e = difference_ / d.rowwise().norm().maxCoeff();
-  const Net change = (velocity(x_ + e * d) - velocity(x_ - e * d)) / (2 * e);
+  const Net change = central_difference([this](const Net& x) { return velocity(x); }, x_, d, difference_);
   if (!change.allFinite()) throw RunFailure("the evaluation of the velocity failed for a shape close to the steady shape");
   return keeping(shapes_.coordinates(change));
 }

@@ -60,6 +60,16 @@ void add_columns(const std::complex<double>& rate, const std::string& number, Co
 /// particle deforms, so the modes are rotations.
 void add_columns(const std::vector<Mode>& modes, int number, bool all_rigid, Columns& to);
 
+/// Returns the derivative of the function f of a net along the displacement d of x, by a central difference. `largest`: length of the largest
+/// displacement of a control point:
+///
+///   (f(x + e d) - f(x - e d))/2e,   e max |d| = largest
+template <class Function>
+Net central_difference(Function&& f, const Net& x, const Net& d, double largest) {
+  const double e = largest / d.rowwise().norm().maxCoeff();
+  return (f(x + e * d) - f(x - e * d)) / (2 * e);
+}
+
 /// Computes J y, with J the Jacobian of the velocity v and y the coordinates of a displacement d of x, by a central difference of velocities:
 ///
 ///   J y = (v(x + e d) - v(x - e d))/2e,   e max |d| = difference x R_C                                                   (4.16)

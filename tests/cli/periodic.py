@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-# Tests of periodic motions: in a flow that is periodic in time, on adaptive meshes, and their Floquet exponents for
-# disturbances of another parity.
+# Tests of periodic motions: of capsules and drops in flows that are periodic in time, along tubes, between plates and on
+# adaptive meshes, and their Floquet exponents for disturbances of any parity.
 import math
 
 from harness import check, close, deck, main, refused, run, series
@@ -100,7 +100,7 @@ def a_drop_in_pulsating_shear_has_a_periodic_motion():
         run(deck(text % ("", "Periodic: {period: 1.0, tolerance: 1.0e-5}")), "--output", "found", "--quiet", "--overwrite")
         run(deck(text % (", final time: 8", "Output: {interval: 8.0}")), "--output", "run", "--quiet", "--overwrite")
         for name in names:
-            close(series("found", name)[-1], series("run", name)[-1], 1e-3, name)  # error of the mesh, which lies otherwise
+            close(series("found", name)[-1], series("run", name)[-1], 1e-3, name)  # the mesh points are at other places of the interface
     slow = PULSATING % ("simple shear", "1.0e-3", "Particle: {shape: sphere}", "5.0", "", 4, "1.0e-6", "", "Spectrum: {number: 3}\n  %s")
     run(deck(slow % "Periodic: {period: 1.0, tolerance: 1.0e-5}"), "--output", "slow", "--quiet")
     run(deck((slow % "Steady: {}").replace(", history: {type: sine, frequency: 1.0, amplitude: 1.0e-3, mean: 1.0}", "")), "--output", "steady",
@@ -110,7 +110,7 @@ def a_drop_in_pulsating_shear_has_a_periodic_motion():
 
 
 def a_drop_in_a_pulsating_tube_flow_has_a_periodic_shape_further_along_the_tube():
-    """The search finds the shape and the mean velocity to which a run settles."""
+    """The search finds the shape and the mean velocity that a run approaches."""
     text = PULSATING % ("duct", "0.5", "Tube: {section: circle, periodic length: 6.0}", "6.0", "Particle: {shape: sphere, radius: 0.6}", 3, "1.0e-3",
                         "%s", "%s")
     run(deck(text % ("", "Periodic: {period: 1.0, tolerance: 1.0e-5}")), "--output", "found", "--quiet")
