@@ -64,6 +64,11 @@ class Snapshot:
         copy.cell = run.cell(self.time)
         fields = {name: values / run.scale(DIMENSIONS.get(name))[0] for name, values in self.fields.items()}
         copy._content = self.points / run.scale("length")[0], self.cells, fields
+        periodic = run.deck["Domain"]["periodic"] if "Domain" in run.deck else "x1"  # a periodic tube needs no Domain
+        for axis in range(3) if copy.cell is not None else ():
+            if f"x{axis + 1}" not in periodic:  # no length of its own: as long as needed
+                k = numpy.abs(copy.cell[:, axis]).argmax()
+                copy.cell[k] *= 2.05 * numpy.abs(copy.positions @ numpy.linalg.inv(copy.cell)[:, k]).max()
         return copy
 
     def evaluate(self, values, cells, s, t, ds=0, dt=0):

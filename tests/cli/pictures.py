@@ -134,6 +134,22 @@ Tanktread:
     check("μ_eff/μ = 1." in _command("suspension", "lattice", "--from", "0.05"), "averages")
 
 
+def a_particle_in_a_periodic_tube_is_cut_only_at_the_ends_of_the_period():
+    run(deck("""Tanktread:
+  Flow: {type: duct}
+  Tube: {section: circle, periodic length: 3.0, azimuthal elements: 10}
+  Particle: {radius: 0.7}
+  Membrane: {law: neo-Hookean, capillary number: 0.1}
+  Surface: {elements per side: 3}
+  Time: {final time: 0.01}
+"""), "--output", "train", "--quiet")
+    read = tanktread.run("train")
+    shot = read.snapshot_at(None).scaled(read)
+    share = numpy.abs(shot.positions @ numpy.linalg.inv(shot.cell)).max(axis=0)
+    close(numpy.linalg.norm(shot.cell[0]), 3 / 0.7, 1e-9, "the period along x1")
+    check((share[1:] < 0.5).all() and (share[1:] > 0.45).all(), share, "the cell across the tube contains the particle closely")
+
+
 def options_are_converted_to_the_type_of_their_choices():
     """An option with a few allowed numbers is read as a number. An option that is on by default can be switched off."""
     of = lambda name, *words: register.parser_of(name).parse_args(["results", *words])
