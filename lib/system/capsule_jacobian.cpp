@@ -51,7 +51,7 @@ void CapsuleJacobian::linearise(const Net& x, const std::vector<Net>& sums) {
   if (area_) area_->set_shape(x);
   if (interface_) {
     interface_->linearise(x, volumes_.gradient(x));
-  } else if (parameters_.constrained() && (flows_by_system() || std::ranges::any_of(parameters_.particles, keeps_area))) {
+  } else if (parameters_.constrained()) {
     constraint_.gradient = volumes_.gradient(x);
     constraint_.response = parameters_.symmetry.completed(membranes_.solved(constraint_.gradient));
   }
@@ -70,7 +70,7 @@ std::vector<Mat3> CapsuleJacobian::gradients_at(const Net& x) const {
 }
 
 /// Applies the volume projection P (2.8) of the last linearisation to a rate of change. Without P, the rate would include volume changes, which
-/// incompressible fluids do not allow, and the response of a stiff membrane to these changes would dominate.
+/// incompressible fluids do not allow, and the response of the membrane to these changes would dominate.
 Net CapsuleJacobian::without_flux(Net rate) const {
   volumes_.constrain(rate, constraint_);
   return rate;

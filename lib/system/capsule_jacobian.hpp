@@ -17,7 +17,10 @@ namespace tanktread::coupling {
 
 /// The Jacobian J = dv/dx of the velocity (4.2) at the shape of the last linearisation. Its layers are frozen: they are kept from an earlier shape
 /// (4.3). B denotes the operator of (4.2) with frozen layers. J and B include the response of a tube, and omit plates and posts. The rows of rigid
-/// bodies in J are 0, because their motion is not stiff. Calls are collective.
+/// bodies in J are 0, because their motion is not stiff. If velocities conserve the volumes, J includes the volume projection P (2.8). The frozen
+/// layers of a capsule that has deformed would otherwise inflate it, and in a tube this displacement grows: J had the eigenvalue +19 in the units of
+/// the deck capsule_cylinder, so that its steps were half as long. P also makes the correction e2 of (4.30), which TR-BDF2 computes with J, conserve
+/// the volumes. Calls are collective.
 class CapsuleJacobian {
  public:
   /// Changes due to a displacement dx and to additional loads with the virtual work `work`. `rate`: see velocity_change() and step_change(). `slip`:
@@ -36,8 +39,7 @@ class CapsuleJacobian {
   /// Linearises at x. `sums`: surface integrals that Membranes::work computed at x.
   void linearise(const Net& x, const std::vector<Net>& sums);
 
-  /// Returns whether all control points move with the fluid and the velocity is the solution of a linear system. The Jacobian then includes the
-  /// volume projection P (2.8), so that the correction e2 of (4.30), which TR-BDF2 computes with the Jacobian, conserves the volumes.
+  /// Returns whether all control points move with the fluid and the velocity is the solution of a linear system.
   bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }
 
   /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.
@@ -91,7 +93,7 @@ class CapsuleJacobian {
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
   Krylov step_solver_, inner_solver_;
   double latest_shift_ = 0;      // shift gamma dt of the implicit system solved last
-  VolumeConstraint constraint_;  // projection P (2.8); not active if J does not include P
+  VolumeConstraint constraint_;  // projection P (2.8); not active if control points slide, whose mesh velocity has its own, or if volumes are free
   std::vector<Mat3> gradients_;  // velocity gradients of the ambient flow at the collocation sites; set if `flow_at_sites`
 };
 
