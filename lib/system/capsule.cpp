@@ -231,7 +231,8 @@ void Capsule::freeze(const Net& at) {
 void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++counts_.tangents;
-  jacobian_.linearise(x, evaluate_on_demand(x, {}, 0)->load_sums());
+  const auto e = evaluate_on_demand(x, {}, 0);
+  jacobian_.linearise(x, slides() ? e->work() : Net(), e->load_sums());
 }
 
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {

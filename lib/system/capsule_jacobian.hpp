@@ -36,8 +36,8 @@ class CapsuleJacobian {
                   Membranes& membranes, const Volumes& volumes, FrozenLayers& frozen, Tube* tube, InterfaceMotion* interface,
                   OperationCounts& counts);
 
-  /// Linearises at x. `sums`: surface integrals that Membranes::work computed at x.
-  void linearise(const Net& x, const std::vector<Net>& sums);
+  /// Linearises at x. `work`: dE/dx at x, required only if control points slide. `sums`: surface integrals that Membranes::work computed at x.
+  void linearise(const Net& x, const Net& work, const std::vector<Net>& sums);
 
   /// Returns whether all control points move with the fluid and the velocity is the solution of a linear system.
   bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }
@@ -76,6 +76,7 @@ class CapsuleJacobian {
   bool has_system() const { return frozen_.has_double() || membranes_.viscous(); }
   std::vector<Mat3> gradients_at(const Net& x) const;
   Net product(const Net& v, const Net& dx, double shift, const Net& work);
+  Net load_work_change(const Net& dx) const;
   Net fluid_velocity_change(const Net& dx, const Net& work);
   Net without_flux(Net rate) const;
   double weight_of_rotation() const;
@@ -94,6 +95,12 @@ class CapsuleJacobian {
   Krylov step_solver_, inner_solver_;
   double latest_shift_ = 0;      // shift gamma dt of the implicit system solved last
   VolumeConstraint constraint_;  // projection P (2.8); not active if control points slide, whose mesh velocity has its own, or if volumes are free
+  struct Pressure {
+    spline::Block block;
+    double p;
+  };
+  std::vector<Pressure> pressures_;  // pressures p (4.35) of all particles whose control points slide
+  Net x_;                            // shape of the last linearisation; set if there are pressures
   std::vector<Mat3> gradients_;  // velocity gradients of the ambient flow at the collocation sites; set if `flow_at_sites`
 };
 
