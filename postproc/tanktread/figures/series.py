@@ -271,7 +271,8 @@ def in_time(study, deck, run, k, path, series, amplitude, length):
     if here.get("fold", 0) or here.get(f"frequency_{number}", 1):
         return numpy.nan
     end, start, values = length / abs(here["leading_rate"]), run.snapshots()[k].path.resolve(), []
-    settings = {"Time/final time": end, "Time/tolerance": 1e-6, "Output/interval": end,
+    # the times of snapshots contain all t, so that nothing is interpolated
+    settings = {"Time/final time": end, "Time/tolerance": 1e-6, "Output/interval": end / 20,
                 "Particle/initial shape/mode": number, "Particle/initial shape/run": start}
     keys = {"parameter": path, "second_parameter": run.value("Continuation/second parameter")}
     settings |= {key: here[name] for name, key in keys.items() if name in here}
