@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iomanip>
+#include <sstream>
 
 #include "accuracy/position.hpp"
 #include "base/errors.hpp"
@@ -80,6 +82,17 @@ std::string without_statement(std::string summary) {
   return summary.erase(begin, end == std::string::npos ? end : end - begin);
 }
 
+void print_warning(const std::string& sentence) { std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str()); }
+
+/// Prints the sentences in the section `warnings` of a summary.
+void print_warnings(const std::string& summary) {
+  std::istringstream lines(summary);
+  std::string line, sentence;
+  while (std::getline(lines, line) && line != "warnings:") continue;
+  while (std::getline(lines, line) && line.starts_with("  - "))
+    if (std::istringstream(line.substr(4)) >> std::quoted(sentence)) print_warning(sentence);
+}
+
 /// Returns the text of the summary with the section `expect` replaced.
 std::string with_expect(const std::string& summary, const std::string& section) {
   const std::size_t at = summary.find("\nexpect: []\n");
@@ -119,6 +132,7 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
 
   const std::vector<deck::Verdict> verdicts = deck::verdicts(task.expect.all, table);
   std::string text = text_of_file(finest.directory / "summary.yaml", "summary.yaml", 10'000'000);
+  print_warnings(text);
   if (!end.status.empty()) text.replace(0, text.find('\n'), "status: " + in_quotes(end.status));
   text = with_expect(without_statement(text), output::yaml(verdicts, estimates(task.expect, errors, table.at("time"))));
   text += "error:\n";
@@ -126,7 +140,7 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
     text += "  " + (deck::is_plain(one.name) ? one.name : in_quotes(one.name)) + ": " + real_text(one.values.back()) + "\n";
   text += accuracy_text(task, levels, answers, end.why, seconds);
   output::write_whole(task.directory / "summary.yaml", text, output::Durable::yes);
-  return deck::missed(verdicts, [](const std::string& sentence) { std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str()); });
+  return deck::missed(verdicts, print_warning);
 }
 
 }  // namespace tanktread::accuracy

@@ -20,8 +20,8 @@ struct End {
 
 /// Publishes the results of the finest level in the directory of the ladder. The directory then has the files of this level, with `/error/<series>`
 /// in `run.h5`, the field `position error` in snapshots if there are at least three levels and obstacle() reports nothing, and the sections `error`,
-/// `accuracy` and `expect` in `summary.yaml`. `seconds`: wall seconds of all runs. Prints a warning for each missed expectation that has the key
-/// `not binding`. Returns one line that lists all other missed expectations; empty if there are none. Serial.
+/// `accuracy` and `expect` in `summary.yaml`. `seconds`: wall seconds of all runs. Prints the warnings of the finest level, and a warning for each
+/// missed expectation that has the key `not binding`. Returns one line that lists all other missed expectations; empty if there are none. Serial.
 std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,
                     const End& end, double seconds);
 

@@ -241,10 +241,16 @@ std::optional<BranchPoint> Branch::next() {
 
 /// Finds the first or the second point of the branch, each at a prescribed value of the parameter.
 void Branch::begin() {
-  const double first = options_.step.value_or(std::abs(options_.to - start_) / 20), way = options_.to - start_;
-  const double parameter = last_.empty() ? start_ : start_ + std::copysign(std::min(first, std::abs(way)), way);
-  auto solved = at_parameter(parameter, x_);
-  if (!solved) throw RunFailure(formatted("no steady shape was found at %s = %.8g", options_.parameter.c_str(), parameter));
+  constexpr int most_halvings = 8;
+  const double way = options_.to - start_;
+  double step = last_.empty() ? 0 : std::min(options_.step.value_or(std::abs(way) / 20), std::abs(way)), parameter = start_;
+  std::optional<Solved> solved;
+  for (int halvings = 0; !solved; ++halvings, step /= 2) {  // a shorter step is needed if a fold is near
+    parameter = start_ + std::copysign(step, way);
+    solved = at_parameter(parameter, x_);
+    if (!solved && (last_.empty() || halvings == most_halvings))
+      throw RunFailure(formatted("no steady shape was found at %s = %.8g", options_.parameter.c_str(), parameter));
+  }
   if (last_.empty()) {
     x_ = solved->place.x;
   } else {

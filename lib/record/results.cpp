@@ -236,7 +236,7 @@ void Results::write_files() {
 
 void Results::warn(const std::string& sentence) {
   warnings_.push_back(sentence);
-  if (writes_) std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str());
+  if (writes_ && !request_.of_ladder) std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str());
 }
 
 void Results::warn_once(const std::string& kind, const std::string& sentence) {

@@ -33,7 +33,8 @@ struct RunRequest {
   bool overwrite = false;       ///< true to delete the results of an earlier run in the directory first
   bool another_scheme = false;  ///< true if the checkpoint has another time scheme; only the data that all schemes use are then kept
   bool quiet = false;           ///< true to show no progress bar
-  /// true for a level of an accuracy ladder; the run then does not report why it ended and how to resume it, because the ladder does
+  /// true for a level of an accuracy ladder. The run then does not print its warnings, why it ended and how to resume it. The ladder does so, and
+  /// prints only the warnings of its finest level.
   bool of_ladder = false;
   std::string deck_text;        ///< the effective deck, to be stored with the results
   /// Returns the scene of this deck with some keys changed by `settings`, each of which is `Section/key=value`.

@@ -224,6 +224,7 @@ void Scene::declare(deck::Section& root) {
       "initial shape, which should be steady");
   if (spectrum.present) quadrature.choose_smooth_sums();
   periodic.driven = flow.history.has_value();
+  solvers.in_lattice = domain.present && !tube.present;
   root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);

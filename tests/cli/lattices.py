@@ -222,6 +222,27 @@ Tanktread:
     check(abs(gap - gap[0]).max() < 1e-9, "the gap changes:", gap)
 
 
+def the_relative_viscosity_is_undefined_when_an_oscillating_flow_pauses():
+    """The amplitude of the sine is 1e-16 there, not exactly 0."""
+    deck("""
+Tanktread:
+  Flow: {type: simple shear, history: {type: sine, frequency: 1}}
+  Domain: {side lengths: [3.5, 3.5, 3.5]}
+  Membrane: {law: surface tension, surface tension: 3}
+  Surface: {elements per side: 3}
+  Time: {final time: 0.5}
+  Output: {interval: 0.25}
+""")
+    run("deck.yaml", "--output", "pauses", "--quiet")
+    undefined = numpy.isnan(series("pauses", "relative_viscosity"))
+    check(undefined[0] and undefined[-1] and not undefined[1:-1].any(), undefined)
+
+
+def an_assembled_double_layer_on_a_lattice_is_named_as_a_key_without_effect():
+    said = run(deck(DECK), "--check", "--set", "Solvers/double layer=assembled").stderr
+    check("Solvers/double layer has no effect in a Domain without a tube" in said, said)
+
+
 def decks_that_are_impossible_on_a_lattice_are_rejected():
     for lists, words in (
         ({"Flow": "{type: parabolic, half width: 3.0}"}, ["Domain", "parabolic", "same in every cell"]),

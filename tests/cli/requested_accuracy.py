@@ -137,6 +137,22 @@ def points_of_a_branch_have_no_error_of_position():
         check("position error" not in shot.fields, sorted(shot.fields))
 
 
+def only_the_warnings_of_the_finest_level_are_printed():
+    """The walls of the first levels are too coarse for the gap."""
+    deck("""
+Tanktread:
+  Flow: {type: duct}
+  Tube: {radius: 1.0, periodic length: 2, azimuthal elements: 12}
+  Particle: {radius: 0.75, motion: free}
+  Surface: {elements per side: 6}
+  Time: {final time: 0.01}
+  Output: {interval: 0.01}
+""")
+    said = run("deck.yaml", "--accuracy", "velocity_x1=10%", "--quiet", "--output", "levels", "--set", "Accuracy/levels=3").stderr
+    check("narrower than" in (pathlib.Path("levels") / "level_0/summary.yaml").read_text(), "no level has a warning")
+    check(said.count("narrower than") == len(summary("levels")["warnings"]), said, summary("levels")["warnings"])
+
+
 def levels_that_the_deck_does_not_allow_count_as_failed():
     deck(DROP.replace("final time: 1.0", "final time: 0.1") + "  Surface: {elements per side: 3}\n  Adaptation: {enabled: true, largest number of points: 100}\n")
     words = ("--accuracy", "taylor_inertia=5%", "--set", "Accuracy/levels=3", "--quiet", "--output", "few")

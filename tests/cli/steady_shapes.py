@@ -81,6 +81,16 @@ def a_branch_passes_its_fold_where_a_mode_becomes_unstable():
     check(abs(rate[at]) < 1e-3, rate[at])  # for any mesh, because the mesh follows the mode
 
 
+def a_fold_nearer_than_the_first_step_is_found():
+    """The first step is shortened until a steady shape is found."""
+    near = ["--set", "Surface/elements per side=4", "--set", "Membrane/capillary number=0.119", "--set", "Continuation/parameter=Membrane/capillary number",
+            "--set", "Continuation/to=0.14"]
+    for name, step in ("short", 0.0005), ("long", 0.01):
+        run(deck(DECK), *near, "--set", f"Continuation/step={step}", "--output", name, "--quiet")
+    found = [series(name, "parameter")[series(name, "fold").argmax()] for name in ("short", "long")]
+    close(found[1], found[0], 1e-5)
+
+
 def a_branch_with_too_few_points_is_reported():
     said = run(deck(DECK), deck(BRANCH, "branch.yaml"), "--set", "Continuation/points=2", "--output", "short", "--quiet", "--no-expect").stderr
     check("Continuation/points ended the branch before" in said, said)

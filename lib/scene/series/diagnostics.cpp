@@ -265,7 +265,7 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
 double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, const ParticleRow& now) {
   if (!flow.affine()) return 0;
   const Mat3 gradient = flow.gradient(now.centre), strain = (gradient + gradient.transpose()) / 2;
-  if (std::abs(flow.amplitude()) <= 1e-10 || strain.isZero(0)) return std::numeric_limits<double>::quiet_NaN();
+  if (flow.pauses() || strain.isZero(0)) return std::numeric_limits<double>::quiet_NaN();
   return now.stresslet.cwiseProduct(strain).sum() / (2 * viscosity * now.measures.volume * strain.squaredNorm());
 }
 
