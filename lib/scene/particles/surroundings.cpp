@@ -34,7 +34,8 @@ void add_surroundings(const Scene& scene, const std::vector<Member>& members, co
   if (const auto& cell = capsule.cell()) {
     DomainRow now{.cell = cell->vectors()};
     const Vec3 force = force_on_fluid(members, here);
-    const Mat3 gradient = capsule.flow().pauses() ? Mat3::Zero() : capsule.flow().cell_gradient(), axes = axes_of_shear(gradient).value_or(all.plane.of_shear.value_or(all.plane.axes));
+    const Mat3 gradient = capsule.flow().pauses() ? Mat3::Zero() : capsule.flow().cell_gradient();
+    const Mat3 axes = axes_of_shear(gradient).value_or(all.plane.of_shear.value_or(all.plane.axes));
     if (cell->n() == 3) now.set_stress(scene.flow.viscosity, gradient, *cell, axes, capsule.geometry().volume(x), stresslet, force);
     if (coupling::SolidResponse* solids = capsule.solids()) {
       const coupling::Evaluation::SolidFlow flow = here.solid_flow();
