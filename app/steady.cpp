@@ -269,11 +269,11 @@ class SteadyRun {
       if (system != system_) of_parity.emplace(*system->motion, time_, scene_.solvers.nox, returns_->options(), state_.x);
       motion::ReturnMap& returns = of_parity ? *of_parity : *returns_;
       std::erase_if(kept, [](const motion::Conserved& one) { return one.kind == motion::ModeKind::volume; });  // time steps restore the volume
-      found_.modes = motion::recognised(*system->motion, shapes, state_.x, kept, exponents(returns, shapes));
+      found_.modes = motion::recognised({*system->motion, shapes, state_.x, kept}, exponents(returns, shapes));
     } else {
       shapes.follow(*system->motion, state_.x);
       if (!options.shift) options.shift = system_->scene.rate();
-      found_.modes = motion::spectrum(*system->motion, shapes, state_.x, kept, options, scene_.solvers.of(scene_.solvers.spectrum));
+      found_.modes = motion::spectrum({*system->motion, shapes, state_.x, kept}, options, scene_.solvers.of(scene_.solvers.spectrum));
     }
     if (system != system_) count_out(*system);
     system_->motion->velocity(state_.x);
