@@ -12,6 +12,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "deck/words.hpp"
 #include "record/files/checkpoint.hpp"
 #include "scene/searches.hpp"
 #include "scene/series/run_totals.hpp"
@@ -103,7 +104,10 @@ class SystemPool {
   }
 
   Scene scene_at(const Parameters& parameters) const {
-    return with_field_lengths_of(scene_, changed_(settings_of(scene_.continuation, parameters)));
+    const motion::ContinuationOptions& branch = scene_.continuation;
+    std::vector<std::string> settings{branch.parameter + "=" + deck::real_text(parameters[0])};
+    if (branch.second_parameter) settings.push_back(*branch.second_parameter + "=" + deck::real_text(parameters[1]));
+    return with_field_lengths_of(scene_, changed_(settings));
   }
   std::string text(const Parameters& parameters) const { return scene_.continuation.text(parameters[0], parameters[1]); }
 
