@@ -1,7 +1,7 @@
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "app/runs.hpp"
 #include "app/signals.hpp"
@@ -36,29 +36,52 @@ SurfaceSnapshot snapshot(const ParticleScene& scene, const Body& body, const Rig
 
 }  // namespace
 
+StationaryRun::StationaryRun(const Scene& scene, const RunRequest& request, const std::string& why) : scene_(scene), request_(request) {
+  refuse(request.resume, "--resume", why, "a steady problem has no time steps to continue");
+}
+
+void StationaryRun::show(output::Entries<std::string> plan) {
+  plan_ = std::move(plan);
+  if (ranks.rank() == 0 && !request_.quiet) std::fputs(plan_text(plan_).c_str(), stdout);
+}
+
+void StationaryRun::end_set_up() {
+  set_up_.reset();
+  stop_where_told(scene_.output.too_late(seconds()));
+}
+
+int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel) {
+  std::optional<Phases::Scope> clock(std::in_place, phases, "output");
+  Results results(scene_, request_, body, surface::BezierMap(body.space), ranks);
+  results.record(row);
+  if (const std::string coarse = coarse_wall(scene_, body, row); !coarse.empty()) results.warn(coarse);
+  motion::State state;
+  state.x = body.rest;
+  results.save({}, state, {}, results.sample(snapshot, state.time));
+  clock.reset();
+  account.plan = plan_;
+  for (const auto& [name, count] : {std::pair("far", kernel.far), {"near", kernel.near}, {"self", kernel.self}})
+    account.counts.emplace_back(std::string("kernel_evaluations_") + name, static_cast<long>(count));
+  return results.close(account, phases);
+}
+
 int resist(const Scene& whole, const RunRequest& request) {
-  refuse(request.resume, "--resume", "Particle/motion `prescribed`", "a steady problem has no time steps to continue");
+  StationaryRun run(whole, request, "Particle/motion `prescribed`");
   const ParticleScene scene = whole.first();
-  const auto start = std::chrono::steady_clock::now();
-  coupling::Ranks ranks;
-  Phases phases = started();
-  std::optional<Phases::Scope> clock(std::in_place, phases, "set-up");
   Body body = tanktread::body(scene);
   refine_alone(scene, body, [&](const Body& on) {
-    const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
-    coupling::RigidTractions there = tractions_of(scene, on, ranks, wall.get());
-    return rigid_solution(scene, on, there, phases).density;
+    const std::unique_ptr<coupling::Tube> wall = tube(scene, on, run.phases);
+    coupling::RigidTractions there = tractions_of(scene, on, run.ranks, wall.get());
+    return rigid_solution(scene, on, there, run.phases).density;
   });
-  const output::Entries<std::string> chosen = plan(whole, body, ranks.size());
-  if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
-  const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
-  coupling::RigidTractions tractions = tractions_of(scene, body, ranks, around.get());
-  clock.reset();
-  stop_where_told(scene.output.too_late(ranks.seconds_since(start)));
-  const RigidSolution solution = rigid_solution(scene, body, tractions, phases);
+  run.show(plan(whole, body, run.ranks.size()));
+  const std::unique_ptr<coupling::Tube> around = tube(scene, body, run.phases);
+  coupling::RigidTractions tractions = tractions_of(scene, body, run.ranks, around.get());
+  run.end_set_up();
+  const RigidSolution solution = rigid_solution(scene, body, tractions, run.phases);
   stop_where_told();
-  const double seconds = ranks.seconds_since(start);
-  const stokes::Evaluations kernel = ranks.of_all(tractions.kernel_evaluations());
+  const double seconds = run.seconds();
+  const stokes::Evaluations kernel = run.ranks.of_all(tractions.kernel_evaluations());
   Columns row;
   ProgressRow now{.wall_seconds = seconds};
   now.counts.solver_iterations = solution.iterations;
@@ -70,25 +93,9 @@ int resist(const Scene& whole, const RunRequest& request) {
   finish(row);
 
   Account account;
-  account.plan = chosen;
   account.counts = {{"unknowns", 3L * body.space.n_points}, {"solver_iterations", solution.iterations}};
   account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
-  return record_steady(whole, request, body, ranks, phases, row, snapshot(scene, body, solution), std::move(account), kernel);
-}
-
-int record_steady(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks, Phases& phases, Columns& row,
-                  const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel) {
-  std::optional<Phases::Scope> clock(std::in_place, phases, "output");
-  Results results(scene, request, body, surface::BezierMap(body.space), ranks);
-  results.record(row);
-  if (const std::string coarse = coarse_wall(scene, body, row); !coarse.empty()) results.warn(coarse);
-  motion::State state;
-  state.x = body.rest;
-  results.save({}, state, {}, results.sample(snapshot, state.time));
-  clock.reset();
-  for (const auto& [name, count] : {std::pair("far", kernel.far), {"near", kernel.near}, {"self", kernel.self}})
-    account.counts.emplace_back(std::string("kernel_evaluations_") + name, static_cast<long>(count));
-  return results.close(account, phases);
+  return run.record(body, row, snapshot(scene, body, solution), std::move(account), kernel);
 }
 
 }  // namespace tanktread

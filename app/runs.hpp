@@ -1,6 +1,10 @@
 #pragma once
 // The runs that the program starts after the deck is read.
 
+#include <chrono>
+#include <optional>
+#include <string>
+
 #include "record/results.hpp"
 #include "scene/scene.hpp"
 
@@ -25,9 +29,29 @@ int resist(const Scene& scene, const RunRequest& request);
 /// Returns the exit code like `simulate`. Collective.
 int flow_past_solids(const Scene& scene, const RunRequest& request);
 
-/// Records the row of the series and the snapshot of a steady problem whose surface is body.rest. Adds `kernel`, the kernel evaluations of all ranks,
-/// to the counts in `account`, and closes the results. Returns the exit code like `simulate`. Collective.
-int record_steady(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks, Phases& phases, Columns& row,
-                  const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel);
+/// A run that solves one problem without time steps, and records one row of the series and one snapshot. Every call is collective.
+class StationaryRun {
+ public:
+  /// Begins the set-up. Throws UserError if the run is to be resumed. `why`: key of the deck because of which there are no time steps.
+  StationaryRun(const Scene& scene, const RunRequest& request, const std::string& why);
+
+  void show(output::Entries<std::string> plan);  ///< prints the plan of the run
+  void end_set_up();  ///< throws motion::Stopped if a stop signal has arrived or the wall-clock limit has passed
+  double seconds() const { return ranks.seconds_since(start_); }  ///< returns the wall time since the run began
+
+  /// Records the row, and the snapshot of the surface body.rest. Adds the plan and `kernel`, the kernel evaluations of all ranks, to `account`, and
+  /// closes the results. Returns the exit code like `simulate`.
+  int record(const Body& body, Columns& row, const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel);
+
+  coupling::Ranks ranks;
+  Phases phases = started();
+
+ private:
+  const Scene& scene_;
+  const RunRequest& request_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::optional<Phases::Scope> set_up_{std::in_place, phases, "set-up"};
+  output::Entries<std::string> plan_;
+};
 
 }  // namespace tanktread

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/types.hpp"
@@ -48,6 +49,9 @@ class ReturnMap {
   /// outlive this object. Collective, like all other functions.
   ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox, const PeriodicOptions& options,
             Net c);
+
+  /// Returns the return map of another motion with the same options. Its plane passes through the shape c.
+  ReturnMap with(coupling::Dynamics& dynamics, Net c) const { return {dynamics, time_, nox_, options_, std::move(c)}; }
 
   /// Returns P(x) (4.27), the shape at the next crossing of the plane. Throws RunFailure if the motion does not return to the plane.
   Net operator()(const Net& x);

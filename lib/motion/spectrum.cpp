@@ -79,46 +79,64 @@ void add_columns(const std::vector<Mode>& modes, int number, bool all_rigid, Col
     add_columns(k < modes.size() ? modes[k].rate : std::complex(none, none), std::to_string(k + 1), to);
 }
 
-Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
-                       double difference)
-    : dynamics_(dynamics), shapes_(shapes), x_(x), difference_(difference / dynamics.norm(dynamics.moved(x, coupling::unit_motion(1)))),
-      kept_(shapes.size(), static_cast<Eigen::Index>(kept.size())) {
-  Eigen::Index n = 0;
-  for (const Conserved& one : kept) {
-    const Net& gradient = one.gradient;
-    Eigen::VectorXd by_y(shapes.size());
-    for (Eigen::Index k = 0; k < by_y.size(); ++k)
-      by_y[k] = gradient.cwiseProduct(shapes.displacement(Eigen::VectorXd::Unit(by_y.size(), k)).topRows(gradient.rows())).sum();
-    by_y -= kept_.leftCols(n) * (kept_.leftCols(n).transpose() * by_y);
-    if (by_y.norm() <= 1e-6 * gradient.norm()) continue;  // modes of this parity do not change the quantity, or the quantity is a mirror image of an
-                                                          // earlier one
-    kept_.col(n++) = by_y.normalized();
-  }
-  kept_.conservativeResize(Eigen::NoChange, n);
-  const std::vector<Net> fields = dynamics.relabellings(x);
-  if (fields.empty()) return;
-  Eigen::MatrixXd all(x.size(), static_cast<Eigen::Index>(fields.size()));
-  for (Eigen::Index k = 0; k < all.cols(); ++k) all.col(k) = fields[static_cast<std::size_t>(k)].reshaped();
-  relabelling_ = all.colPivHouseholderQr().solve(dynamics.velocity(x).reshaped());
-}
-
-Net Linearised::velocity(const Net& x) const {
-  Net v = dynamics_.velocity(x);
-  if (relabelling_.size() == 0 || !v.allFinite()) return v;
-  const std::vector<Net> fields = dynamics_.relabellings(x);
-  for (std::size_t k = 0; k < fields.size(); ++k) v -= relabelling_[static_cast<Eigen::Index>(k)] * fields[k];
-  return v;
-}
-
-Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
-  const Net d = shapes_.displacement(keeping(y));
-  if (d.isZero(0)) return Eigen::VectorXd::Zero(y.size());
-  const Net change = central_difference([this](const Net& x) { return velocity(x); }, x_, d, difference_);
-  if (!change.allFinite()) throw RunFailure("the evaluation of the velocity failed for a shape close to the steady shape");
-  return keeping(shapes_.coordinates(change));
-}
-
 namespace {
+
+/// Computes J y, with J the Jacobian of the velocity v and y the coordinates of a displacement d of x, by a central difference of velocities:
+///
+///   J y = (v(x + e d) - v(x - e d))/2e,   e max |d| = difference x R_C                                                   (4.16)
+///
+/// Modes are changes of the shape, not motions of the control points along the surface. On a steady shape the velocity v is a sum of relabellings
+/// (Dynamics::relabellings); these are subtracted from v. Displacements and results are projected so that they do not change the conserved
+/// quantities: the volumes of the particles and the masses of surfactants. Without the projection, two modes of rate 0 would have the same shape at a
+/// fold, and an error of J would change their rates by the square root of the error.
+class Linearised {
+ public:
+  Linearised(const SmallChanges& changes, double difference)
+      : changes_(changes), difference_(difference / changes.dynamics.norm(changes.dynamics.moved(changes.x, coupling::unit_motion(1)))),
+        kept_(changes.shapes.size(), static_cast<Eigen::Index>(changes.kept.size())) {
+    const auto& [dynamics, shapes, x, kept] = changes;
+    Eigen::Index n = 0;
+    for (const Conserved& one : kept) {
+      const Net& gradient = one.gradient;
+      Eigen::VectorXd by_y(shapes.size());
+      for (Eigen::Index k = 0; k < by_y.size(); ++k)
+        by_y[k] = gradient.cwiseProduct(shapes.displacement(Eigen::VectorXd::Unit(by_y.size(), k)).topRows(gradient.rows())).sum();
+      by_y -= kept_.leftCols(n) * (kept_.leftCols(n).transpose() * by_y);
+      // skips the quantity if modes of this parity do not change it, or if it is a mirror image of an earlier one
+      if (by_y.norm() > 1e-6 * gradient.norm()) kept_.col(n++) = by_y.normalized();
+    }
+    kept_.conservativeResize(Eigen::NoChange, n);
+    const std::vector<Net> fields = dynamics.relabellings(x);
+    if (fields.empty()) return;
+    Eigen::MatrixXd all(x.size(), static_cast<Eigen::Index>(fields.size()));
+    for (Eigen::Index k = 0; k < all.cols(); ++k) all.col(k) = fields[static_cast<std::size_t>(k)].reshaped();
+    relabelling_ = all.colPivHouseholderQr().solve(dynamics.velocity(x).reshaped());
+  }
+
+  /// Returns J y. Throws RunFailure if a velocity cannot be evaluated.
+  Eigen::VectorXd operator()(const Eigen::VectorXd& y) const {
+    const Net d = changes_.shapes.displacement(keeping(y));
+    if (d.isZero(0)) return Eigen::VectorXd::Zero(y.size());
+    const Net change = central_difference([this](const Net& x) { return velocity(x); }, changes_.x, d, difference_);
+    if (!change.allFinite()) throw RunFailure("the evaluation of the velocity failed for a shape close to the steady shape");
+    return keeping(changes_.shapes.coordinates(change));
+  }
+
+ private:
+  Net velocity(const Net& x) const {
+    Net v = changes_.dynamics.velocity(x);
+    if (relabelling_.size() == 0 || !v.allFinite()) return v;
+    const std::vector<Net> fields = changes_.dynamics.relabellings(x);
+    for (std::size_t k = 0; k < fields.size(); ++k) v -= relabelling_[static_cast<Eigen::Index>(k)] * fields[k];
+    return v;
+  }
+  Eigen::VectorXd keeping(const Eigen::VectorXd& y) const { return y - kept_ * (kept_.transpose() * y); }
+
+  SmallChanges changes_;
+  double difference_;            // length of the largest displacement
+  Eigen::VectorXd relabelling_;  // coefficients of v(x) with respect to the fields Dynamics::relabellings, which move points along the surface
+  Eigen::MatrixXd kept_;         // orthonormal gradients of the conserved quantities with respect to the coordinates y, one per column
+};
 
 /// Returns an orthonormal basis, in shape coordinates, of the given fields that have the symmetry of the shape coordinates. Fields that do not change
 /// the shape are left out: rotations of a sphere, and motions of points along the interface of a drop (relabellings).
@@ -148,10 +166,10 @@ Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const Ne
 /// Detects modes that do not change the shape: translations, rotations, and relabellings (motions of points along the surface).
 class Recognition {
  public:
-  Recognition(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x)
-      : translations_(rigid_motions(shapes, x, 0)),
-        rotations_(rigid_motions(shapes, x, 3)),
-        labels_(orthonormal(shapes, dynamics.relabellings(x))) {}
+  explicit Recognition(const SmallChanges& changes)
+      : translations_(rigid_motions(changes.shapes, changes.x, 0)),
+        rotations_(rigid_motions(changes.shapes, changes.x, 3)),
+        labels_(orthonormal(changes.shapes, changes.dynamics.relabellings(changes.x))) {}
 
   /// Returns the kind of a mode from its components along translations, rotations and relabellings. Modes due to a conserved volume or mass are not
   /// detected here.
@@ -186,18 +204,13 @@ Mode mode(const coupling::ShapeCoordinates& shapes, const Recognition& recogniti
   return found;
 }
 
-}  // namespace
-
-namespace {
-
 using Pairs = std::vector<coupling::Eigenpair>;
 
 /// Assembles the Jacobian J of the velocity in shape coordinates, column by column, and computes all its eigenpairs.
-Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
-            const SpectrumOptions& options) {
-  const Eigen::Index n = shapes.size();
+Pairs dense(const SmallChanges& changes, const SpectrumOptions& options) {
+  const Eigen::Index n = changes.shapes.size();
   Eigen::MatrixXd jacobian(n, n);
-  const Linearised linearised(dynamics, shapes, x, kept, options.difference);
+  const Linearised linearised(changes, options.difference);
   for (Eigen::Index k = 0; k < n; ++k) jacobian.col(k) = linearised(Eigen::VectorXd::Unit(n, k));
   const std::vector<double> first = coupling::decided([&] { return std::vector(jacobian.data(), jacobian.data() + jacobian.size()); });
   return coupling::eigenpairs(Eigen::Map<const Eigen::MatrixXd>(first.data(), n, n));
@@ -205,14 +218,13 @@ Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shap
 
 /// Computes the eigenpairs of the Jacobian J with the largest |1/(1 - rate/shift)| by shift-and-invert. Applies (I - J/shift)^-1 by GMRES with the
 /// preconditioner of an implicit step.
-Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
-              const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
+Pairs shifted(const SmallChanges& changes, const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
   constexpr double tolerance = 1e-6;
   const double step = 1 / options.shift.value();
-  const Linearised linearised(dynamics, shapes, x, kept, options.difference);
-  dynamics.freeze(x);
-  dynamics.linearise(x);
-  const Eigen::Index n = shapes.size();
+  const Linearised linearised(changes, options.difference);
+  changes.dynamics.freeze(changes.x);
+  changes.dynamics.linearise(changes.x);
+  const Eigen::Index n = changes.shapes.size();
   using Numbers = Eigen::Map<const Eigen::VectorXd>;
   const coupling::Krylov krylov(solver);
   const coupling::LinearSystem system{
@@ -222,8 +234,8 @@ Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& sh
         Eigen::Map<Eigen::VectorXd>(out, n) = y - step * linearised(y);
       },
       [&](const double* in, double* out) {
-        const Net r = shapes.displacement(Numbers(in, n));
-        Eigen::Map<Eigen::VectorXd>(out, n) = shapes.coordinates(dynamics.solve(step, r, 1e-2, {}));
+        const Net r = changes.shapes.displacement(Numbers(in, n));
+        Eigen::Map<Eigen::VectorXd>(out, n) = changes.shapes.coordinates(changes.dynamics.solve(step, r, 1e-2, {}));
       }};
   const auto inverse = [&](const double* in, double* out) {
     Eigen::VectorXd y = Eigen::VectorXd::Zero(n);
@@ -237,23 +249,21 @@ Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& sh
 
 }  // namespace
 
-std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
-                           const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
-  const bool whole = options.method == "dense" || shapes.size() <= coupling::krylov_vectors(options.number, options.block);
-  Pairs pairs = whole ? dense(dynamics, shapes, x, kept, options) : shifted(dynamics, shapes, x, kept, options, solver);
+std::vector<Mode> spectrum(const SmallChanges& changes, const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
+  const bool whole = options.method == "dense" || changes.shapes.size() <= coupling::krylov_vectors(options.number, options.block);
+  Pairs pairs = whole ? dense(changes, options) : shifted(changes, options, solver);
   const auto rank = [&](const coupling::Eigenpair& pair) { return options.near ? std::abs(pair.value - *options.near) : -pair.value.real(); };
   std::ranges::stable_sort(pairs, {}, rank);
   pairs.resize(std::min<std::size_t>(pairs.size(), static_cast<std::size_t>(options.number)));
-  return recognised(dynamics, shapes, x, kept, pairs);
+  return recognised(changes, pairs);
 }
 
-std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
-                             const std::vector<coupling::Eigenpair>& pairs) {
-  const Recognition recognition(dynamics, shapes, x);
+std::vector<Mode> recognised(const SmallChanges& changes, const std::vector<coupling::Eigenpair>& pairs) {
+  const Recognition recognition(changes);
   std::vector<Mode> modes;
-  for (const coupling::Eigenpair& pair : pairs) modes.push_back(mode(shapes, recognition, pair.value, pair.vector));
+  for (const coupling::Eigenpair& pair : pairs) modes.push_back(mode(changes.shapes, recognition, pair.value, pair.vector));
   std::vector<bool> told(modes.size(), false);
-  for (const auto& [gradient, kind] : kept) {
+  for (const auto& [gradient, kind] : changes.kept) {
     std::vector<double> gains;
     for (std::size_t i = 0; i < modes.size(); ++i) gains.push_back(told[i] ? 0 : gain(gradient, modes[i]));
     const auto most = std::ranges::max_element(gains);

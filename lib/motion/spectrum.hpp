@@ -45,6 +45,14 @@ struct Conserved {
   ModeKind kind;
 };
 
+/// Small changes of the shape x. The referenced objects must outlive this object.
+struct SmallChanges {
+  coupling::Dynamics& dynamics;              ///< motion of the shape
+  const coupling::ShapeCoordinates& shapes;  ///< coordinates y of the changes
+  const Net& x;
+  const std::vector<Conserved>& kept;        ///< conserved quantities; their gradients identify the modes that have rate 0 due to conservation
+};
+
 /// Eigenmode Re(mode e^{rate t}) of the linearised motion: a displacement of the control points and, if there are surface fields, a change of the
 /// fields. It is scaled such that the largest displacement is 1. If no control point moves, the largest component is 1.
 struct Mode {
@@ -70,43 +78,11 @@ Net central_difference(Function&& f, const Net& x, const Net& d, double largest)
   return (f(x + e * d) - f(x - e * d)) / (2 * e);
 }
 
-/// Computes J y, with J the Jacobian of the velocity v and y the coordinates of a displacement d of x, by a central difference of velocities:
-///
-///   J y = (v(x + e d) - v(x - e d))/2e,   e max |d| = difference x R_C                                                   (4.16)
-///
-/// Modes are changes of the shape, not motions of the control points along the surface. On a steady shape the velocity v is a sum of relabellings
-/// (Dynamics::relabellings); these are subtracted from v. Displacements and results are projected so that they do not change the conserved
-/// quantities: the volumes of the particles and the masses of surfactants. Without the projection, two modes of rate 0 would have the same shape at a
-/// fold, and an error of J would change their rates by the square root of the error.
-class Linearised {
- public:
-  /// Linearises the motion about x. `kept`: conserved quantities. The arguments must outlive this object. Collective.
-  Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
-             double difference);
+/// Converts eigenpairs in shape coordinates to fields on the surface, and determines the kind of each mode. Collective.
+std::vector<Mode> recognised(const SmallChanges& changes, const std::vector<coupling::Eigenpair>& pairs);
 
-  /// Returns J y. Throws RunFailure if a velocity cannot be evaluated. Collective.
-  Eigen::VectorXd operator()(const Eigen::VectorXd& y) const;
-
- private:
-  Net velocity(const Net& x) const;
-  Eigen::VectorXd keeping(const Eigen::VectorXd& y) const { return y - kept_ * (kept_.transpose() * y); }
-
-  coupling::Dynamics& dynamics_;
-  const coupling::ShapeCoordinates& shapes_;
-  const Net& x_;
-  double difference_;            // length of the largest displacement
-  Eigen::VectorXd relabelling_;  // coefficients of v(x) with respect to the fields Dynamics::relabellings, which move points along the surface
-  Eigen::MatrixXd kept_;         // orthonormal gradients of the conserved quantities with respect to the coordinates y, one per column
-};
-
-/// Converts eigenpairs in shape coordinates to fields on the surface, and determines the kind of each mode. `kept`: conserved quantities, whose
-/// gradients identify the modes that have rate 0 only because of conservation. Collective.
-std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
-                             const std::vector<coupling::Eigenpair>& pairs);
-
-/// Returns the leading modes of the motion about x that `options` ask for; `options.shift` must be set for krylov. `solver`: options for the
-/// shift-and-invert systems. Collective. Throws RunFailure if a velocity or the eigenvalues cannot be computed.
-std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
-                           const SpectrumOptions& options, const coupling::IterativeOptions& solver);
+/// Returns the leading modes that `options` ask for; `options.shift` must be set for krylov. `solver`: options for the shift-and-invert systems.
+/// Collective. Throws RunFailure if a velocity or the eigenvalues cannot be computed.
+std::vector<Mode> spectrum(const SmallChanges& changes, const SpectrumOptions& options, const coupling::IterativeOptions& solver);
 
 }  // namespace tanktread::motion

@@ -175,12 +175,6 @@ double number_of(const Scene& scene, const std::string& deck, const std::string&
 
 }  // namespace
 
-std::vector<std::string> settings_of(const motion::ContinuationOptions& branch, const Parameters& values) {
-  std::vector<std::string> settings{branch.parameter + "=" + deck::real_text(values[0])};
-  if (branch.second_parameter) settings.push_back(*branch.second_parameter + "=" + deck::real_text(values[1]));
-  return settings;
-}
-
 Parameters first_parameters(const Scene& scene, const std::string& deck) {
   const motion::ContinuationOptions& branch = scene.continuation;
   const double first = number_of(scene, deck, branch.parameter, "Continuation/parameter");

@@ -50,9 +50,6 @@ std::vector<motion::Conserved> conserved_quantities(const coupling::Capsule& cap
 /// Values of the parameters Continuation/parameter and Continuation/second parameter; the second is 0 if there is none.
 using Parameters = std::array<double, 2>;
 
-/// Returns one setting `Section/key=value` for Continuation/parameter and, if given, one for the second parameter, with the values `values`.
-std::vector<std::string> settings_of(const motion::ContinuationOptions& branch, const Parameters& values);
-
 /// Returns the parameter values at the start of the branch, which are those in the deck. Throws UserError if the deck does not give a number for a
 /// parameter, or if the first one already equals Continuation/to.
 Parameters first_parameters(const Scene& scene, const std::string& deck);

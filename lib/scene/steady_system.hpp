@@ -1,6 +1,7 @@
 #pragma once
 // A scene whose steady or periodic shapes are searched for.
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,10 +12,11 @@
 #include "scene/particles/particle_system.hpp"
 #include "scene/scene.hpp"
 #include "scene/searches.hpp"
+#include "system/shape_coordinates.hpp"
 
 namespace tanktread {
 
-/// A scene and the motion of its particles. A branch of steady shapes has one system per value of its parameters.
+/// A scene and the motion of its particles. A branch of steady shapes has one system per value of its parameters (see SystemPool).
 struct System {
   /// `stops`: function that returns true if this rank is to stop because of a signal or a limit (see GuardedDynamics).
   System(Scene of, coupling::Ranks& ranks, Phases& phases, std::function<bool()> stops)
@@ -30,13 +32,46 @@ struct System {
     equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particle->capsule()->particles()), steady_step(scene), x);
   }
 
+  /// Returns the mesh, for move_to().
+  output::Checkpoint mesh() const {
+    output::Checkpoint mesh;
+    particle->store(mesh);
+    return mesh;
+  }
+
+  /// Changes to the mesh of another system, and then calls begin(). Collective.
+  void move_to(const output::Checkpoint& mesh, const Net& x) {
+    Resumed resumed;
+    resumed.state.x = x, resumed.totals.phase_angle = particle->phase_angle(), resumed.checkpoint = mesh;
+    particle->resume(resumed);
+    begin(x);
+  }
+
+  /// Returns false if there are surface fields whose images under the symmetry of the shape are not known.
+  bool knows_images() const { return !particle->fields() || particle->fields()->knows_images(particle->body().symmetry); }
+
+  /// Returns the coordinates of changes of the state x. `symmetry`: symmetry of the shape, which must outlive the result. `parity`: parity of the
+  /// changes under reflections of x1, x2, x3.
+  coupling::ShapeCoordinates coordinates(const Net& x, const surface::Symmetry& symmetry, const Vec3& parity = Vec3::Ones()) {
+    const coupling::Capsule& capsule = *particle->capsule();
+    const Net shape = x.topRows(capsule.n_points());
+    coupling::ShapeCoordinates all(particle->body().space, capsule.particles(), symmetry, shape, capsule.projection(), parity);
+    if (particle->fields()) all.add_fields(*particle->fields(), x);
+    return all;
+  }
+
   /// Returns the state `after` without the motion of control points along interfaces since the state `before`. If both are the same shape, the result
   /// differs from `before` by the cube of this motion:
   ///
   ///   before + D y(after - before),   with y and its displacement D y of (4.15) and (4.34) at the mean of both states
   ///
   /// because a point that slides along a circle moves at right angles to the normal at the middle of its way. Collective.
-  Net without_sliding(const Net& before, const Net& after);
+  Net without_sliding(const Net& before, const Net& after) {
+    if (std::ranges::none_of(particle->capsule()->particles(), &coupling::Particle::slides)) return after;
+    const surface::Symmetry none;
+    const coupling::ShapeCoordinates shapes = coordinates(0.5 * (before + after), knows_images() ? particle->body().symmetry : none);
+    return before + shapes.displacement(shapes.coordinates(after - before));
+  }
 
   Scene scene;
   std::unique_ptr<ParticleSystem> particle;
@@ -44,5 +79,8 @@ struct System {
   std::optional<motion::GuardedDynamics> motion;
   std::optional<motion::SteadyEquations> equations;
 };
+
+/// Returns the equations of steady shapes of the system. They share the ownership of the system.
+inline std::shared_ptr<motion::SteadyEquations> equations_of(const std::shared_ptr<System>& system) { return {system, &*system->equations}; }
 
 }  // namespace tanktread

@@ -53,7 +53,7 @@ struct Sphere {
     motion::SpectrumOptions options;
     options.number = static_cast<int>(shapes.size());
     const Net flux = scene.capsule->geometry().volume_gradient(x);
-    modes = motion::spectrum(*scene.capsule, shapes, x, {{flux, motion::ModeKind::volume}}, options, {});
+    modes = motion::spectrum({*scene.capsule, shapes, x, {{flux, motion::ModeKind::volume}}}, options, {});
   }
 
   /// Returns, among the modes with rates within 5 % of `near`, the rate of the mode closest to a displacement by the second harmonic, Y r and grad Y.
@@ -154,9 +154,9 @@ TEST(RelaxationRates, ByKrylovSchurAreThoseOfTheWholeJacobian) {
   motion::SpectrumOptions options;
   options.number = 6, options.shift = 1;
   const std::vector<motion::Conserved> kept{{run.capsule->geometry().volume_gradient(x), motion::ModeKind::volume}};
-  const auto all = motion::spectrum(*run.capsule, shapes, x, kept, options, {"GMRES"});
+  const auto all = motion::spectrum({*run.capsule, shapes, x, kept}, options, {"GMRES"});
   options.method = "krylov";
-  const auto some = motion::spectrum(*run.capsule, shapes, x, kept, options, {"GMRES"});
+  const auto some = motion::spectrum({*run.capsule, shapes, x, kept}, options, {"GMRES"});
   ASSERT_EQ(some.size(), 6u);
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(std::abs(some[k].rate - all[k].rate), 0, 1e-5) << k;
 }

@@ -1,0 +1,127 @@
+#pragma once
+// The systems that a search for steady shapes uses.
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "deck/words.hpp"
+#include "record/files/checkpoint.hpp"
+#include "scene/searches.hpp"
+#include "scene/series/run_totals.hpp"
+#include "scene/series/surface_fields.hpp"
+#include "scene/steady_system.hpp"
+
+namespace tanktread {
+
+/// Builds systems: the system of the deck, the systems along a branch, and variants of a system. Counts the operations of all of them. Keeps the
+/// three systems of a branch that were used last, because one point of the branch needs several. All systems of a branch have the same mesh.
+class SystemPool {
+ public:
+  /// Function that returns the scene of the deck with some keys changed by settings `Section/key=value`, or throws UserError.
+  using Changed = std::function<Scene(const std::vector<std::string>& settings)>;
+
+  /// Builds the system of `scene`. `stops`: see System. `scene`, `ranks` and `phases` must outlive this object, and this object must outlive the
+  /// systems that it returns. Collective.
+  SystemPool(const Scene& scene, Changed changed, coupling::Ranks& ranks, Phases& phases, std::function<bool()> stops)
+      : scene_(scene), changed_(std::move(changed)), ranks_(ranks), phases_(phases), stops_(std::move(stops)) {
+    systems_.emplace_front(Parameters(), built(scene));
+  }
+  SystemPool(const SystemPool&) = delete;
+
+  /// Returns the system of the branch that was used last; at first, the system of the deck.
+  const std::shared_ptr<System>& latest() const { return systems_.front().second; }
+
+  /// Begins a branch. `first`: values of the parameters in the deck. Throws UserError if the deck does not allow the values at which the branch ends.
+  void begin_branch(const Parameters& first) {
+    scene_at({scene_.continuation.to, first[1]});
+    for (const double second : scene_.continuation.second_values.value_or(std::vector<double>())) scene_at({first[0], second});
+    systems_.front().first = first;
+    rest_ = latest()->particle->body().rest, unstressed_ = latest()->particle->body().unstressed;
+  }
+
+  /// Returns the system for these values of the parameters. A new system starts from the shape x. If the deck does not allow the values, throws
+  /// RunFailure instead of UserError, so that the points of the branch computed so far are kept. Collective.
+  std::shared_ptr<System> at(const Parameters& parameters, const Net& x) try {
+    const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<System>>::first);
+    if (known != systems_.end()) {
+      std::rotate(systems_.begin(), known, known + 1);
+      return latest();
+    }
+    const auto clock = phases_.time("set-up");
+    const std::shared_ptr<System> made = built(scene_at(parameters));
+    if (mesh_ && !(made->particle->body().rest == rest_ && made->particle->body().unstressed == unstressed_))
+      throw UserError("the mesh has adapted, but the resting or unstressed shape depends on this key: set Adaptation/enabled to false");
+    if (mesh_) made->move_to(*mesh_, x);
+    const int points = made->particle->body().space.n_points, expected = latest()->particle->body().space.n_points;
+    if (points != expected)
+      throw UserError("Continuation needs one mesh, but " + text(parameters) + formatted(" has %d control points, not %d.", points, expected));
+    systems_.emplace_front(parameters, made);
+    if (systems_.size() > 3) systems_.pop_back();
+    return made;
+  } catch (const UserError& error) {
+    throw RunFailure(formatted("%s cannot be computed (%s)", text(parameters).c_str(), error.what()));
+  }
+
+  /// Uses the mesh of latest(), which has been adapted, for all systems of the branch from now on.
+  void adapted() {
+    mesh_ = latest()->mesh();
+    systems_.resize(1);
+  }
+
+  /// Returns a new system with another scene, on the mesh of the system `like` and with the shape x. Collective.
+  std::shared_ptr<System> variant(const System& like, Scene scene, const Net& x) {
+    std::shared_ptr<System> made = built(std::move(scene));
+    made->move_to(like.mesh(), x);
+    return made;
+  }
+
+  /// Sets in `totals` the operation counts and kernel evaluations of all systems, including deleted ones. Collective.
+  void count(RunTotals& totals) const {
+    totals.counts = counts_, totals.kernel = kernel_;
+    for (const std::weak_ptr<System>& one : built_)
+      if (const std::shared_ptr<System> system = one.lock())
+        totals.counts = totals.counts + system->particle->counts(), totals.kernel += system->particle->kernel_evaluations();
+    totals.kernel = ranks_.of_all(totals.kernel);
+  }
+
+ private:
+  /// Builds a system. When it is deleted, its operations are added to those of the deleted systems.
+  std::shared_ptr<System> built(Scene scene) {
+    std::shared_ptr<System> made(new System(std::move(scene), ranks_, phases_, stops_), [this](System* system) {
+      counts_ = counts_ + system->particle->counts(), kernel_ += system->particle->kernel_evaluations();
+      delete system;
+    });
+    built_.push_back(made);
+    return made;
+  }
+
+  Scene scene_at(const Parameters& parameters) const {
+    const motion::ContinuationOptions& branch = scene_.continuation;
+    std::vector<std::string> settings{branch.parameter + "=" + deck::real_text(parameters[0])};
+    if (branch.second_parameter) settings.push_back(*branch.second_parameter + "=" + deck::real_text(parameters[1]));
+    return with_field_lengths_of(scene_, changed_(settings));
+  }
+  std::string text(const Parameters& parameters) const { return scene_.continuation.text(parameters[0], parameters[1]); }
+
+  const Scene& scene_;
+  Changed changed_;
+  coupling::Ranks& ranks_;
+  Phases& phases_;
+  std::function<bool()> stops_;
+  coupling::OperationCounts counts_;           // operation counts of deleted systems
+  stokes::Evaluations kernel_;                 // kernel evaluations of deleted systems on this rank
+  std::vector<std::weak_ptr<System>> built_;   // all systems
+  std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // parameters and systems of the branch, last used first
+  Net rest_, unstressed_;                      // resting and unstressed shapes of the branch on the mesh of the deck
+  std::optional<output::Checkpoint> mesh_;     // mesh of the branch; not set if it is the mesh of the deck
+};
+
+}  // namespace tanktread
