@@ -49,19 +49,17 @@ void CapsuleJacobian::linearise(const Net& x, const Net& work, const std::vector
   membranes_.linearise(x, sums);
   frozen_.turn_to(x);
   if (area_) area_->set_shape(x);
-  if (interface_) {
-    const Net gradient = volumes_.gradient(x);
-    interface_->linearise(x, gradient);
-    pressures_.clear(), x_ = x;
-    for (const Particle& one : parameters_.particles) {
-      const Net y = one.block.rows(x).rowwise() - one.block.rows(x).colwise().mean();
-      if (one.slides()) pressures_.push_back({one.block, dot(Net(one.block.rows(work)), y) / dot(Net(one.block.rows(gradient)), y)});
-    }
-  } else if (parameters_.constrained()) {
-    constraint_.gradient = volumes_.gradient(x);
-    constraint_.response = parameters_.symmetry.completed(membranes_.solved(constraint_.gradient));
-  }
   if (flow_at_sites_) gradients_ = gradients_at(targets_.at_sites() * x);
+  if (!interface_ && !parameters_.constrained()) return;
+  const Net gradient = volumes_.gradient(x);
+  if (parameters_.constrained()) constraint_ = {gradient, parameters_.symmetry.completed(membranes_.solved(gradient))};
+  if (!interface_) return;
+  interface_->linearise(x, gradient);
+  pressures_.clear(), x_ = x;
+  for (const Particle& one : parameters_.particles) {
+    const Net y = one.block.rows(x).rowwise() - one.block.rows(x).colwise().mean();
+    if (one.slides()) pressures_.push_back({one.block, dot(Net(one.block.rows(work)), y) / dot(Net(one.block.rows(gradient)), y)});
+  }
 }
 
 /// Returns the velocity gradients of the flow at x. If the scene is symmetric, computes only one gradient per symmetry orbit, at the fundamental

@@ -94,7 +94,7 @@ class CapsuleJacobian {
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
   Krylov step_solver_, inner_solver_;
   double latest_shift_ = 0;      // shift gamma dt of the implicit system solved last
-  VolumeConstraint constraint_;  // projection P (2.8); not active if control points slide, whose mesh velocity has its own, or if volumes are free
+  VolumeConstraint constraint_;  // projection P (2.8); not active if the volumes are free
   struct Pressure {
     spline::Block block;
     double p;

@@ -100,6 +100,19 @@ TEST(InterfaceMotion, TheJacobianOfPointsThatSlideContainsNoFlowByPressure) {
   }
 }
 
+TEST(InterfaceMotion, TheJacobianOfTheFluidVelocityGivesNoFluxFarFromTheFrozenShape) {
+  Drop drop;
+  drop.parameters.particles.front().interface_motion = MeshMotion::relaxed;
+  Capsule capsule = drop.capsule();
+  capsule.freeze(drop.sphere);
+  const Net x = drop.sphere * Vec3(1.4, 1, 0.7).asDiagonal(), b = capsule.geometry().volume_gradient(x);
+  capsule.velocity(x);
+  capsule.linearise(x);
+  const CapsuleJacobian::RateChange change = capsule.jacobian().velocity_change(drop.sphere, {});
+  const Net fluid = change.rate + change.slip;
+  EXPECT_NEAR(dot(b, fluid), 0, 1e-12 * b.norm() * fluid.norm());  // round-off
+}
+
 TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
   Drop drop;
   const spline::PolarMesh polar{8, 6, spline::PoleRule::plain};
