@@ -259,7 +259,7 @@ void Capsule::improve_start(Net& y, const Net& before, double shift) {
 Net Capsule::mesh_motion(const Net& delta) {
   if (!interface_ || !interface_->relaxes()) return {};
   const auto clock = phases_.time("tangent");
-  return interface_->derivative(Net::Zero(delta.rows(), 3), delta);
+  return interface_->derivative(Net::Zero(delta.rows(), 3), delta, {});
 }
 
 Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {

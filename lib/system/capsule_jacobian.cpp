@@ -88,6 +88,9 @@ Net CapsuleJacobian::inflation(const Net& c) {
   return along.allFinite() ? along : c;
 }
 
+/// Returns d2V/dx2 dx, exact because V is a cubic form.
+Net CapsuleJacobian::volume_gradient_change(const Net& dx) const { return (volumes_.gradient(x_ + dx) - volumes_.gradient(x_ - dx)) / 2; }
+
 /// Returns H dx without the change of a pressure p on each particle whose control points slide:
 ///
 ///   (H - p d2V/dx2) dx,   p = (dE/dx).y/(dV/dx.y),   y = x minus its mean                                                          (4.35)
@@ -97,7 +100,7 @@ Net CapsuleJacobian::inflation(const Net& c) {
 Net CapsuleJacobian::load_work_change(const Net& dx) const {
   Net change = membranes_.work_change(dx);
   if (pressures_.empty()) return change;
-  const Net turned = (volumes_.gradient(x_ + dx) - volumes_.gradient(x_ - dx)) / 2;  // d2V/dx2 dx, exact because V is a cubic form
+  const Net turned = volume_gradient_change(dx);
   for (const auto& [block, p] : pressures_) block.rows(change) -= p * block.rows(turned);
   return change;
 }
@@ -153,7 +156,7 @@ Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& work) {
 CapsuleJacobian::RateChange CapsuleJacobian::velocity_change(const Net& dx, const Net& work) {
   const Net dv = fluid_velocity_change(dx, work);
   if (!interface_) return {dv, {}};
-  const Net du = interface_->derivative(dv, dx);
+  const Net du = interface_->derivative(dv, dx, volume_gradient_change(dx));
   return {du, dv - du};
 }
 

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <iterator>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
-
 #include "base/small_matrices.hpp"
 #include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
+#include "system/motion_of_shape.hpp"
 
 namespace tanktread::coupling {
 
@@ -70,85 +68,6 @@ Net normal_part_change(const Net& normals, const Net& change, Net field) {
   return field;
 }
 
-/// Returns the mean velocity U (6.4) of a drop from the fluid velocity v at its control points and b = dV/dx. `from_mean`: control points minus their
-/// mean. Exact if the velocity is uniform.
-Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v) {
-  const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
-  return 3 * outward.transpose() * from_mean / b.cwiseProduct(from_mean).sum();
-}
-
-/// Returns half the vorticity of v, averaged over the interior, from v at the control points and b = dV/dx. `from_mean`: control points minus their
-/// mean. Exact for a rigid rotation.
-Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
-  const Mat3 volume = b.transpose() * from_mean, flux = b.transpose() * (v.rowwise() - v.colwise().mean());
-  const Mat3 gradient = volume.partialPivLu().solve(flux).transpose();
-  return axial_vector(gradient) / 2;
-}
-
-/// Returns the velocity of the points y in a rotation about the origin.
-Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rotation.transpose()); }
-
-/// Returns the weight g (4.14) of an axis, divided by m. m is about 1.6 D^2, with the Taylor deformation D of the drop in the plane normal to the
-/// axis.
-double weight_of_axis(double m) {
-  constexpr double elongated = 0.02;  // value of m at the Taylor deformation D = 0.11, from which on g = 1: the mesh turns with the shape of the drop
-  const double along = m / elongated;
-  return along < 1 ? along * (3 - 2 * along) / elongated : 1 / m;
-}
-
-/// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. The area weight of a site is |b|, with the
-/// volume gradient b = dV/dx of its control point.
-Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
-  Mat3 moments = Mat3::Zero();
-  Vec3 across = Vec3::Zero();
-  double inertia = 0;
-  for (Eigen::Index i = 0; i < y.rows(); ++i) {
-    const double area = b.row(i).norm();
-    const Vec3 n = normals.row(i).transpose(), arm = Vec3(y.row(i).transpose()).cross(n);
-    moments += area * arm * arm.transpose();
-    across += area * arm * u.row(i).dot(n);
-    inertia += area * y.row(i).squaredNorm() * 2 / 3;
-  }
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(moments / inertia);
-  Vec3 rotation = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 axis = axes.eigenvectors().col(k);
-    rotation += weight_of_axis(axes.eigenvalues()[k]) * axis.dot(across) / inertia * axis;
-  }
-  return rotation;
-}
-
-/// Returns the centroid of a drop from its control points x and b = dV/dx, approximately: exactly that of a polyhedron with the volumes b.x/3.
-Eigen::RowVector3d approximate_centroid(const Net& x, const Net& b) {
-  const Eigen::RowVector3d mean = x.colwise().mean();
-  const Net y = x.rowwise() - mean;
-  const Eigen::VectorXd volumes = b.cwiseProduct(y).rowwise().sum();
-  return mean + 0.75 * volumes.transpose() * y / volumes.sum();
-}
-
-/// State of a drop: at its control points the positions x, the volume gradient b = dV/dx and the fluid velocity v; at its collocation sites the
-/// positions, normals and velocities.
-struct Moving {
-  Net x, b, v;
-  Net places, normals, velocities;
-};
-
-/// Rigid motion W (4.14): a velocity and a rotation about `centre`.
-struct MotionOfShape {
-  Vec3 centre;
-  RigidMotion motion;
-};
-
-/// Returns the rigid motion W (4.14) with which the mesh of a drop moves. `turns`: false if the rotation is to be zero.
-MotionOfShape motion_of_shape(const Moving& drop, bool turns) {
-  const Eigen::RowVector3d centre = approximate_centroid(drop.x, drop.b);
-  const Net from_centre = drop.x.rowwise() - centre, y = drop.places.rowwise() - centre;
-  const Vec3 of_fluid = mean_rotation(from_centre, drop.b, drop.v);
-  const Eigen::RowVector3d mean = mean_motion(from_centre, drop.b, drop.v - rotated(of_fluid, from_centre));
-  const Vec3 rotation = turns ? rotation_of_shape(y, drop.normals, drop.b, drop.velocities.rowwise() - mean) : Vec3(Vec3::Zero());
-  return {centre.transpose(), {mean.transpose(), rotation}};
-}
-
 /// Returns the rotation about the mean of the control points that fits `from` best to `to`.
 Mat3 rotation_between(const Net& from, const Net& to) {
   return nearest_rotation((to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean()));
@@ -175,24 +94,29 @@ void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
   }
 }
 
-/// Returns the control values of the mesh velocity (4.6), W + n n.(v - W) + (1 - n n).w, at the shape x. Here b = dV/dx, W is the rigid motion
-/// (4.14), and w is the relaxation velocity, computed from the density f of the elastic force on the mesh; if f is empty, w = 0. Sets `rest` to
+/// Returns the motion W (4.14) of each drop's shape. `b`: dV/dx. `normals`: at the collocation sites. `v`: control values of the fluid velocity.
+std::vector<MotionOfShape> InterfaceMotion::motions(const Net& x, const Net& b, const Net& normals, const Net& v) const {
+  const Net places = sites_ * x, velocities = sites_ * v;
+  std::vector<MotionOfShape> shapes;
+  for (const Drop& drop : drops_) {
+    const auto own = [&](const Net& net) { return drop.block.rows(net); };
+    shapes.push_back(motion_of_shape({own(x), own(b), own(v), own(places), own(normals), own(velocities)}, drop.turns));
+  }
+  return shapes;
+}
+
+/// Returns the control values of the mesh velocity (4.6), W + n n.(v - W) + (1 - n n).w, at the shape x. Here b = dV/dx, W is the motion of the
+/// shape (4.14), and w is the relaxation velocity, computed from the density f of the elastic force on the mesh; if f is empty, w = 0. Sets `rest` to
 /// v - W - w at the collocation sites.
 Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const {
   Net u = sites_ * v;
   const Net places = sites_ * x;
-  std::vector<MotionOfShape> shapes;
-  for (const Drop& drop : drops_) {
-    const auto own = [&](const Net& net) { return drop.block.rows(net); };
-    shapes.push_back(motion_of_shape({own(x), own(b), own(v), own(places), own(normals), own(u)}, drop.turns));
-  }
+  const std::vector<MotionOfShape> shapes = motions(x, b, normals, v);
   // Replaces `velocities` v at the points `at` with the normals n by W + `along` + n n.(v - W - `along`), and adds v - W - `along` to `rest`.
   const auto combine = [&](const Net& at, const Net& n, const Net& along, std::vector<int> Drop::* rows, Net& velocities) {
     for (size_t d = 0; d < drops_.size(); ++d) {
-      const auto& [centre, motion] = shapes[d];
       for (const int i : drops_[d].*rows) {
-        const Vec3 whole = motion.velocity + motion.angular_velocity.cross(Vec3(at.row(i).transpose()) - centre);
-        const Eigen::RowVector3d with = whole.transpose() + along.row(i);
+        const Eigen::RowVector3d with = shapes[d].at(at.row(i).transpose()).transpose() + along.row(i);
         rest.row(i) += velocities.row(i) - with;
         velocities.row(i) = with + n.row(i).dot(velocities.row(i) - with) * n.row(i);
       }
@@ -242,7 +166,7 @@ std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> a
 }
 
 Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v, const Net& given) {
-  latest_.x = given;
+  latest_.x = given, latest_.v = v;
   const Net normals = normals_at(x);
   if (!relaxed_) return combined(x, b, normals, v, {}, latest_.rest);
   latest_.density = sites_ * mass_.solve(ranks_.filled(x.rows(), [&](Net& d) { mesh_.load(x, own_elements_, d); }));
@@ -256,12 +180,25 @@ void InterfaceMotion::linearise(const Net& x, const Net& b) {
   if (relaxed_) tangent_.update(x, own_elements_);
 }
 
-Net InterfaceMotion::derivative(const Net& dv, const Net& delta) {
+/// Returns the tangential part of the change of W (4.14) with the shape, per distance `aside`, at the points `at`, which move to `there`.
+Net InterfaceMotion::change_of_motion(const Displaced& to, const Net& at, const Net& there, const Net& normals, double aside,
+                                      std::vector<int> Drop::* rows) const {
+  const std::vector<MotionOfShape> before = motions(x_, flux_, normals_, known_.v), after = motions(to.x, to.b, to.normals, known_.v);
+  Net change = Net::Zero(at.rows(), 3);
+  for (size_t d = 0; d < drops_.size(); ++d)
+    for (const int i : drops_[d].*rows)
+      change.row(i) = (after[d].at(there.row(i).transpose()) - before[d].at(at.row(i).transpose())).transpose() / aside;
+  return along_interface(normals, std::move(change));
+}
+
+Net InterfaceMotion::derivative(const Net& dv, const Net& delta, const Net& db) {
   const double most = delta.cwiseAbs().maxCoeff();
   const bool turns = known_.x.size() > 0 && most > 0;
-  const double aside = 1e-6 * radius_ / most;
-  Net there, change, density, rest;
-  if (turns) there = x_ + aside * delta, change = (normals_at(there) - normals_) / aside;
+  const double aside = turns ? 1e-6 * radius_ / most : 0;
+  Net change, density, rest;
+  Displaced to;
+  if (db.rows() > 0) to.b = flux_ + aside * db;
+  if (turns) to.x = x_ + aside * delta, to.normals = normals_at(to.x), change = (to.normals - normals_) / aside;
   if (relaxed_) {
     density = along_interface(normals_, sites_ * mass_.solve(ranks_.filled(delta.rows(), [&](Net& h) { tangent_.apply(delta, h); })));
     if (turns) density -= normal_part_change(normals_, change, known_.density);
@@ -270,10 +207,15 @@ Net InterfaceMotion::derivative(const Net& dv, const Net& delta) {
   const Net kept = combined(x_, flux_, normals_, dv, density, rest);
   if (!turns) return kept;
   if (projection_) {
-    const Net n = projection_->normals(x_);
-    return kept + projection_->control_values(normal_part_change(n, (projection_->normals(there) - n) / aside, known_.rest));
+    const Net n = projection_->normals(x_), at = projection_->values() * x_;
+    Net turned = normal_part_change(n, (projection_->normals(to.x) - n) / aside, known_.rest);
+    if (db.rows() > 0) turned += change_of_motion(to, at, projection_->values() * to.x, n, aside, &Drop::places);
+    return kept + projection_->control_values(turned);
   }
-  return kept + collocation_.solve(ranks_.filled(x_.rows(), [&](Net& u) { u = normal_part_change(normals_, change, known_.rest); }));
+  return kept + collocation_.solve(ranks_.filled(x_.rows(), [&](Net& u) {
+    u = normal_part_change(normals_, change, known_.rest);
+    if (db.rows() > 0) u += change_of_motion(to, sites_ * x_, sites_ * to.x, normals_, aside, &Drop::points);
+  }));
 }
 
 }  // namespace tanktread::coupling

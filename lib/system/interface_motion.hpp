@@ -9,6 +9,7 @@
 
 #include "base/types.hpp"
 #include "membrane/membrane.hpp"
+#include "system/motion_of_shape.hpp"
 #include "system/particle_layers.hpp"
 
 namespace tanktread::coupling {
@@ -20,13 +21,14 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 ///
 ///   u = W + n n.(v - W) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed Q A0 Q^T M0^{-1} dE1/dx (`relaxed`)    (4.6)
 ///
-/// W (4.14) is the rigid motion of the drop's shape. The mesh moves with W: the mesh of a drop that is convected, or of an elongated drop that is
-/// rotated as a whole, moves rigidly. The mesh of a steady shape stays fixed while the fluid tank-treads around it. E1 is the energy of a neo-Hookean
-/// membrane of modulus 1 whose unstressed shape is the initial shape. A0 and M0 are the single layer and the mass matrix of the drop's initial shape,
-/// and the rotation Q turns the initial shape with the mesh. The relaxed mesh slides along the interface like an elastic membrane that is pulled
-/// through the fluid by its tension. Elements therefore keep their shape, and the mesh comes to rest where E1 is smallest on the given interface. The
-/// equations of motion are no stiffer than for a capsule with the capillary number Ca = mu rate R_C / (mu speed), where `rate` is the shear rate. On
-/// all other particles u = v.
+/// W (4.14) is the motion of the drop's shape, a rigid motion and a uniform rate of stretch. The mesh moves with W: the mesh of a drop that is
+/// convected, or of an elongated drop that is rotated as a whole, moves rigidly, and that of a drop that elongates is stretched with it, so that its
+/// elements at the tips stay as small as those of a material surface. The mesh of a steady shape stays fixed while the fluid tank-treads around it.
+/// E1 is the energy of a neo-Hookean membrane of modulus 1 whose unstressed shape is the initial shape. A0 and M0 are the single layer and the mass
+/// matrix of the drop's initial shape, and the rotation Q turns the initial shape with the mesh. The relaxed mesh slides along the interface like an
+/// elastic membrane that is pulled through the fluid by its tension. Elements therefore keep their shape, and the mesh comes to rest where E1 is
+/// smallest on the given interface. The equations of motion are no stiffer than for a capsule with the capillary number
+/// Ca = mu rate R_C / (mu speed), where `rate` is the shear rate. On all other particles u = v.
 class InterfaceMotion {
  public:
   /// `initial`: net that the meshes relax towards. `mass`: factored mass matrix M0 of `initial`. References, except `initial`, must outlive this
@@ -46,10 +48,10 @@ class InterfaceMotion {
   /// Stores x, b = dV/dx, the normals, and the Hessian of the mesh energy E1 (4.6) at x, which `derivative` needs. Collective.
   void linearise(const Net& x, const Net& b);
 
-  /// Returns the change of the control points' velocity u (4.6) if the shape x of `linearise` is displaced by delta. `dv`: the resulting change of
-  /// the fluid velocity v. Neglects the changes of the volume gradient b and of the linear map from v to the rigid motion W. Includes the change of
-  /// the normals only if the last call of `velocity` before `linearise` was for the same net x. Collective.
-  Net derivative(const Net& dv, const Net& delta);
+  /// Returns the change of the control points' velocity u (4.6) if the shape x of `linearise` is displaced by delta. `dv`, `db`: the resulting
+  /// changes of the fluid velocity v and of the volume gradient b. Includes the changes of the normals and of the linear map from v to the motion W
+  /// only if the last call of `velocity` before `linearise` was for the same net x. If db has no rows, this map is not changed. Collective.
+  Net derivative(const Net& dv, const Net& delta, const Net& db);
 
   /// Returns whether the mesh of any drop relaxes by itself (`relaxed`).
   bool relaxes() const { return relaxed_; }
@@ -58,13 +60,18 @@ class InterfaceMotion {
   struct Drop {
     spline::Block block;
     bool relaxed;
-    bool turns;  // false: the rigid motion W (4.14) has no rotation
+    bool turns;  // false: the motion W (4.14) is a translation
     double speed;
     std::vector<int> points;      // rank-owned control points
     std::vector<int> places;      // indices of this drop's sites among the sites of VelocityProjection
     stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`, in double precision so that units and axes do not matter
   };
+  struct Displaced {  // shape, dV/dx and normals of a displaced shape
+    Net x, b, normals;
+  };
   void slide(const Net& x, const Net& f, Net& w) const;
+  std::vector<MotionOfShape> motions(const Net& x, const Net& b, const Net& normals, const Net& v) const;
+  Net change_of_motion(const Displaced& to, const Net& at, const Net& there, const Net& normals, double aside, std::vector<int> Drop::* rows) const;
   Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const;
   Net normals_at(const Net& x) const;  ///< normals at the collocation sites of all drops, zeros at other sites. Collective
 
@@ -80,7 +87,8 @@ class InterfaceMotion {
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
   struct Latest {
-    Net x, rest, density;  // rest: fluid velocity minus rigid motion and relaxation velocity, v - W - w of (4.6), at the sites where u is evaluated;
+    Net x, v;              // shape, fluid velocity
+    Net rest, density;     // rest: fluid velocity minus motions of shape and relaxation, v - W - w of (4.6), at the sites where u is evaluated;
                            // density: force density M0^{-1} dE1/dx at the collocation sites, with the mesh energy E1 of (4.6)
   };
   Latest latest_, known_;  // latest_: data of the last call of velocity(). known_: copy of latest_ made by linearise(x); empty if the last call of
