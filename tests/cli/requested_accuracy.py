@@ -83,7 +83,7 @@ def a_request_is_met_and_every_series_has_an_error():
 def a_looser_request_takes_fewer_levels():
     deck(DROP)
     levels = []
-    for request in ("taylor_inertia=5%", "taylor_inertia=0.05%"):
+    for request in ("taylor_inertia=5%", "taylor_inertia=0.01%"):
         run("deck.yaml", "--accuracy", request, "--quiet", "--overwrite", "--output", "some")
         levels.append(len(summary("some")["accuracy"]["levels"]))
     check(levels[0] < levels[1], levels)
