@@ -33,6 +33,8 @@ struct Options {
   /// Returns options with a smaller tolerance, for single-layer matrices and integrals of walls, plates and posts that are computed only once.
   Options for_matrix() const;
 
+  bool operator==(const Options&) const = default;
+
   void declare(deck::Section& section);
   void check() const;
 };

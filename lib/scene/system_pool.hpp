@@ -18,6 +18,7 @@
 #include "scene/series/run_totals.hpp"
 #include "scene/series/surface_fields.hpp"
 #include "scene/steady_system.hpp"
+#include "system/solids/wall.hpp"
 
 namespace tanktread {
 
@@ -89,12 +90,13 @@ class SystemPool {
     for (const std::weak_ptr<System>& one : built_)
       if (const std::shared_ptr<System> system = one.lock())
         totals.counts = totals.counts + system->particle->counts(), totals.kernel += system->particle->kernel_evaluations();
-    totals.kernel = ranks_.of_all(totals.kernel);
+    totals.kernel = ranks_.of_all(totals.kernel + walls_->evaluations());
   }
 
  private:
   /// Builds a system. When it is deleted, its operations are added to those of the deleted systems.
   std::shared_ptr<System> built(Scene scene) {
+    scene.walls = walls_;
     std::shared_ptr<System> made(new System(std::move(scene), ranks_, phases_, stops_), [this](System* system) {
       counts_ = counts_ + system->particle->counts(), kernel_ += system->particle->kernel_evaluations();
       delete system;
@@ -119,6 +121,7 @@ class SystemPool {
   coupling::OperationCounts counts_;           // operation counts of deleted systems
   stokes::Evaluations kernel_;                 // kernel evaluations of deleted systems on this rank
   std::vector<std::weak_ptr<System>> built_;   // all systems
+  std::shared_ptr<coupling::Walls> walls_ = std::make_shared<coupling::Walls>();  // shared by all systems with the same duct
   std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // parameters and systems of the branch, last used first
   Net rest_, unstressed_;                      // resting and unstressed shapes of the branch on the mesh of the deck
   std::optional<output::Checkpoint> mesh_;     // mesh of the branch; not set if it is the mesh of the deck

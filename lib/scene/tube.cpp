@@ -115,7 +115,7 @@ std::shared_ptr<const stokes::DuctFlow> duct(const ParticleScene& scene) {
   const double speed = scene.flow.mean_velocity ? *scene.flow.mean_velocity : scene.rate() * scene.radius();
   if (scene.tube.channel)
     return std::make_shared<const coupling::ChannelFlow>(scene.tube, scene.flow.viscosity, speed, scene.quadrature,
-                                                         coupling::WallSolver{scene.solvers.wall, scene.solvers.tolerance});
+                                                         coupling::WallSolver{scene.solvers.wall, scene.solvers.tolerance}, scene.walls);
   return std::make_shared<const stokes::DuctFlow>(scene.tube, scene.flow.viscosity, speed);
 }
 
@@ -152,6 +152,7 @@ std::unique_ptr<coupling::Tube> tube(const SharedOptions& scene, const Body& bod
   parameters.holds_pressure_drop = scene.flow.held == "pressure drop";
   parameters.quadrature = scene.quadrature;
   parameters.direct = scene.solvers.direct;
+  parameters.walls = scene.walls;
   if (const auto channel = std::dynamic_pointer_cast<const coupling::ChannelFlow>(body.duct))
     return std::make_unique<coupling::Tube>(channel, body.space, parameters, phases);
   return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "base/indices.hpp"
 #include "surface/geometry.hpp"
@@ -22,13 +23,14 @@ stokes::DuctFlow developed_flow(const surface::Channel& channel, double viscosit
 }  // namespace
 
 ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
-                         const WallSolver& solver)
+                         const WallSolver& solver, std::shared_ptr<Walls> walls)
     : DuctFlow(developed_flow(surface::Channel(options), viscosity, mean_velocity)),
       channel_(std::make_shared<const surface::Channel>(options)),
       surface_(std::make_shared<const surface::TubeWall>(surface::channel_wall(channel_, options.azimuthal_elements))),
       options_(options),
       quadrature_(quadrature),
-      solver_(solver) {
+      solver_(solver),
+      walls_(std::move(walls)) {
   if (channel_->repeats()) return;
   ends_.push_back(section(channel_->start(), 1));
   ends_.push_back(section(channel_->end(), -1));
@@ -43,7 +45,7 @@ stokes::DuctEnd ChannelFlow::section(double s, int inward) const {
 }
 
 std::shared_ptr<Wall> ChannelFlow::wall(Phases* phases) const {
-  if (!wall_) wall_ = std::make_shared<Wall>(*surface_, quadrature_, phases, surface::Symmetry(), solver_);
+  if (!wall_) wall_ = made(phases, surface::Symmetry());
   return wall_;
 }
 
@@ -53,8 +55,13 @@ std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry&
   std::vector<surface::Image> images;
   for (const surface::Image& image : particle.images()) images.push_back(surface::image(surface_->space, net, image.signs).value());
   const surface::Symmetry symmetry = images.empty() ? surface::Symmetry() : surface::Symmetry(images, surface_->net);
-  wall_ = std::make_shared<Wall>(*surface_, quadrature_, &phases, symmetry, solver_);
+  wall_ = made(&phases, symmetry);
   return wall_;
+}
+
+std::shared_ptr<Wall> ChannelFlow::made(Phases* phases, const surface::Symmetry& symmetry) const {
+  if (walls_) return walls_->of(*surface_, quadrature_, phases, symmetry, solver_);
+  return std::make_shared<Wall>(*surface_, quadrature_, phases, symmetry, solver_);
 }
 
 /// Returns the velocity that drives the flow, without the velocity due to the wall traction. In an open channel it is P_I + P_O of (2.30), the
@@ -67,29 +74,35 @@ Net ChannelFlow::driving_velocity(const Net& x) const {
   return v;
 }
 
-const ChannelFlow::Solved& ChannelFlow::solved() const {
+/// Returns the flow that was solved first on the wall, scaled to the flow rate and viscosity of this channel. Solves for it if it is not known.
+const Wall::EmptyFlow& ChannelFlow::solved() const {
   if (solved_) return *solved_;
   const std::shared_ptr<Wall> wall = this->wall();
-  Solved solved;
-  const std::vector<int>& own = wall->points().own_targets();
-  Net of_ends(wall->points().targets().rows(), 3);
-  of_ends(own, Eigen::all) = driving_velocity(wall->points().targets()(own, Eigen::all));
-  const Net without = viscosity() * wall->solve(wall->points().collocated(of_ends)), &with = wall->pumped();
+  if (!wall->empty_flow) wall->empty_flow = std::make_shared<const Wall::EmptyFlow>(solution(*wall));
+  Wall::EmptyFlow scaled = *wall->empty_flow;
+  const double factor = viscosity() * flow_rate() / scaled.strength;
+  scaled.strength *= factor, scaled.pressure_drop *= factor, scaled.traction *= factor;
+  if (channel_->repeats()) scaled.driving *= factor;
+  solved_ = std::make_shared<const Wall::EmptyFlow>(std::move(scaled));
+  return *solved_;
+}
+
+Wall::EmptyFlow ChannelFlow::solution(const Wall& wall) const {
+  const std::vector<int>& own = wall.points().own_targets();
+  Net of_ends(wall.points().targets().rows(), 3);
+  of_ends(own, Eigen::all) = driving_velocity(wall.points().targets()(own, Eigen::all));
+  const Net without = viscosity() * wall.solve(wall.points().collocated(of_ends)), &with = wall.pumped();
   const double middle = (channel_->start() + channel_->end()) / 2;
   const stokes::DuctEnd::Points points = section(middle, 1).points();
   const Vec3 along = channel_->section(middle).along;
   const auto rate = [&](const Net& v) { return points.area.dot(v * along); };
-  const double given = rate(velocities(points.x, without, 0, 1));
+  const double given = rate(velocities(points.x, without, 0, 1)), strength = viscosity() * flow_rate();
   if (channel_->repeats()) {
-    solved.driving = flow_rate() / given;
-    solved.pressure_drop = solved.driving * wall->surface().period;
-    solved.traction = solved.driving * without;
-  } else {
-    solved.pressure_drop = (flow_rate() - given) / rate(velocities(points.x, with, 1, 0));
-    solved.traction = without + solved.pressure_drop * with;
+    const double driving = flow_rate() / given;
+    return {strength, driving * wall.surface().period, driving, driving * without};
   }
-  solved_ = std::make_shared<const Solved>(std::move(solved));
-  return *solved_;
+  const double pressure_drop = (flow_rate() - given) / rate(velocities(points.x, with, 1, 0));
+  return {strength, pressure_drop, 1, without + pressure_drop * with};
 }
 
 quadrature::Options ChannelFlow::quadrature_of_flow() const {
@@ -99,18 +112,20 @@ quadrature::Options ChannelFlow::quadrature_of_flow() const {
 }
 
 /// Returns the velocity at the points x due to the wall traction and the pressure drop, plus `driving` times driving_velocity(x). If there are many
-/// points, ranks share them.
+/// points, ranks share them. The tolerance of the layer is smaller than in Wall, because large pressures at the ends amplify errors of the velocity.
 Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const {
   const std::shared_ptr<Wall> wall = this->wall();
-  if (!layer_) {
-    layer_ = std::make_shared<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_->space, stokes::Sites(), quadrature_of_flow());
-    if (wall->cell()) layer_->repeat(*wall->cell());
-    layer_->set_shape(surface_->net);
+  std::shared_ptr<stokes::Layer>& layer = wall->sharp_layer;
+  if (!layer) {
+    const spline::Space& space = wall->surface().space;
+    layer = std::make_shared<stokes::Layer>(stokes::Layer::Kernel::single_layer, space, stokes::Sites(), quadrature_of_flow());
+    if (wall->cell()) layer->repeat(*wall->cell());
+    layer->set_shape(surface_->net);
   }
   const Net density = wall->on_space(traction);
   const auto evaluate = [&](std::span<const int> own, Net& v) {
     const Net at = x(own, Eigen::all);
-    layer_->apply(density, x, own, v);
+    layer->apply(density, x, own, v);
     Net rest = Net::Zero(at.rows(), 3);
     if (!wall->cell()) rest = pressure_drop / viscosity() * wall->inlet().integral(at);
     if (driving != 0) rest += driving * driving_velocity(at);
@@ -123,7 +138,7 @@ Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_d
 }
 
 Net ChannelFlow::evaluated(const Net& x) const {
-  const Solved& known = solved();
+  const Wall::EmptyFlow& known = solved();
   return velocities(x, known.traction, known.pressure_drop, known.driving);
 }
 

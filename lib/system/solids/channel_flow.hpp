@@ -30,8 +30,9 @@ namespace tanktread::coupling {
 /// is the traction of the fluid inside minus the traction of a fictitious fluid outside, whose velocity also vanishes on the wall.
 class ChannelFlow : public stokes::DuctFlow {
  public:
+  /// `walls`: walls of other systems of the run, with which the wall operator is shared; null if there are none.
   ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
-              const WallSolver& solver = {});
+              const WallSolver& solver = {}, std::shared_ptr<Walls> walls = {});
 
   /// Returns the velocities at x, accurate up to the wall. At points outside the channel the values are undefined. The values at the latest points x
   /// are cached. Collective.
@@ -60,11 +61,9 @@ class ChannelFlow : public stokes::DuctFlow {
   std::shared_ptr<Wall> wall(Phases& phases, const surface::Symmetry& particle) const;
 
  private:
-  struct Solved {
-    double pressure_drop = 0, driving = 1;  // driving: factor of driving_velocity()
-    Net traction;
-  };
-  const Solved& solved() const;
+  std::shared_ptr<Wall> made(Phases* phases, const surface::Symmetry& symmetry) const;
+  const Wall::EmptyFlow& solved() const;
+  Wall::EmptyFlow solution(const Wall& wall) const;
   Net driving_velocity(const Net& x) const;
   quadrature::Options quadrature_of_flow() const;
   Net velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const;
@@ -76,11 +75,10 @@ class ChannelFlow : public stokes::DuctFlow {
   surface::TubeOptions options_;
   quadrature::Options quadrature_;
   WallSolver solver_;
+  std::shared_ptr<Walls> walls_;
   std::vector<stokes::DuctEnd> ends_;
-  mutable std::shared_ptr<stokes::Layer> layer_;  // single layer of the wall. Its tolerance is smaller than in Wall, because large pressures at the
-                                                  // ends amplify errors of the velocity
   mutable std::shared_ptr<Wall> wall_;
-  mutable std::shared_ptr<const Solved> solved_;
+  mutable std::shared_ptr<const Wall::EmptyFlow> solved_;
   mutable Net latest_at_, latest_;
 };
 

@@ -9,7 +9,8 @@ Tube::Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const sp
            Phases& phases)
     : flow_(std::make_shared<stokes::DuctFlow>(flow)), phases_(phases) {
   const auto clock = phases_.time("wall assembly");
-  wall_ = std::make_shared<Wall>(wall, parameters.quadrature, &phases_);
+  wall_ = parameters.walls ? parameters.walls->of(wall, parameters.quadrature, &phases_, surface::Symmetry(), {})
+                           : std::make_shared<Wall>(wall, parameters.quadrature, &phases_);
   particle_ = std::make_unique<ParticleData>(particle, parameters, *wall_, phases_);
 }
 
@@ -36,7 +37,8 @@ const Net& Tube::ambient() const { return particle_->ambient; }
 const std::optional<stokes::PeriodicCell>& Tube::cell() const { return wall_->cell(); }
 
 stokes::Evaluations Tube::kernel_evaluations() const {
-  stokes::Evaluations all = wall_->evaluations() + particle_->sources.evaluations();
+  stokes::Evaluations all = particle_->sources.evaluations();
+  if (!particle_->parameters.walls) all += wall_->evaluations();
   return between_ ? all + between_->layer.evaluations() : all;
 }
 

@@ -24,6 +24,7 @@
 namespace tanktread::coupling {
 
 class Wall;
+class Walls;
 struct BetweenSites;
 
 struct TubeParameters {
@@ -32,6 +33,7 @@ struct TubeParameters {
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
+  std::shared_ptr<Walls> walls;      ///< walls of other systems of the run, which a straight tube shares; null if there are none
 };
 
 /// Response of the wall and the pressure drop to a load f and a velocity v on the particle, both given by control values. The response is linear in
@@ -163,7 +165,8 @@ class Tube {
   const surface::TubeWall& wall() const;
   void forget_recycled() const { wall_->forget_recycled(); }  ///< discards data of earlier solves that the wall's iterative solver keeps
   const stokes::DuctFlow& flow() const { return *flow_; }
-  stokes::Evaluations kernel_evaluations() const;  ///< number of kernel evaluations, including the assembly of the wall
+  /// Returns the number of kernel evaluations, including the assembly of the wall unless TubeParameters::walls counts it.
+  stokes::Evaluations kernel_evaluations() const;
 
  private:
   struct ParticleData;

@@ -92,10 +92,11 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
            const surface::Symmetry& symmetry, const WallSolver& solver)
     : surface_(wall),
       symmetry_(symmetry.order() > 1 ? symmetry : surface::Symmetry(static_cast<int>(wall.sites.size()))),
+      quadrature_(quadrature),
+      solver_(solver),
       points_(surface_, symmetry_, phases),
       cell_(lattice(wall)),
-      layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature),
-      tolerance_(solver.tolerance) {
+      layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature) {
   const auto n = static_cast<int>(wall.sites.size());
   if (!cell_) inlet_.emplace(wall.outline, wall.start, quadrature.for_matrix().tolerance);
   if (cell_) layer_.repeat(*cell_, {.assembled = true});
@@ -114,6 +115,14 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   }
   inlet_column_ = cell_ ? Net(Net::Zero(n, 3)) : points_.collocated(inlet_->integral(points_.targets()));
   pumped_ = cell_ ? inlet_column_ : solve(inlet_column_);
+}
+
+bool Wall::is_for(const surface::TubeWall& wall, const quadrature::Options& quadrature, const surface::Symmetry& symmetry,
+                  const WallSolver& solver) const {
+  const bool same_surface = same(wall.net, surface_.net) && wall.n_around == surface_.n_around && wall.period == surface_.period &&
+                            wall.start == surface_.start && wall.end == surface_.end;
+  const bool same_symmetry = symmetry.order() == symmetry_.order() && (symmetry.order() == 1 || symmetry.source() == symmetry_.source());
+  return same_surface && same_symmetry && quadrature == quadrature_ && solver == solver_;
 }
 
 /// Computes pressure_ and flux_. The outer product of these two fields is added to A, because A is singular: a uniform pressure produces no velocity.
@@ -226,7 +235,7 @@ Net Wall::iterated(const Net& rhs) const {
                             through([this](const Net& f, Net& u) { u = apply(f); }),
                             through([this](const Net& u, Net& f) { patches_of_rows_->apply(u, f); })};
   Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
-  require_convergence(krylov_->solve(system, b, x, tolerance_), "the wall", tolerance_);
+  require_convergence(krylov_->solve(system, b, x, solver_.tolerance), "the wall", solver_.tolerance);
   Net f = fundamental_net(x);
   symmetry_.complete(f);
   return f;
@@ -304,6 +313,26 @@ Net Wall::force_weights() const {
 
 stokes::Evaluations Wall::evaluations() const {
   return on_itself_->evaluations() + layer_.evaluations();
+}
+
+std::shared_ptr<Wall> Walls::of(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases,
+                                const surface::Symmetry& symmetry, const WallSolver& solver) {
+  for (const std::weak_ptr<Wall>& one : known_)
+    if (const std::shared_ptr<Wall> known = one.lock(); known && known->is_for(wall, quadrature, symmetry, solver)) return latest_ = known;
+  std::erase_if(known_, [](const std::weak_ptr<Wall>& one) { return one.expired(); });
+  latest_.reset(new Wall(wall, quadrature, phases, symmetry, solver), [this](Wall* old) {
+    of_deleted_ += old->evaluations();
+    delete old;
+  });
+  known_.push_back(latest_);
+  return latest_;
+}
+
+stokes::Evaluations Walls::evaluations() const {
+  stokes::Evaluations all = of_deleted_;
+  for (const std::weak_ptr<Wall>& one : known_)
+    if (const std::shared_ptr<Wall> wall = one.lock()) all += wall->evaluations();
+  return all;
 }
 
 }  // namespace tanktread::coupling

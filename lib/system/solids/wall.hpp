@@ -1,5 +1,5 @@
 #pragma once
-// Operators that depend only on the wall of a tube, constructed once per run.
+// Operators that depend only on the wall of a tube, constructed once per wall.
 
 #include <array>
 #include <functional>
@@ -49,6 +49,8 @@ struct WallSolver {
 
   static constexpr double most_bytes = 4e9;
 
+  bool operator==(const WallSolver&) const = default;
+
   /// may_iterate: returns whether a system of any size can be solved iteratively. iterates: returns whether a system with `unknowns` unknowns is. The
   /// operator of a periodic wall is always factored.
   bool may_iterate(bool periodic) const { return !periodic && method != "factored"; }
@@ -76,6 +78,9 @@ class Wall {
        const surface::Symmetry& symmetry = surface::Symmetry(), const WallSolver& solver = {});
 
   bool iterates() const { return patches_of_rows_.has_value(); }
+
+  /// Returns whether the constructor would construct the same operator from these arguments.
+  bool is_for(const surface::TubeWall& wall, const quadrature::Options& quadrature, const surface::Symmetry& symmetry, const WallSolver& solver) const;
 
   const surface::TubeWall& surface() const { return surface_; }
   const surface::Symmetry& symmetry() const { return symmetry_; }
@@ -127,6 +132,15 @@ class Wall {
   /// the strength through this surface must be 0.
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
+  /// Flow through the empty channel (2.30), which ChannelFlow computes.
+  struct EmptyFlow {
+    double strength = 1;   ///< viscosity times flow rate, to which all values below are proportional, except `driving` in an open channel
+    double pressure_drop = 0, driving = 1;  ///< driving: factor of ChannelFlow::driving_velocity()
+    Net traction;                           ///< control values of f
+  };
+  std::shared_ptr<const EmptyFlow> empty_flow;  ///< kept for all systems that share this wall; null until it is needed
+  std::shared_ptr<stokes::Layer> sharp_layer;   ///< as layer(), with the smaller tolerance of ChannelFlow; null until it is needed
+
   /// Returns the bounding boxes of the elements of a channel wall, used to compute distances from the wall.
   const surface::ElementBoxes& boxes() const { return *boxes_; }
 
@@ -144,6 +158,8 @@ class Wall {
 
   surface::TubeWall surface_;
   surface::Symmetry symmetry_;
+  quadrature::Options quadrature_;
+  WallSolver solver_;
   std::optional<surface::Patches> patches_;
   std::optional<surface::ElementBoxes> boxes_;
   WallPoints points_;
@@ -156,7 +172,22 @@ class Wall {
   DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;
   std::unique_ptr<Krylov> krylov_;
-  double tolerance_;  // relative residual of krylov_
+};
+
+/// Walls that several systems of one run share. A branch of steady shapes, for example, has one system per value of its parameter, but often one wall.
+class Walls {
+ public:
+  /// Returns the wall for these arguments of the constructor of Wall: the wall of another system if there is one, otherwise a new one. This object
+  /// must outlive the result. Collective.
+  std::shared_ptr<Wall> of(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases, const surface::Symmetry& symmetry,
+                           const WallSolver& solver);
+
+  stokes::Evaluations evaluations() const;  ///< kernel evaluations of all walls on this rank, including those no longer used
+
+ private:
+  stokes::Evaluations of_deleted_;
+  std::vector<std::weak_ptr<Wall>> known_;
+  std::shared_ptr<Wall> latest_;  // kept for the next system even if no system uses it
 };
 
 }  // namespace tanktread::coupling

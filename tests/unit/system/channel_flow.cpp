@@ -47,6 +47,40 @@ TEST(ChannelFlow, HasTheSameFlowRateInEverySection) {
   EXPECT_GT(flow.extra_pressure_drop(), 0);
 }
 
+// A shared wall has the flow of the first channel. That of a channel with another mean velocity and viscosity is proportional to it.
+TEST(ChannelFlow, OfASharedWallIsThatOfAWallOfItsOwn) {
+  for (const double period : {0., 5.6}) {
+    surface::TubeOptions options = channel("constriction", 12);
+    if (period > 0) options.period = period, options.channel->start.reset(), options.channel->end.reset();
+    const auto walls = std::make_shared<Walls>();
+    const ChannelFlow first(options, 1, 1, {}, {}, walls), second(options, 1.7, -0.3, {}, {}, walls), own(options, 1.7, -0.3, {});
+    const Net before = first.velocities(points());
+    EXPECT_EQ(first.wall(), second.wall());
+    const Net shared = second.velocities(points()), alone = own.velocities(points());
+    EXPECT_LT((shared - alone).norm(), 1e-12 * alone.norm()) << period;  // round-off
+    EXPECT_NEAR(second.pressure_drop(), own.pressure_drop(), 1e-12 * std::abs(own.pressure_drop())) << period;
+    EXPECT_LT((second.wall_traction() - own.wall_traction()).norm(), 1e-10 * own.wall_traction().norm()) << period;  // pressures cancel
+    EXPECT_EQ(first.velocities(points()), before) << period;
+  }
+}
+
+TEST(Walls, ShareOnlyEqualWallsAndCountThemOnce) {
+  const surface::TubeOptions options = channel("constriction", 12);
+  surface::TubeOptions other = options;
+  other.channel->depth = 0.31;
+  quadrature::Options finer;
+  finer.tolerance = 1e-5;
+  const auto walls = std::make_shared<Walls>();
+  const ChannelFlow one(options, 1, 1, {}, {}, walls), deeper(other, 1, 1, {}, {}, walls), sharper(options, 1, 1, finer, {}, walls);
+  const ChannelFlow iterated(options, 1, 1, {}, {"iterative", 1e-8}, walls), again(options, 1, 2, {}, {}, walls);
+  const auto wall = one.wall();
+  const stokes::Evaluations of_one = walls->evaluations();
+  EXPECT_EQ(again.wall(), wall);
+  EXPECT_EQ(walls->evaluations().total(), of_one.total());
+  for (const ChannelFlow* flow : {&deeper, &sharper, &iterated}) EXPECT_NE(flow->wall(), wall);
+  EXPECT_GT(walls->evaluations().total(), of_one.total());
+}
+
 /// Near the ends of the constriction, where the curvature of the wall jumps, the shear stress falls up to the kink and rises after it, without
 /// oscillation.
 TEST(ChannelFlow, HasAShearStressWithoutOscillations) {
