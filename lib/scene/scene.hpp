@@ -153,8 +153,8 @@ struct SharedOptions {
   double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, but at most the final time
 };
 
-/// Returns the key or section of the deck that requires a coupled system of all particles; empty if there is none. Then `kind` is the only particle,
-/// and the scene is the motion or resistance problem of one rigid body.
+/// Returns the key or section of the deck that requires a coupled system of all particles; empty if no system is required. No system is required if
+/// the scene has only solids, or if it is the motion or resistance problem of one rigid body, `kind`, which is then the only particle.
 std::string_view why_in_system(const SharedOptions& scene, const ParticleKind& kind);
 
 /// One particle of a scene, with the options that it shares with the others.
