@@ -22,8 +22,9 @@ struct Corner {
   double height;
 };
 
-/// Integrals along the section curve over the parts added so far by cut(): circulation, length, weight of the material points (6.6), and (`turned`)
-/// angular velocity times this weight.
+/// Sums over the parts of the section curve that cut() has added. `circulation`: integral of the tangential velocity. `length`: length of the curve.
+/// `weight`: sum of the weights in the mean frequency (6.6). `turned`: sum of the angular velocity times this weight. `centre`, `of_centre`: centroid
+/// and its velocity. `elastic`: true if the weights are lengths on the unstressed surface, false if they are times.
 struct Circuit {
   Vec3 centre, of_centre;
   bool elastic;

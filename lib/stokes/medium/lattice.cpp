@@ -51,7 +51,7 @@ void Lattice::subtract_surfaces(LayerSources& sources, const LayerTargets& targe
   for (std::size_t k = 0; k < rows.size(); ++k) u.row(rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
 }
 
-/// Adds the contribution of the images that are not in the far sum, and for a double layer with three periods the pressure of (2.28).
+/// Adds the contribution of the images that are not near (PeriodicSum), and for a double layer with three periods the pressure of (2.28).
 void Lattice::add_rest(LayerSources& sources, const LayerTargets& targets, Net& u) {
   const auto clock = sources.phases.time("rest of the lattice");
   std::vector<Vec3> at = rows_of(targets.at, targets.rows);
@@ -73,9 +73,9 @@ void Lattice::add_rest(LayerSources& sources, const LayerTargets& targets, Net& 
   for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.rows[k]) += sums.row(static_cast<Eigen::Index>(k));
 }
 
-/// Computes the double layer of constant unit densities due to the images that are not in the far sum, at the targets `at`, one column per component
-/// of the density. Each surface has images in the far sum and others that are not. Therefore neither the far sum nor this double layer vanishes for a
-/// constant density.
+/// Computes rest_stress_ at the targets `at`: the double layer of a constant unit density on all images that are not near, one column per component
+/// of the density. Each node is wrapped into the cell separately, so that the near images can contain a part of a surface only. Therefore neither the
+/// double layer of the near images nor that of the other images vanishes for a constant density.
 void Lattice::place_rest(LayerSources& sources, const std::vector<Vec3>& at) {
   rest_at_ = at;
   rest_stress_.assign(at.size(), Mat3::Zero());
