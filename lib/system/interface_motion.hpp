@@ -48,12 +48,12 @@ class InterfaceMotion {
   /// Stores x, b = dV/dx, the normals, and the Hessian of the mesh energy E1 (4.6) at x, which `derivative` needs. Collective.
   void linearise(const Net& x, const Net& b);
 
-  /// Returns the change of the control points' velocity u (4.6) if the shape x of `linearise` is displaced by delta. `dv`, `db`: the resulting
-  /// changes of the fluid velocity v and of the volume gradient b. Includes the changes of the normals and of the linear map from v to the motion W
-  /// only if the last call of `velocity` before `linearise` was for the same net x. If db has no rows, this map is not changed. Collective.
+  /// Returns the change of the control points' velocity u (4.6) if the shape passed to `linearise` is displaced by delta. `dv`, `db`: changes of the
+  /// fluid velocity v and of the volume gradient b due to delta. The changes of the normals and of the linear map from v to the motion W are included
+  /// only if the last call of `velocity` before `linearise` was for the same net. If db has no rows, the change of the map is omitted. Collective.
   Net derivative(const Net& dv, const Net& delta, const Net& db);
 
-  /// Returns whether the mesh of any drop relaxes by itself (`relaxed`).
+  /// Returns true if any drop has the mesh motion `relaxed`.
   bool relaxes() const { return relaxed_; }
 
  private:

@@ -67,7 +67,7 @@ class ParticleSources {
   stokes::Evaluations evaluations() const;
 
   stokes::Layer single_layer;
-  std::optional<stokes::Layer> double_layer;  ///< without the factor 1 - lambda; set if has_double()
+  std::optional<stokes::Layer> double_layer;  ///< double layer without the factor 1 - lambda; set if has_double() is true
 
  private:
   const spline::Space& space_;

@@ -106,7 +106,8 @@ class RigidTractions {
   /// Returns whether the bodies with the net x are inside the tube and in the medium. If there is a tube, call Tube::set_shape(x) before.
   bool inside(const Net& x) const;
 
-  /// Returns the results for the bodies in the order of the particles. Their moments lack the collocation-error correction that moment() adds.
+  /// Returns the results for the bodies in the order of the particles. Their moments are not corrected for the collocation
+  /// error; moment() returns corrected moments.
   const std::vector<SolvedBody>& bodies() const { return bodies_; }
 
   /// Returns int f r dG of body p for the latest solve. Unless there is a tube, its symmetric traceless part is corrected for the collocation error.

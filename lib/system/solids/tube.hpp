@@ -86,7 +86,7 @@ class Tube {
     Net velocity;       ///< velocity u (2.5) that wall and pressure drop cause at the particle's collocation points, shape (N, 3)
     Net wall_traction;  ///< disturbance f^D of the traction on the wall, control values
     double pressure_drop = 0;  ///< disturbance dp of the pressure drop
-    Net load, moves;  ///< load f and velocity v of the particle; set in a periodic duct only
+    Net load, moves;  ///< load f and velocity v of the particle that cause this response; set only in a periodic duct
   };
 
   /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `pressure_correction`: collocation-error correction of dp.

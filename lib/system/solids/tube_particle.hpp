@@ -48,7 +48,7 @@ struct Tube::ParticleData {
   std::vector<int> own;  ///< rank-owned points
   Ranks ranks;
   surface::Geometry geometry;
-  ParticleSources sources;            ///< shape in the wall's frame
+  ParticleSources sources;            ///< the particle as a source of flow, with its shape in the wall's frame
   membrane::DirectSolver from_sites;  ///< factored collocation matrix R, to compute control values from values at the sites
   bool periodic;                      ///< whether the duct is periodic
 

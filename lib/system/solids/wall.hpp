@@ -151,7 +151,7 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net inlet_column_, pumped_;
-  Net pressure_, flux_;  // periodic wall only. pressure_: w n at the sites, the traction of a constant pressure w. flux_: int N_A n dG
+  Net pressure_, flux_;  // periodic wall only. pressure_: traction of a uniform pressure at the sites. flux_: int N_A n dG
   std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
   DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;
