@@ -1,5 +1,5 @@
-// Fixed Gauss rule on the degenerate elements of plain poles: the pressure does not converge, as in Figure 9(a) of the paper. Rules by tolerance on
-// the same surface converge, and so does the paper's transformation of the elements.
+// Pressure on a spheroid with plain poles, whose elements at the poles are degenerate. With a fixed Gauss rule it does not converge, as in Figure
+// 9(a) of the paper. It converges with adaptive rules, and with fixed rules if the elements are transformed as in the paper.
 
 #include <gtest/gtest.h>
 

@@ -56,7 +56,7 @@ TEST(PolarSphere, NormalOfThePapersSpheroidIsBetterThanThePapers) {
 }
 
 TEST(PolarSphere, ErrorOfTheTransformAtThePolesIsProportionalToTheAngleOfAPiece) {
-  // On the unit sphere with 146 points, the error that the transform adds to that of the plain mesh halves with each subdivision.
+  // On the unit sphere with 146 control points, the transform adds an error to the error of the plain mesh. Each subdivision halves the added error.
   const double plain = normal_error({16, 8, PoleRule::plain}, Vec3::Ones());
   double before = 0;
   for (int n = 0; n <= 4; ++n) {

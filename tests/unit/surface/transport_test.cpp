@@ -12,7 +12,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Returns the control values of U + W x (x - centre), which are exact.
+/// Returns the control values of the rigid motion U + W x (x - centre). The spline represents this field exactly.
 Net rigid(const Net& x, const Vec3& u, const Vec3& w, const Vec3& centre) {
   Net v(x.rows(), 3);
   for (Eigen::Index a = 0; a < x.rows(); ++a) v.row(a) = (u + w.cross(x.row(a).transpose() - centre)).transpose();

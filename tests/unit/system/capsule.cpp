@@ -64,8 +64,8 @@ TEST(Capsule, NoFluxThroughTheSurface) {
   }
 }
 
-// The frozen operator is that of another shape, so that it alone gives a flux. An implicit step would then inflate the capsule, and the tension of
-// the membrane would make it grow.
+// The operator is frozen in another shape. Without the volume projection, it would cause a flux through the surface. An implicit step would then
+// inflate the capsule, and the tension of the membrane would make it grow.
 TEST(Capsule, TheJacobianGivesNoFluxThroughTheSurfaceFarFromTheFrozenShape) {
   for (const double ratio : {1.0, 5.0}) {
     Fixture f;
