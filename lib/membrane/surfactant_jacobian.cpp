@@ -133,7 +133,7 @@ void Surfactant::freeze(const Net& x) {
   factors_.reset();
 }
 
-/// Returns the stiffness matrix K_AB = int grad_s N_A.grad_s N_B dG of the shape set last.
+/// Returns the stiffness matrix K_AB = int grad_s N_A.grad_s N_B dGamma of the shape set last.
 Eigen::SparseMatrix<double> Surfactant::stiffness() const {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t e = 0; e < elements_.size(); ++e) {

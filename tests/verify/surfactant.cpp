@@ -46,7 +46,7 @@ struct Laden {
   const spline::Space& space() const { return scene.body().space; }
   const Net& rest() const { return scene.body().rest; }
 
-  /// Returns int N_A (n Y, Y) dG on the sphere. The first three columns belong to n Y.
+  /// Returns int N_A (n Y, Y) dGamma on the sphere. The first three columns belong to n Y.
   Eigen::MatrixX4d moments() const {
     Eigen::MatrixX4d sum = Eigen::MatrixX4d::Zero(space().n_points, 4);
     each_point([&](const spline::Element& element, const spline::Basis& basis, const surface::Point& p, double area) {

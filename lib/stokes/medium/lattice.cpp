@@ -88,8 +88,8 @@ void Lattice::place_rest(LayerSources& sources, const std::vector<Vec3>& at) {
   }
 }
 
-/// Returns the contribution of the additional pressure of (2.28) to the double layer, -(8 pi/V) sum_p k_p int_p (f.n) (x - x_p) dG, for the density f
-/// whose moments are set. x_p is the mean of the nodes of surface p, and k_p the factor of (2.2).
+/// Returns the contribution of the additional pressure of (2.28) to the double layer, -(8 pi/V) sum_p k_p int_p (f.n) (x - x_p) dGamma, for the
+/// density f whose moments are set. x_p is the mean of the nodes of surface p, and k_p the factor of (2.2).
 Vec3 Lattice::pressure_along(const LayerSources& sources) const {
   const LayerSurface& surface = sources.surface;
   const auto number = [&](int e) { return static_cast<std::size_t>(surface.near_field.surface(e)); };

@@ -37,8 +37,8 @@ struct TubeParameters {
 /// Response of the wall and the pressure drop to a load f and a velocity v on the particle, both given by control values. The response is linear in
 /// (f, v):
 ///
-///   wall      (1/mu) G_W f^D - dp c = -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dG            at the wall      (2.6)
-///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dG                                                           (2.7)
+///   wall      (1/mu) G_W f^D - dp c = -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dGamma        at the wall      (2.6)
+///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dGamma                                                       (2.7)
 ///   response  u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
 ///
 /// G_W and G_C are the single layers of the wall and of the particle divided by 8 pi, and c is 1/mu times the integral over the inlet (2.13). f^D is
@@ -104,7 +104,7 @@ class Tube {
   Net frozen_response(const Net& f, const Net& v = {});
 
   /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
-  Net particle_on_wall(const Net& f, const Net& v = {});    ///< -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dG
+  Net particle_on_wall(const Net& f, const Net& v = {});    ///< -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dGamma
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity due to the particle's images in a periodic duct
@@ -132,7 +132,7 @@ class Tube {
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
-  /// Discretisation error of the response to a load f. `velocity`: int N_A u dG over the wall, with u the velocity at Gauss points between the
+  /// Discretisation error of the response to a load f. `velocity`: int N_A u dGamma over the wall, with u the velocity at Gauss points between the
   /// collocation points. `flow`: flow rate of the disturbance through the inlet. Both vanish for the exact response.
   struct Leak {
     Net velocity;

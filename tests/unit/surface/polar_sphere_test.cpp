@@ -78,8 +78,8 @@ TEST(PolarSphere, IsClosedWithOutwardNormals) {
     const double exact = 4 * std::numbers::pi / 3;
     EXPECT_NEAR(volume(space, net), exact, 5e-6 * exact);
     const Net flux = Geometry(space).volume_gradient(net);
-    EXPECT_LT(flux.colwise().sum().norm(), 1e-13);                             // int n dG = 0
-    EXPECT_NEAR(flux.cwiseProduct(net).sum(), 3 * volume(space, net), 1e-12);  // int x.n dG = 3 V
+    EXPECT_LT(flux.colwise().sum().norm(), 1e-13);                             // int n dGamma = 0
+    EXPECT_NEAR(flux.cwiseProduct(net).sum(), 3 * volume(space, net), 1e-12);  // int x.n dGamma = 3 V
     for (std::size_t e = 0; e < space.elements.size(); ++e) {
       const Jet at = jet(ElementPoints(space, net, static_cast<int>(e)).patch(), 0.3, 0.6);
       EXPECT_GT(at.s.cross(at.t).normalized().dot(at.x), 0.98);
