@@ -177,7 +177,7 @@ class Capsule : public Dynamics {
     std::unique_ptr<Tube> tube;
     Net net;
     std::optional<double> origin, origin_of_net;
-    double inner_radius = 0;  ///< radius of the largest circle about the centroid that fits in the section of a straight tube
+    double inner_radius = 0;  ///< radius of the largest circle about the centroid that fits in the cross-section of a straight tube
   };
   /// Rigid bodies among the particles. `tractions`: set if the unknowns on the bodies are their tractions. `isolated`: inverses of the system (2.23)
   /// for isolated bodies, used as a preconditioner; set up at the first use.

@@ -125,8 +125,8 @@ class Tube {
   /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
   struct Checks {
     double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
-    double force = 0;         ///< unbalanced axial force of the disturbance: dp times section area, minus axial forces on wall and particle. It is
-                              ///< divided by the product of section area, radius and pressure gradient of the empty duct
+    double force = 0;         ///< unbalanced axial force of the disturbance: A dp minus the axial forces on wall and particle, divided by the product
+                              ///< of A, the radius and the pressure gradient of the empty duct, where A is the area of the cross-section
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
     double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops that would make `flux` or `force` zero
   };
