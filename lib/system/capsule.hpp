@@ -191,7 +191,7 @@ class Capsule : public Dynamics {
   /// Returns whether the wall traction is eliminated from the velocity system, so that the system's unknowns are those of the particles only.
   bool eliminates_walls() const { return !duct_.tube || bodies_.tractions || parameters_.solvers.tube == "schur"; }
   bool has_velocity_system() const { return layers_.has_double() || viscous() || !eliminates_walls(); }
-  bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // velocities of control points
+  bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // true if all unknowns are velocities of control points
   bool has_forces() const { return forces_.contacts.size() > 0 || forces_.fields.size() > 0; }
   // Evaluation of a shape (capsule.cpp).
   Net solve_in_cell(Evaluation& e, Net x, const Net& guess);

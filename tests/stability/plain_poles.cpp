@@ -21,7 +21,7 @@ TEST(PlainPoles, StagnateUnderAFixedRule) {
   const double coarse = pressure_error("plain", "fixed", 4), middle = pressure_error("plain", "fixed", 8),
                fine = pressure_error("plain", "fixed", 16);
   EXPECT_GT(middle, coarse / 3);  // at the order of the space it would be smaller by a factor of 8
-  EXPECT_GT(fine, coarse / 3);    // at the order of the space: a factor of 64
+  EXPECT_GT(fine, coarse / 3);    // at the order of the space it would be smaller by a factor of 64
   EXPECT_GT(fine, 1e-3);
 }
 

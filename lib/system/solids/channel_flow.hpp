@@ -56,7 +56,7 @@ class ChannelFlow : public stokes::DuctFlow {
   /// communication between ranks. Collective.
   std::shared_ptr<Wall> wall(Phases* phases = nullptr) const;
 
-  /// Returns the wall operator for fields with the symmetries of a particle inside. All later fields must have these symmetries.
+  /// Returns the wall operator for fields with the symmetries of the particle in the channel. From then on, all fields must have these symmetries.
   std::shared_ptr<Wall> wall(Phases& phases, const surface::Symmetry& particle) const;
 
  private:

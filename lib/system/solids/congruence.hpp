@@ -26,7 +26,7 @@ std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& si
 /// Orbit representative of a point of a cross-section (ring): the point of the same ring that a map moves to the given point. Matrix rows are
 /// assembled only for representatives.
 struct Original {
-  int point;               ///< index of the representative in the ring: the smallest of the indices of all points that maps move to the given point
+  int point;               ///< index of the representative in the ring: the smallest index of a point that a map moves to the given point
   const Congruence* from;  ///< map that moves the representative to the given point; points into the list passed to originals()
 };
 

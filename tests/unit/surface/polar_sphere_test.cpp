@@ -105,13 +105,13 @@ TEST(PolarSphere, ConvergesOnUnequalMeshes) {
   }
 }
 
-// A long slide of closely spaced rows along the meridian would fold the surface, and its area would be 2 to 10 % too large.
+// If closely spaced rows of control points moved far along the meridian, the surface would be folded, and its area would be 2 to 10 % too large.
 TEST(PolarSphere, IsNotFoldedWhereRowsAreCloserThanThePointsOfARow) {
   for (const auto& [m, r] : {std::array{16, 32}, {16, 48}, {24, 96}})
     for (const PoleRule rule : {PoleRule::c1, PoleRule::bezier_transform}) {
       const spline::PolarMesh mesh{m, r, rule};
       const spline::Space space = spline::space(mesh);
-      EXPECT_NEAR(measures(space, unit_sphere(mesh, space, 2)).area / (4 * std::numbers::pi), 1, 2e-5) << m << " " << r;  // for 16 points per row
+      EXPECT_NEAR(measures(space, unit_sphere(mesh, space, 2)).area / (4 * std::numbers::pi), 1, 2e-5) << m << " " << r;  // error for m = 16
     }
 }
 
