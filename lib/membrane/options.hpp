@@ -24,7 +24,7 @@ struct Options {
                                            ///< other laws
   double global_area_dilatation = 0;        ///< modulus K that keeps the total area (3.26), divided by the shear modulus G_s
   double leaf_modulus = 0;                  ///< modulus kbar of the area difference of a bilayer's leaflets (3.27) divided by the bending modulus E_b
-  std::optional<double> leaf_difference;    ///< stress-free area difference of the leaflets divided by that of a sphere of equal area
+  std::optional<double> leaf_difference;    ///< stress-free area difference of the leaflets, divided by the area difference of a sphere of equal area
   std::optional<double> neo_hookean_share;  ///< fraction m of the neo-Hookean term; only for the law Mooney-Rivlin
   std::optional<std::string> energy;        ///< strain energy Psi/G_s as an expression in I1, I2 and J; only for the law `expression`
   std::map<std::string, double> constants;  ///< named constants in `energy`

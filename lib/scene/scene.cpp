@@ -101,7 +101,7 @@ void check_needs(const ParticleScene& scene) {
     throw UserError("Adaptation/film resolution needs several particles, a Domain or a wall, because otherwise there are no films.");
 }
 
-/// Throws UserError if the final time or the expected period is missing, or if the period is not a multiple of that of the flow.
+/// Throws UserError if the final time or the expected period is missing, or if it is not a multiple of the period of the flow.
 void check_times(const ParticleScene& scene) {
   const bool moves = scene.in_system() || scene.particle.motion != Motion::prescribed;
   if (std::isnan(scene.time.final_time) && scene.runs_in_time() && !scene.only_solids && moves)

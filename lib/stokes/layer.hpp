@@ -152,8 +152,9 @@ class Layer {
   class RowSums;
 
   bool single() const { return sources_.single(); }
-  /// Returns the tolerance of the sum by clusters: for the single layer that of the deck, for the double layer half of it, with which the measured
-  /// error of the double layer is a quarter of the deck's tolerance. In a double layer, the options hold an eighth of the deck's tolerance.
+  /// Returns the tolerance of the sum by clusters. For the single layer it is the tolerance of the deck. For the double layer it is half of this
+  /// tolerance, with which the measured error is a quarter of the deck's tolerance. The options of a double layer contain an eighth of the deck's
+  /// tolerance.
   double tree_tolerance() const { return (single() ? 1 : 4) * sources_.surface.options.tolerance; }
   void make_tree();
   void use(std::unique_ptr<LayerMedium> medium);

@@ -188,7 +188,7 @@ class Capsule : public Dynamics {
   };
   /// Returns whether the ambient velocity is evaluated at the targets. Otherwise it is affine, and exact at the control points.
   bool flow_at_targets() const { return duct_.tube || parameters_.solids || !surroundings_.flow.affine(); }
-  /// Returns whether the wall traction is eliminated from the velocity system, so that the system's unknowns are those of the particles only.
+  /// Returns whether the wall traction is eliminated from the velocity system, so that only the particles have unknowns in the system.
   bool eliminates_walls() const { return !duct_.tube || bodies_.tractions || parameters_.solvers.tube == "schur"; }
   bool has_velocity_system() const { return layers_.has_double() || viscous() || !eliminates_walls(); }
   bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // true if all unknowns are velocities of control points

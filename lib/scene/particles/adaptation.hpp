@@ -35,8 +35,8 @@ struct Adapted {
 Adapted adapted(const ParticleScene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields = {});
 
-/// Returns the warnings about an adaptation at this time: one for each limit of the section Adaptation that prevented a refinement, and one if the
-/// change of the mesh has moved the surface.
+/// Returns the warnings about an adaptation at this time: one for each limit of the section Adaptation that prevented a refinement, and one if a
+/// refinement has moved the surface of a deforming particle.
 std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time);
 
 /// Refines the mesh of an isolated rigid body in its initial position, according to the section Adaptation. The criteria are the shape of the body,

@@ -67,8 +67,8 @@ class SolidResponse {
   ///   int u_i dV = (1/mu) (int_S f_i phi dGamma - int_C df_i phi dGamma) + int_C (1 - lambda) v.sigma_i n dGamma             (2.49)
   ///
   /// In this formula, f_i is the force density of the solids (`flow`) and df_i the load of the particles (the argument f). S are the surfaces of the
-  /// solids, C those of the particles. With z the distance from one plate and phi = z (D - z)/2, a pressure that decreases along e_i with unit
-  /// gradient drives the flow phi e_i/mu, which has the stress sigma_i.
+  /// solids, and C the surfaces of the particles. With z the distance from one plate and phi = z (D - z)/2, a pressure that decreases along e_i with
+  /// unit gradient drives the flow phi e_i/mu, which has the stress sigma_i.
   Vec3 velocity_integral(const Solids::Flow& flow, const Net& f, const Net& v);
 
   /// Returns the force of the particles on the fluid for a load f.

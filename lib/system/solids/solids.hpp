@@ -111,18 +111,18 @@ class Solids {
   std::vector<int> own_;
   std::array<Vec3, 2> across_;            // lowest and highest coordinates of the solids, in the axes of the cell
   std::array<Vec3, 2> reached_;           // lowest and highest coordinates, in the axes of the cell, for which `layer_` is set up
-  std::unique_ptr<stokes::Layer> layer_;  // at points off the solids
+  std::unique_ptr<stokes::Layer> layer_;  // single layer at points off the solids
   Net sites_, velocities_;
   Eigen::VectorXd areas_;   // int N_A dGamma
   std::vector<int> first_;  // index of the first collocation point of each solid; last entry: number of all collocation points
-  Net normals_;                        // at the collocation points
+  Net normals_;                        // unit normals at the collocation points
   Net flux_;                           // int N_A n dGamma
   std::vector<Rod> rods_;
   std::optional<PlateFactors> plates_;  // inverse of the operator by Fourier series; set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
                                         // each plate
-  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced; those of the current
-                                        // `layer_` are not included
+  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced, without the evaluations
+                                        // of the current `layer_`
 };
 
 }  // namespace tanktread::coupling
