@@ -36,10 +36,11 @@ double expected_error(const Level& level);
 /// by a factor of 4 per level; the error at a given time falls by less.
 constexpr double time_ratio = 2.5, quadrature_ratio = 4;
 
-/// Returns the Level with mesh level k whose time and quadrature levels keep the errors of time integration and quadrature small compared with the
-/// mesh error. `time`, `quadrature`: shares of these two errors in the error at level 2. Each of the two levels is the lowest from max(2, k - 2) to k
-/// + 2 at which the corresponding error is at most a quarter of the expected error of level k, or k + 2 if there is none. Levels below 2 are not
-/// used, because a request that was met at level 2 could then be missed. Example: for k = 2 and shares of 0.25, both levels are 2.
+/// Returns the Level with mesh level k whose time level and quadrature level keep the errors of time integration and quadrature small compared with
+/// the mesh error. `time`, `quadrature`: these two errors at level 2, each divided by the expected error of level 2. The time level is the lowest
+/// level between max(2, k - 2) and k + 2 at which the error of time integration is at most a quarter of the expected error of level k. If the error
+/// is larger at all these levels, it is k + 2. The quadrature level is chosen in the same way. Levels below 2 are not used, because a request that
+/// was met at level 2 could then be missed. Example: for k = 2 and the values 0.25, both levels are 2.
 Level balanced(int k, double time, double quadrature);
 
 /// Returns the settings `Section/key=value` of a level. They depend only on the deck and the level (n: elements per side of the level):

@@ -26,7 +26,8 @@ struct Outcome {
 /// deck.
 bool resumes(const std::string& one, const std::string& other);
 
-/// Returns the finished run in a directory; nothing if the directory has no run, its run has not reached its end, or its deck is not `deck`.
+/// Returns the finished run in a directory. Returns nothing if the directory has no run, if its run has not reached its end, if its deck is not
+/// `deck`, or if its record is damaged.
 std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck);
 
 /// Returns whether a run is a branch of steady shapes. Of such a run, only the folds and the last point can be compared with other levels.

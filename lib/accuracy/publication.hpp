@@ -12,10 +12,10 @@ namespace tanktread::accuracy {
 /// Returns one sentence that compares the estimated error of a series with the error that was requested for it.
 std::string sentence(const Answer& answer);
 
-/// How a ladder ended.
+/// Status at the end of a ladder.
 struct End {
-  std::string status;  ///< `status` of its summary; empty if it is the status of the finest level
-  std::string why;     ///< reason why not all requests are met; empty if they are met
+  std::string status;  ///< `status` in the summary of the ladder; if empty, the ladder has the status of the finest level
+  std::string why;     ///< reason why a request is not met; empty if all requests are met
 };
 
 /// Publishes the results of the finest level in the directory of the ladder. The directory then has the files of this level, with `/error/<series>`

@@ -22,7 +22,7 @@ inline Eigen::Map<const Eigen::VectorXd> flat(const Net& net) { return {net.data
 inline Eigen::Map<const Net> as_net(const Eigen::Ref<const Eigen::VectorXd>& numbers) { return {numbers.data(), numbers.size() / 3, 3}; }
 
 /// Returns the axial vector (m_32 - m_23, m_13 - m_31, m_21 - m_12) of a matrix: the curl of a vector field with the gradient m_ij = dv_i/dx_j, or
-/// the torque of a force density f with the first moment m_ij = int f_i r_j dG.
+/// the torque of a force density f with the first moment m_ij = int f_i r_j dGamma.
 inline Vec3 axial_vector(const Mat3& m) { return {m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)}; }
 
 }  // namespace tanktread

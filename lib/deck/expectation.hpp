@@ -46,7 +46,7 @@ struct Verdict {
   double error = 0;  ///< |value - expected|, divided by |expected| if the kind is relative
   bool passed = false;
   std::string reason = {};       ///< message about the failure, with the value and the expected value; empty if passed
-  std::string not_binding = {};  ///< `not_binding` of the expectation
+  std::string not_binding = {};  ///< Expectation::not_binding: reason why a failure is only reported; empty if it makes the run fail
 };
 
 /// Series of the results by name, including the series `time`. Rows are in the order of time.

@@ -50,7 +50,7 @@ struct Section::State {
 /// once.
 std::vector<std::string> mistakes(const Record& section);
 
-/// Returns the sentences about keys without effect in a section, followed by those of its inner sections, as mistakes() does.
+/// Returns the sentences about keys without effect in a section and its inner sections, in the order of mistakes().
 std::vector<std::string> idle_keys(const Record& section);
 
 /// Returns a sentence for each key in a section or its inner sections that is given but not declared. The sentence suggests the closest key, which

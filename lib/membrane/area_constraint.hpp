@@ -24,8 +24,8 @@ class AreaConstraint {
   /// Sets up one condition of constant local area per Gauss point. `mobility`: m_A, the velocity of control point A per unit of force on it.
   AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& mobility);
 
-  /// Returns true if there are no area conditions, because no material of the membrane has an area elasticity (3.13) with one point of its own per
-  /// element.
+  /// Returns true if there are no area conditions. Only materials whose area elasticity (3.13) is integrated separately, with `Membrane/area points`
+  /// equal to 1, have area conditions.
   bool empty() const { return points_.empty(); }
 
   /// Evaluates at the shape x, for the operator P (4.25): the value t of the area condition at every Gauss point and the scaled gradient D of t,

@@ -3,8 +3,8 @@
 //
 //   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)
 //
-// with the principal stretches l1 and l2. Equation 5 of Maestre et al. 2017 lacks the -2 of I1. Psi is a force per length (energy per area), and so
-// are all of its derivatives.
+// with the principal stretches l1 and l2. Equation 5 of Maestre et al. 2017 omits the -2 in I1. Psi and its derivatives have the unit force per
+// length (energy per area).
 
 #include <array>
 #include <memory>

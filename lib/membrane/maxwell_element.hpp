@@ -18,7 +18,7 @@ namespace tanktread::membrane {
 /// G = eta_s/T and the dilatation modulus K = kappa_s/T, with the surface viscosities eta_s and kappa_s. Their stress relaxes within the time T,
 /// because their stress-free metric C^-1 follows the metric g_ab of the surface (|.|: determinant):
 ///
-///   E = int (G/2 (t/J - 2) + K/2 (J - 1)^2) dG,   t = C^ab g_ab,   J^2 = |C| |g|                                            (3.23)
+///   E = int (G/2 (t/J - 2) + K/2 (J - 1)^2) dGamma,   t = C^ab g_ab,   J^2 = |C| |g|                                        (3.23)
 ///   T dC^ab/dt = (2 J^2/t) g^ab - (2 - 1/J) C^ab                                                                           (3.24)
 ///
 /// The power lost in the relaxation is dissipated as heat (3.25). For T -> 0, the element becomes the surface viscosity (3.10). E is the energy of
@@ -36,7 +36,7 @@ class MaxwellElement : public Field {
   Eigen::VectorXd rate(const Net&) const override { return rate_; }
   double energy() const override;
 
-  /// Returns the power (3.25) that the dashpots dissipate as heat, int (G (t^2 - 4 J^2)/(2 t J) + K (J - 1)^2)/T dG, with the symbols of (3.23).
+  /// Returns the power (3.25) that the dashpots dissipate as heat, int (G (t^2 - 4 J^2)/(2 t J) + K (J - 1)^2)/T dGamma, with the symbols of (3.23).
   double dissipation() const override { return dissipation_; }
 
   void linearise(const Net&) override;

@@ -24,16 +24,16 @@ struct Options {
                                            ///< other laws
   double global_area_dilatation = 0;        ///< modulus K that keeps the total area (3.26), divided by the shear modulus G_s
   double leaf_modulus = 0;                  ///< modulus kbar of the area difference of a bilayer's leaflets (3.27) divided by the bending modulus E_b
-  std::optional<double> leaf_difference;    ///< stress-free area difference of the leaflets divided by that of a sphere of equal area
+  std::optional<double> leaf_difference;    ///< stress-free area difference of the leaflets, divided by the area difference of a sphere of equal area
   std::optional<double> neo_hookean_share;  ///< fraction m of the neo-Hookean term; only for the law Mooney-Rivlin
   std::optional<std::string> energy;        ///< strain energy Psi/G_s as an expression in I1, I2 and J; only for the law `expression`
   std::map<std::string, double> constants;  ///< named constants in `energy`
-  std::string stress_free = "resting";     ///< the stress-free shape before pre-inflation: resting, sphere, spheroid, file
+  std::string stress_free = "resting";     ///< stress-free shape before pre-inflation: resting, sphere, spheroid, file
   std::optional<double> reduced_volume;    ///< reduced volume of a stress-free spheroid; only for that shape
   std::optional<std::string> stress_free_file;
-  int area_order = 0;                      ///< number of Gauss points per direction at which the area elasticity is evaluated; 0: the Gauss points of
-                                           ///< the rest of the law
-  double pre_inflation = 0.0;              ///< inflation alpha: the unstressed shape is X = centre + (x - centre)/(1 + alpha)
+  int area_order = 0;                      ///< number of Gauss points per direction for the area elasticity; 0: the Gauss points of the other terms
+  double pre_inflation = 0.0;              ///< inflation alpha: the unstressed shape is X = centre + (x - centre)/(1 + alpha), with x on the shape
+                                           ///< `stress_free`
   std::string load = "weak";               ///< form of the load: weak (virtual work, 3.5) or strong (-div_s tau)
   std::string load_measure = "reference";  ///< area to which the load per area refers: reference (unstressed, 3.7) or current (3.6)
   std::optional<double> bending_modulus;   ///< bending modulus E_b, force x length; no bending if neither E_b nor bending_number is given

@@ -19,11 +19,11 @@ constexpr int max_gauss = max_order * max_order;  ///< largest number of Gauss p
 struct Batch {
   int used = 0;                       ///< number of lanes that are not idle
   int functions = 0;                  ///< largest number of basis functions of an element of the batch; elements with fewer are padded with zeros
-  std::array<int, most_lanes> elements{};  ///< ids in the space
-  std::size_t points = 0;             ///< index in Group::points at which the batch's control-point ids begin; the id for function A in lane l is A *
-                                      ///< pack_lanes() + l entries further
-  /// index in Group::extraction at which the batch's matrices begin; the entry for function A and Bernstein polynomial b is A * (p + 1)^2 + b
-  /// further, with the degree p. Equal matrices are stored once
+  std::array<int, most_lanes> elements{};  ///< indices of the elements in the space
+  std::size_t points = 0;             ///< index in Group::points of the batch's first control-point id; the id for function A in lane l has the index
+                                      ///< points + A * pack_lanes() + l
+  /// index in Group::extraction of the first entry of the batch's extraction matrices; the entry for function A and Bernstein polynomial b has the
+  /// index extraction + A * (p + 1)^2 + b, with the degree p. Equal matrices are stored once
   std::size_t extraction = 0;
 };
 

@@ -97,7 +97,7 @@ Eigen::VectorXd Surfactant::rate(const Net& slip) const { return transport(slip,
 /// minus control-point velocity) is then -mesh_velocity.
 Eigen::VectorXd Surfactant::relabelled(const Net& mesh_velocity) const { return transport(-mesh_velocity, 0); }
 
-/// Returns the rates dm_A/dt of (3.17) with the given diffusivity, divided by int N_A dG on the initial surface, which gives dq_A/dt.
+/// Returns the rates dm_A/dt of (3.17) with the given diffusivity, divided by int N_A dGamma on the initial surface, which gives dq_A/dt.
 Eigen::VectorXd Surfactant::transport(const Net& slip, double diffusivity) const {
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(space_.n_points);
   for (std::size_t e = 0; e < elements_.size(); ++e) {

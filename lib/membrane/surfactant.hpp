@@ -18,12 +18,12 @@
 namespace tanktread::membrane {
 
 /// The concentration c of a surfactant on a moving surface x, interpolated by the shape functions N_A. The conserved quantities are m_A = int c N_A
-/// dG. Their sum is the total mass:
+/// dGamma. Their sum is the total mass:
 ///
-///   dm_A/dt = int (c (v - u).grad_s N_A - D_s grad_s c.grad_s N_A) dG,   sum_A dm_A/dt = 0                              (3.17)
+///   dm_A/dt = int (c (v - u).grad_s N_A - D_s grad_s c.grad_s N_A) dGamma,   sum_A dm_A/dt = 0                          (3.17)
 ///
 /// Here u is the velocity of the control points and v the velocity of the fluid; their normal components are equal. The coefficients are q_A =
-/// m_A/int N_A dG, with the integral over the surface `initial` on the same space, so q = 1 at the start of a run with that shape. Uses no MPI.
+/// m_A/int N_A dGamma, with the integral over the surface `initial` on the same space, so q = 1 at the start of a run with that shape. Uses no MPI.
 class Surfactant : public Field {
  public:
   /// `clean_tension`: tension sigma(0) of the clean interface. `space` must outlive this object.
@@ -37,15 +37,15 @@ class Surfactant : public Field {
 
   const Eigen::VectorXd& concentration() const { return concentration_; }  ///< control values of c
 
-  /// Returns the load of the surfactant, in addition to the load of the clean interface: d_A = int (sigma(c) - sigma(0)) grad_s N_A dG, shape (N, 3).
-  /// (3.18)
+  /// Returns the load of the surfactant, in addition to the load of the clean interface: d_A = int (sigma(c) - sigma(0)) grad_s N_A dGamma (3.18),
+  /// shape (N, 3).
   Net load() const override;
 
   Eigen::VectorXd rate(const Net& slip) const override;
 
-  /// Returns the total mass int c dG over the surface. It is an area, because c is divided by the initial concentration.
+  /// Returns the total mass int c dGamma over the surface. It is an area, because c is divided by the initial concentration.
   double mass(const Eigen::VectorXd& q) const { return share_.dot(q); }
-  /// Returns int (f(c) - sigma(0)) dG, the surface free energy in addition to the energy of the clean interface. f: free energy density.  (3.21)
+  /// Returns int (f(c) - sigma(0)) dGamma, the surface free energy in addition to the energy of the clean interface. f: free energy density.  (3.21)
   double energy() const override;
   surface::Range extremes() const;  ///< smallest and largest c on the surface, to round-off
 
@@ -105,7 +105,7 @@ class Surfactant : public Field {
   std::vector<ElementPoints> elements_;
   mutable MassMatrix mass_;
   mutable MassSolver solver_;
-  Eigen::VectorXd share_, concentration_;  // share_: int N_A dG on the initial surface, per function A. concentration_: control values of c
+  Eigen::VectorXd share_, concentration_;  // share_: int N_A dGamma on the initial surface, per function A. concentration_: control values of c
   Eigen::VectorXd q_;                                     // coefficients set last
   Net x_, known_x_;                                       // x_: shape set last. known_x_: shape stored by linearise()
   std::vector<ElementPoints> known_;                      // elements_ at the linearisation

@@ -133,7 +133,7 @@ void Surfactant::freeze(const Net& x) {
   factors_.reset();
 }
 
-/// Returns the stiffness matrix K_AB = int grad_s N_A.grad_s N_B dG of the shape set last.
+/// Returns the stiffness matrix K_AB = int grad_s N_A.grad_s N_B dGamma of the shape set last.
 Eigen::SparseMatrix<double> Surfactant::stiffness() const {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
@@ -159,7 +159,7 @@ Eigen::SparseMatrix<double> Surfactant::stiffness() const {
 /// the coefficients of the contents M c.
 Eigen::VectorXd Surfactant::solve(double shift, const Eigen::VectorXd& r) const {
   if (diffusivity_ == 0 || frozen_mass_.rows() != r.size()) return r;
-  const double area = share_.sum();  // of the initial surface
+  const double area = share_.sum();  // area of the initial surface
   if (const double close = area * rounded(shift * diffusivity_ / area); !factors_ || factored_spread_ != close) {
     factors_ = std::make_unique<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(frozen_mass_ + close * frozen_stiffness_);
     factored_spread_ = close;

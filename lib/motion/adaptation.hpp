@@ -51,7 +51,8 @@ struct AdaptationOptions {
   /// of control points and this element length.
   void check(int first_points, double first_length) const;
 
-  /// Returns the options with every tolerance and every limit (longest element, aspect ratio) multiplied by this factor.
+  /// Returns the options for a coarser mesh: the tolerances of the surface and of the load, the reference length, the largest aspect ratio and the
+  /// film resolution are multiplied by this factor.
   AdaptationOptions coarser(double factor) const;
 };
 

@@ -129,9 +129,10 @@ int measure_stiffness(coupling::Dynamics& dynamics, State& state, Memory& memory
 ///   x^{k+1} = x_n + dt/2 (v(x_n) + v(x^k))   until  |x^{k+1} - x^k|_2 / (R_C sqrt(m_C)) <= 1e-7;
 ///   after more than 8 sub-iterations, the step is repeated with 0.75 dt; after fewer than 4, the next step is 1.33 dt.
 ///
-/// Here m_C is the number of control points. The first sub-iteration, from x^1 = x_n, is the Euler step, which costs no velocity evaluation. If the
-/// Euler step counts as a sub-iteration, as the paper describes, all steps stay near the size of the first step. If it does not count, the mean step
-/// agrees with Table 3 of the paper. The sub-iteration contracts only for dt rho < 2, with rho the stiffness (4.7).
+/// Here m_C is the number of control points. The first sub-iteration, from x^1 = x_n, is the Euler step, which costs no velocity evaluation. By
+/// default it counts as a sub-iteration, as the paper describes, and all steps stay near the size of the first step. With `Time/count euler step:
+/// false` it does not count, and the mean step agrees with Table 3 of the paper. The sub-iteration contracts only if dt rho < 2, with rho the
+/// stiffness (4.7).
 ///
 /// `Time/nonlinear solver` accelerates this fixed-point iteration (Anderson) or replaces it by matrix-free Newton-Krylov iteration, both by NOX.
 /// `Time/step control: error` chooses steps by the difference to the explicit formula of the same order (Gresho, Lee & Sani 1980):
@@ -161,12 +162,12 @@ class CrankNicolson : public Scheme {
 ///
 /// Here k_i are the slopes of the three stages. The formula b^ is of third order but not stable. e2 is the difference between the results of b and
 /// b^, after two solves that damp its stiff modes. A step multiplies a mode with z = dt J by R(z) + (R^ - R)/(1 - d z)^2, where R and R^ are the
-/// stability functions of b and b^. The modulus of this factor is at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3)
-/// changes only the error of fourth order, so its secants are not used for e1 and e2. The local error is a quarter of |e1|, which bounds the error of
-/// the extrapolated result, plus the errors of the two stages (4.28).
+/// stability functions of b and b^. The modulus of this factor is at most 1 in the left half plane and 0 at infinity. In e1 and e2, J is the frozen
+/// Jacobian (4.3) without secants (4.13), because an error of J changes the result only at fourth order. The local error is a quarter of |e1|, which
+/// bounds the error of the extrapolated result, plus the errors of the two stages (4.28).
 ///
-/// The first slope is the last slope of the previous step. Slopes follow from the stage equations without further evaluations. Stages are predicted
-/// by a polynomial through the known slopes.
+/// The first slope is the last slope of the previous step. The other slopes are computed from the stage equations, without further evaluations of the
+/// velocity. The initial guess of a stage is extrapolated by a polynomial through the known slopes.
 class TrBdf2 : public Scheme {
  public:
   using Scheme::Scheme;

@@ -45,7 +45,7 @@ PolarOrders polar_orders(double s, double t, MetricBin bin, int radial, double t
                          const std::array<Vec3, 4>& affine);
 
 /// Returns the polar rule about (s, t) in the closed unit square. The square is divided into up to four triangles with apex (s, t). Lengths and
-/// angles are those of the metric `bin`. Each triangle has Gauss points in the radial coordinate and in an angular coordinate mu. If h is the
+/// angles are measured with the metric `bin`. Each triangle has Gauss points in the radial coordinate and in an angular coordinate mu. If h is the
 /// distance of the apex from the opposite side, h sinh(mu) is the arc length along this side from the foot of the perpendicular.
 Rule polar(double s, double t, MetricBin bin, const PolarOrders& orders);
 

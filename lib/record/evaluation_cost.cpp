@@ -21,7 +21,7 @@ struct Cost {
   long memory;  // peak memory of all ranks in bytes
 };
 
-/// Builds the particles of a scene, and returns the cost of evaluating their velocity once, in the initial shape. Collective.
+/// Builds the particles of a scene and evaluates their velocity once, in the initial shape. Returns the cost of both. Collective.
 Cost measured(const Scene& scene) {
   coupling::Ranks ranks;
   Phases phases;

@@ -105,7 +105,7 @@ std::string surface_line(const Body& body) {
                    body.space.description.c_str());
 }
 
-/// Returns the text for the plan that says how the equations for the unknown tractions of a tube's wall are solved.
+/// Returns the line of the plan that describes how the unknown tractions on the wall of a tube are computed.
 std::string wall_solver(const Scene& scene) {
   if (!scene.in_system()) return "eliminated from the system of the traction";
   if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;

@@ -93,9 +93,9 @@ class Results {
   /// Sets the body to which later snapshots refer, and its Bezier extraction.
   void remesh(const Body& body, const surface::BezierMap& map);
 
-  /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written when the duration of
-  /// the run has doubled, or grown by one second, since the last write. The interval is at least fifty times the duration of a write. Sets the row on
-  /// every rank to the values of the first rank, so that all ranks take the same decisions.
+  /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written again when the duration
+  /// of the run has doubled or has grown by one second since the last write, but not before fifty times the duration of that write have passed. Sets
+  /// the row on every rank to the values of the first rank, so that all ranks take the same decisions.
   void record(Columns& row);
 
   /// Prints a warning on standard error and adds it to the summary.
@@ -156,7 +156,7 @@ class Results {
   std::size_t rows_written_ = 0;  // rows that this process has written to `run.h5`
   std::optional<output::SnapshotSeries> series_;
   std::optional<output::Nodes> nodes_;  // nodes of the snapshots
-  std::vector<std::pair<int, std::string>> waiting_;  // steps and bytes of snapshots that are to be written
+  std::vector<std::pair<int, std::string>> waiting_;  // snapshots that are not written yet: step number and contents of the file
   std::vector<std::string> warnings_;
   std::set<std::string> kinds_of_warnings_;  // kinds passed to warn_once()
   output::Entries<long> memory_;  // peak memory, for the summary

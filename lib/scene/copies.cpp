@@ -67,8 +67,8 @@ class Packing {
     Vec3 image;  // lattice vector from the neighbour's centre to the centre of its image that is close to the sphere
   };
 
-  /// Lists for each sphere all spheres that it can overlap before a sphere has moved by more than `skin_`. Rebuilds the lists only if a sphere has
-  /// moved by half of `skin_`.
+  /// Lists, for each sphere, all spheres that it can overlap as long as no sphere moves by more than `skin_`. If no sphere has moved by half of
+  /// `skin_` since the lists were built, keeps the lists.
   void find_neighbours() {
     double farthest = found_at_.empty() ? 2 * skin_ : 0;
     for (std::size_t i = 0; i < found_at_.size(); ++i) farthest = std::max(farthest, (spheres_[i].centre - found_at_[i]).norm());

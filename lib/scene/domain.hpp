@@ -64,7 +64,7 @@ struct DomainRow {
   double volume_fraction = 0, relative_viscosity = 1;
   Mat3 stress = Mat3::Zero();  ///< contribution of the particles to the mean stress (6.9)
   /// normal stress differences S_aa - S_bb and S_bb - S_cc of the stress S = `stress`. Axes a and b are in the plane of the flow, c is its normal; in
-  /// simple shear, a is the direction of the flow, b that of its gradient
+  /// simple shear, a is the direction of the flow and b the direction of its gradient
   Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();
   Vec3 pressure_gradient = Vec3::Zero();
 

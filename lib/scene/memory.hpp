@@ -10,7 +10,8 @@ struct Scene;
 /// than the program allows. `scene`: scene with one particle.
 void check_memory(const ParticleScene& scene);
 
-/// Throws UserError if the scene has no rigid bodies for the first-kind equation (2.40), or if the matrix of this equation is too large.
+/// Throws UserError if the scene has no rigid bodies, whose tractions are the unknowns of the first-kind equation (2.40), or if the matrix of this
+/// equation is too large.
 void check_first_kind(const Scene& scene);
 
 /// Returns the largest number of control points that the wall of a tube may have. Each rank stores the factors of the wall, and the factors of all

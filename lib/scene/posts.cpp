@@ -45,8 +45,8 @@ Post post_of(const ParticleKind& kind) {
   return post;
 }
 
-/// Returns the smallest distance of the axis of `post` from the axes of all periodic images of `other`. `same`: true if `post` and `other` are one
-/// post; its distance 0 from itself then does not count.
+/// Returns the smallest distance of the axis of `post` from the axes of all periodic images of `other`. `same`: true if `post` and `other` are the
+/// same post; its distance 0 from itself then does not count.
 double distance(const Post& post, const Post& other, const stokes::PeriodicCell& cell, bool same) {
   double least = 1e300;
   for (const Vec3& image : cell.around({2, 2, 2})) {

@@ -31,7 +31,8 @@ Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell);
 /// Moves the cylinders from the particles of a scene to its posts. Throws UserError if a cylinder has keys that only particles have.
 void take_posts(Scene& scene);
 
-/// Throws UserError if posts do not fit into the scene.
+/// Throws UserError if a post does not fit into the scene. If there are no posts, throws UserError if the scene has a pressure gradient but neither
+/// posts nor two walls, so that nothing resists the flow.
 void check_posts(const SharedOptions& scene);
 
 }  // namespace tanktread

@@ -101,7 +101,7 @@ void check_needs(const ParticleScene& scene) {
     throw UserError("Adaptation/film resolution needs several particles, a Domain or a wall, because otherwise there are no films.");
 }
 
-/// Throws UserError if the final time or the expected period is missing, or if the period is not a multiple of that of the flow.
+/// Throws UserError if the final time or the expected period is missing, or if it is not a multiple of the period of the flow.
 void check_times(const ParticleScene& scene) {
   const bool moves = scene.in_system() || scene.particle.motion != Motion::prescribed;
   if (std::isnan(scene.time.final_time) && scene.runs_in_time() && !scene.only_solids && moves)
@@ -144,8 +144,8 @@ void check_adaptation(const ParticleScene& scene) {
   scene.adaptation.check(static_cast<int>(scene.surface.n_points()), std::sqrt(area / scene.surface.n_elements()));
 }
 
-/// Sets in the options of wall and flow whether the walls are plates, and the default of Adaptation/film resolution of a particle that is alone with
-/// a wall, duct or lattice.
+/// Sets in the options of wall and flow whether the walls are plates. If the scene has one particle in a duct, in front of a wall or on a lattice,
+/// sets the default of Adaptation/film resolution.
 void complete_walls(Scene& scene) {
   scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
   scene.flow.plates = scene.wall.plates();

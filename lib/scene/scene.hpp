@@ -1,14 +1,14 @@
 #pragma once
 // All options of a run, as read from its deck.
 //
-// The types that describe a particle, each made from the one before:
+// The types that describe a particle. Each contains the type above it, or is built from it:
 //   ParticleOptions    keys of the section Particle
 //   ParticleKind       all sections of one particle; Scene::particles has one per particle
-//   ParticleScene      a ParticleKind and the options that all particles share: what functions about one particle take
+//   ParticleScene      a ParticleKind and the options that all particles share: the argument of functions about one particle
 //   Body               spaces, control nets and moduli on the current mesh (scene/body.hpp)
 //   Member             a ParticleScene with its Body and its rows in the nets of all particles, for the time of a run (scene/member.hpp)
-//   coupling::Particle what the coupled system needs of a Member (system/particle.hpp)
-//   RecordedParticle   what user-defined series get of a Member (scene/registry.hpp)
+//   coupling::Particle data of a Member that the coupled system uses (system/particle.hpp)
+//   RecordedParticle   data of a Member that user-defined series use (scene/registry.hpp)
 
 #include <limits>
 #include <memory>
@@ -157,8 +157,8 @@ struct SharedOptions {
   double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, but at most the final time
 };
 
-/// Returns the key or section of the deck that requires a coupled system of all particles; empty if there is none. Then `kind` is the only particle,
-/// and the scene is the motion or resistance problem of one rigid body.
+/// Returns the key or section of the deck that requires a coupled system of all particles; empty if no system is required. No system is required if
+/// the scene has only solids, or if it is the motion or resistance problem of one rigid body, `kind`, which is then the only particle.
 std::string_view why_in_system(const SharedOptions& scene, const ParticleKind& kind);
 
 /// One particle of a scene, with the options that it shares with the others.
@@ -197,7 +197,7 @@ struct ParticleScene : SharedOptions, ParticleKind {
 /// Adds the choices that exclude the power balance (6.11) of all particles. `strong`: true for Membrane/load `strong`.
 void reject_power(const SharedOptions& scene, bool strong, Rejections& to);
 
-/// Options of all modules: those of the particles, and those that they share.
+/// Options of all modules: the shared options and the options of each particle.
 struct Scene : SharedOptions {
   /// Particles in the order of the deck, at least one after declare(). A deck with the section Particle has one, without a name. In a scene of posts
   /// only, the one particle stands for their size.

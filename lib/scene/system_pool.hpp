@@ -94,7 +94,7 @@ class SystemPool {
   }
 
  private:
-  /// Builds a system. When it is deleted, its operations are added to those of the deleted systems.
+  /// Builds a system. When the system is deleted, its numbers of operations are added to `counts_` and `kernel_`.
   std::shared_ptr<System> built(Scene scene) {
     scene.walls = walls_;
     std::shared_ptr<System> made(new System(std::move(scene), ranks_, phases_, stops_), [this](System* system) {

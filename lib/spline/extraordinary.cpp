@@ -92,8 +92,8 @@ Eigen::MatrixXd raised(const Eigen::MatrixXd& bicubic) {
   return Eigen::MatrixXd(Eigen::kroneckerProduct(up, up)) * bicubic;
 }
 
-/// Conditions G x = g for continuous tangent planes (G1) across the three mesh lines from the extraordinary point (spokes), with x the
-/// changes of the Bezier points; three conditions per spoke.
+/// Linear conditions G x = g that make tangent planes continuous (G1) across the three mesh lines from the extraordinary point (spokes). x: changes
+/// of the Bezier points. There are three conditions per spoke.
 struct Conditions {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3 * N, unknowns), g = Eigen::MatrixXd(3 * N, Ring::size);
 };

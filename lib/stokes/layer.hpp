@@ -25,11 +25,11 @@ struct NearPoints {
   std::vector<int> point;
 };
 
-/// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density, dG
-/// is the area element, and k_p is a factor per surface, by default 1. The viscosity is not included.
+/// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density,
+/// dGamma is the area element, and k_p is a factor per surface, by default 1. The viscosity is not included.
 ///
-///   single:  u(x0) = sum_p (k_p / 8 pi) int_p G(x, x0) f dG                                 f = sum_B f_B N_B               (2.1)
-///   double:  u(x0) = sum_p (k_p / 8 pi) int_p (f_j(x) - f_j(x0)) T_ijk(x, x0) n_k dG        n out of the surface            (2.2)
+///   single:  u(x0) = sum_p (k_p / 8 pi) int_p G(x, x0) f dGamma                             f = sum_B f_B N_B               (2.1)
+///   double:  u(x0) = sum_p (k_p / 8 pi) int_p (f_j(x) - f_j(x0)) T_ijk(x, x0) n_k dGamma    n out of the surface            (2.2)
 ///
 /// In the double layer, f(x0) is the density at a target on a surface, so that no principal value is needed. The contribution of the surface that
 /// contains the target equals k_p times the sum of the principal value and f/2. If f is a rigid motion of all surfaces, u is 0. For a target off the
@@ -152,8 +152,9 @@ class Layer {
   class RowSums;
 
   bool single() const { return sources_.single(); }
-  /// Returns the tolerance of the sum by clusters: for the single layer that of the deck, for the double layer half of it, with which the measured
-  /// error of the double layer is a quarter of the deck's tolerance. In a double layer, the options hold an eighth of the deck's tolerance.
+  /// Returns the tolerance of the sum by clusters. For the single layer it is the tolerance of the deck. For the double layer it is half of this
+  /// tolerance, with which the measured error is a quarter of the deck's tolerance. The options of a double layer contain an eighth of the deck's
+  /// tolerance.
   double tree_tolerance() const { return (single() ? 1 : 4) * sources_.surface.options.tolerance; }
   void make_tree();
   void use(std::unique_ptr<LayerMedium> medium);

@@ -98,7 +98,7 @@ class LayerSources {
   /// The unstressed surface.
   struct Reference {
     std::vector<double> bezier, weight;  // Bezier points, and quadrature weights at the far nodes, which include the area
-    std::vector<bool> present;           // for Measure::by_element: for each element, whether the density is per current area
+    std::vector<bool> present;           // for Measure::by_element: for each element, true if the density is per current area
   };
   template <class Values>
   void set_moments_of(const Values& f);

@@ -33,7 +33,7 @@ double mean_curvature(const spline::Space& space, const Net& net, const spline::
 struct Measures {
   double area = 0, volume = 0;
   Vec3 centroid;        ///< centroid of the enclosed volume
-  Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG (6.1), with y the position relative to the centroid
+  Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dGamma (6.1), with y the position relative to the centroid
 };
 
 /// Returns whether two semi-axes of a body differ by at least 1e-6 R_C, where R_C is the radius of the sphere of equal volume. If they do not, every
@@ -95,7 +95,7 @@ class Geometry {
 
   const BezierMap& bezier() const { return map_; }
 
-  /// Returns the volume V = 1/3 oint x.n dG, exactly. V is a homogeneous cubic function of the control points x, so V = x.(dV/dx)/3.
+  /// Returns the volume V = 1/3 oint x.n dGamma, exactly. V is a homogeneous cubic function of the control points x, so V = x.(dV/dx)/3.
   double volume(const Net& net) const;
 
   /// Computes the flux vector b_A = dV/dx_A, the integral of N_A n over the surface (2.8), exactly, summed over the given elements in ascending

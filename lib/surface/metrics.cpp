@@ -138,7 +138,7 @@ class Samples {
     return found->second;
   }
 
-  /// Returns the matrix F of (1.5) at a parametric point, which maps tangents and normal of the unstressed surface to those of the current surface.
+  /// Returns the matrix F of (1.5) at a parametric point, which maps the tangents and the normal of the unstressed surface to the current surface.
   Mat3 gradient(const spline::Place& p) const {
     const spline::Site site = locate_(p);
     return frame(now_, site) * frame(rest_, site).inverse();

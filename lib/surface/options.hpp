@@ -22,7 +22,7 @@ struct MeshOptions {
   std::optional<int> azimuthal_elements, meridional_elements;  ///< numbers of elements of the polar mesh: m around the axis, r from pole to pole
   std::optional<std::string> pole_axis;                        ///< body-fixed axis of the particle on which the poles lie
   std::optional<std::string> poles;                            ///< rule at the poles: bezier transform, plain, c1
-  bool fits_tightly = false;  ///< true if the surface is that of a rigid particle that fills more than three quarters of a duct's width
+  bool fits_tightly = false;  ///< true if the particle is rigid and fills more than three quarters of a duct's width
   bool of_cylinder = false;  ///< true if the surface is a cylinder (Particle/shape `cylinder`); it then has `azimuthal_elements` and `axial_elements`
   std::optional<int> axial_elements;                           ///< number of elements along the period of a cylinder
   /// number of bisections in azimuth of the elements at the poles, before they are transformed to non-degenerate pieces

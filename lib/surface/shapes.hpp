@@ -31,7 +31,7 @@ Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits 
 ///
 /// Each row of control points is a circle. The radii and heights of the circles minimise (by Gauss-Newton iteration)
 ///
-///   int |grad eps|^2 + eps^2 dG,   eps = (|x|^2 - 1) / 2,
+///   int |grad eps|^2 + eps^2 dGamma,   eps = (|x|^2 - 1) / 2,
 ///
 /// over the surface. grad eps is the part of x in the tangent plane, which is zero if the normal is exact. The minimum also optimises the
 /// distribution of the elements along the meridian. Compared with a least-squares fit of positions, the error in the normal is 0.6 times as large,

@@ -17,7 +17,7 @@ namespace tanktread::surface {
 struct Line {
   struct Piece {
     std::array<int, 4> functions;
-    Eigen::Matrix4d extraction;  ///< row: function; column: Bernstein polynomial
+    Eigen::Matrix4d extraction;  ///< extraction matrix, one row per function and one column per Bernstein polynomial
   };
   int n = 0;
   std::vector<Piece> pieces;

@@ -22,8 +22,9 @@ struct Corner {
   double height;
 };
 
-/// Integrals along the section curve over the parts added so far by cut(): circulation, length, weight of the material points (6.6), and (`turned`)
-/// angular velocity times this weight.
+/// Sums over the parts of the section curve that cut() has added. `circulation`: integral of the tangential velocity. `length`: length of the curve.
+/// `weight`: sum of the weights in the mean frequency (6.6). `turned`: sum of the angular velocity times this weight. `centre`, `of_centre`: centroid
+/// and its velocity. `elastic`: true if the weights are lengths on the unstressed surface, false if they are times.
 struct Circuit {
   Vec3 centre, of_centre;
   bool elastic;
@@ -71,8 +72,8 @@ struct Circuit {
 using kernel::n_harmonics;
 using Values = Eigen::Matrix<double, n_harmonics, 1>;
 
-/// Integrals over the surface scaled by 1/R, with the solid harmonics h_i. `products`: int h_i h_j dG, lower triangle only. `motion`: int h_i v.n dG.
-/// `normals`: int h_i n dG. The integrals of x_i n_i are V/R^3 each, where V is the volume.
+/// Integrals over the surface scaled by 1/R, with the solid harmonics h_i. `products`: int h_i h_j dGamma, lower triangle only. `motion`:
+/// int h_i v.n dGamma. `normals`: int h_i n dGamma. The integrals of x_i n_i are V/R^3 each, where V is the volume.
 struct Sums {
   Eigen::Map<Eigen::Matrix<double, n_harmonics, n_harmonics>> products;
   Eigen::Map<Values> motion;
@@ -127,8 +128,8 @@ std::vector<double> shape_velocity_sums(const BezierMap& map, const Net& x, cons
 double shape_velocity(std::span<const double> sums, bool along_x1) {
   std::vector<double> numbers(sums.begin(), sums.end());
   const Sums all(numbers.data());
-  // int x_i n_j dG / R^3, which is V/R^3 times the identity except for quadrature errors. With the exact V instead of this integral, a translation
-  // would leave a residual.
+  // int x_i n_j dGamma / R^3, which is V/R^3 times the identity except for quadrature errors. With the exact V instead of this integral, a
+  // translation would leave a residual.
   const Mat3 moments = all.normals.block<3, 3>(1, 0);
   Vec3 frame = moments.partialPivLu().solve(Vec3(all.motion.segment<3>(1)));
   if (along_x1) frame.tail<2>().setZero();

@@ -304,7 +304,7 @@ double Capsule::norm(const Net& displacement) const {
 
 stokes::Evaluations Capsule::kernel_evaluations() const {
   stokes::Evaluations sum = layers_.evaluations() + frozen_.evaluations();
-  if (bodies_.tractions) sum += bodies_.tractions->kernel_evaluations();  // with those of the tube
+  if (bodies_.tractions) sum += bodies_.tractions->kernel_evaluations();  // includes the tube
   else if (duct_.tube) sum += duct_.tube->kernel_evaluations();
   if (surroundings_.solids) sum += surroundings_.solids->evaluations();
   return sum;

@@ -177,7 +177,7 @@ class Capsule : public Dynamics {
     std::unique_ptr<Tube> tube;
     Net net;
     std::optional<double> origin, origin_of_net;
-    double inner_radius = 0;  ///< radius of the largest circle about the centroid that fits in the section of a straight tube
+    double inner_radius = 0;  ///< radius of the largest circle about the centroid that fits in the cross-section of a straight tube
   };
   /// Rigid bodies among the particles. `tractions`: set if the unknowns on the bodies are their tractions. `isolated`: inverses of the system (2.23)
   /// for isolated bodies, used as a preconditioner; set up at the first use.
@@ -188,10 +188,10 @@ class Capsule : public Dynamics {
   };
   /// Returns whether the ambient velocity is evaluated at the targets. Otherwise it is affine, and exact at the control points.
   bool flow_at_targets() const { return duct_.tube || parameters_.solids || !surroundings_.flow.affine(); }
-  /// Returns whether the wall traction is eliminated from the velocity system, so that the system's unknowns are those of the particles only.
+  /// Returns whether the wall traction is eliminated from the velocity system, so that only the particles have unknowns in the system.
   bool eliminates_walls() const { return !duct_.tube || bodies_.tractions || parameters_.solvers.tube == "schur"; }
   bool has_velocity_system() const { return layers_.has_double() || viscous() || !eliminates_walls(); }
-  bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // velocities of control points
+  bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // true if all unknowns are velocities of control points
   bool has_forces() const { return forces_.contacts.size() > 0 || forces_.fields.size() > 0; }
   // Evaluation of a shape (capsule.cpp).
   Net solve_in_cell(Evaluation& e, Net x, const Net& guess);

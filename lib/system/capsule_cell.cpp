@@ -87,7 +87,8 @@ void Capsule::set_solid_shape(const Net& x) {
   surroundings_.solids->set_shape(x, targets_.values() * x, targets_.own());
 }
 
-/// Evaluates the shape with each particle replaced by its image in the cell of a lattice. Converts the velocities to those of the particles.
+/// Evaluates the shape with each particle replaced by its image in the cell of a lattice. Converts the velocities of the images
+/// to velocities of the particles.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
   if (!surroundings_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), guess);
   Net x = e.x(), v = guess;

@@ -95,8 +95,9 @@ Net CapsuleJacobian::volume_gradient_change(const Net& dx) const { return (volum
 ///
 ///   (H - p d2V/dx2) dx,   p = (dE/dx).y/(dV/dx.y),   y = x minus its mean                                                          (4.35)
 ///
-/// A pressure causes no flow, A n = 0, at any shape. If points slide, the normals n at these points change, and the frozen A, that of an earlier
-/// shape, would give this change a velocity proportional to p. A drop with Ca = 1e-4 in a tube took nine times as many steps.
+/// A pressure causes no flow, A n = 0, at any shape. If points slide, the normals n at these points change. The operator A is frozen at an earlier
+/// shape, and would compute a velocity proportional to p from this change. With this velocity, a drop with Ca = 1e-4 in a tube takes nine times as
+/// many steps.
 Net CapsuleJacobian::load_work_change(const Net& dx) const {
   Net change = membranes_.work_change(dx);
   if (pressures_.empty()) return change;

@@ -17,10 +17,10 @@ namespace tanktread::coupling {
 
 /// The Jacobian J = dv/dx of the velocity (4.2) at the shape of the last linearisation. Its layers are frozen: they are kept from an earlier shape
 /// (4.3). B denotes the operator of (4.2) with frozen layers. J and B include the response of a tube, and omit plates and posts. The rows of rigid
-/// bodies in J are 0, because their motion is not stiff. If velocities conserve the volumes, J includes the volume projection P (2.8). The frozen
-/// layers of a capsule that has deformed would otherwise inflate it, and in a tube this displacement grows: J had the eigenvalue +19 in the units of
-/// the deck capsule_cylinder, so that its steps were half as long. P also makes the correction e2 of (4.30), which TR-BDF2 computes with J, conserve
-/// the volumes. Calls are collective.
+/// bodies in J are 0, because their motion is not stiff. If velocities conserve the volumes, J includes the volume projection P (2.8). Without P, the
+/// frozen layers of a deformed capsule would give J modes that inflate the capsule. In a tube such a mode grows (eigenvalue +19 in the units of the
+/// deck capsule_cylinder) and halves the size of the steps. P also makes the correction e2 of (4.30), which TR-BDF2 computes with J, conserve the
+/// volumes. Calls are collective.
 class CapsuleJacobian {
  public:
   /// Changes due to a displacement dx and to additional loads with the virtual work `work`. `rate`: see velocity_change() and step_change(). `slip`:
@@ -45,15 +45,16 @@ class CapsuleJacobian {
   /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.
   Net velocity_product(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
   RateChange velocity_change(const Net& dx, const Net& work);  ///< returns J dx as `rate`
-  /// Returns the left-hand side B (dx - shift J dx) of an implicit step as `rate`, or dx - shift J dx if control points slide. The
-  /// member `slip` of the result is not multiplied by `shift`. Applies each layer once if no control points slide.
+  /// Returns the left-hand side of an implicit step as `rate`: B (dx - shift J dx), or dx - shift J dx if control points slide. `slip` of the result
+  /// is the same as of velocity_change(dx, work). If no control points slide, applies each layer only once.
   RateChange step_change(const Net& dx, double shift, const Net& work);
 
   void prepare_step(double shift);  ///< prepares step_preconditioner() for implicit steps with this shift gamma dt
-  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the matrix of `solve`
+  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< applies an approximate inverse of the matrix of `solve`
 
-  /// Solves the linear system of an implicit step to the relative residual `tolerance`, and counts the solve. With viscosity ratios lambda from 10 to
-  /// 2e4, the residual is smaller by 10/lambda. `rhs` may have any number of rows.
+  /// Solves the linear system of an implicit step to the relative residual `tolerance`, and counts the solve. The tolerance is multiplied by
+  /// 10/lambda if the largest viscosity ratio lambda of the deformable particles is between 10 and 2e4 and no control points slide. `rhs` may have
+  /// any number of rows.
   Net solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
 
   /// Solves the system of an implicit step for the displacement delta, with the secant correction E (4.13) of J. If all control points move with the

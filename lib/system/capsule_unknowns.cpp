@@ -161,8 +161,8 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint
   return v;
 }
 
-/// Returns the first moment int df_i r_j dG of the load df on particle p, a rigid body whose unknown is its traction. r is the position relative to
-/// the centre of the body. `at`: evaluation of the shape. Its system is solved again if another shape was solved last.
+/// Returns the first moment int df_i r_j dGamma of the load df on particle p, a rigid body whose unknown is its traction. r is the position relative
+/// to the centre of the body. `at`: evaluation of the shape. Its system is solved again if another shape was solved last.
 Mat3 Capsule::moment_by_traction(Evaluation& at, std::size_t p) {
   if (!at.solved_ && at.near_) return moment_by_traction(*at.near_, p);
   at.require_solution();

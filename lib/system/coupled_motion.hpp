@@ -25,7 +25,7 @@ class CoupledMotion : public Dynamics {
   struct FieldOnParticle {
     std::size_t particle;
     membrane::Field* field;
-    double length = 0;  ///< length by which the values of the field are multiplied in a state; 0: R_C of the particle
+    double length = 0;  ///< length that replaces R_C in the factor of the field's coefficients (see CoupledMotion); 0: R_C
   };
 
   /// `capsule` and the fields must outlive this object.

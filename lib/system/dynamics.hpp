@@ -99,8 +99,8 @@ class Dynamics {
   virtual double norm(const Net& displacement) const = 0;
 
  protected:
-  /// Returns (v(x + e delta) - v)/e, where e delta has the norm 1e-4. This step exceeds the noise of adaptive quadrature, and v is nearly linear over
-  /// it.
+  /// Returns (v(x + e delta) - v)/e, where e delta has the norm 1e-4. This displacement is large enough to exceed the noise of adaptive quadrature
+  /// and small enough for v to be nearly linear.
   Net difference(const Net& x, const Net& v, const Net& delta) {
     const double e = 1e-4 / norm(delta);
     return (velocity(x + e * delta) - v) / e;

@@ -124,7 +124,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
   } else {
     Net of_particle = own(work());
     if (system.viscous()) of_particle += own(viscous_work());
-    moment = of_particle.transpose() * own(x_);  // first moment int df x dG of the load, with x = sum N_A x_A
+    moment = of_particle.transpose() * own(x_);  // first moment int df x dGamma of the load, with x = sum N_A x_A
     if (!particle.loads.empty() || system.has_forces())  // refers the moment to the centroid, because the load has a net force
       moment -= of_particle.colwise().sum().transpose() * surface::measures(*particle.space, own(x_)).centroid.transpose();
   }

@@ -55,7 +55,7 @@ class Evaluation {
   void solve(double error = 0);
 
   /// Returns the stresslet of particle p (6.7), force x length, with the velocity v of the fluids,
-  /// S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG. Batchelor 1970; Pozrikidis 1992, section 5.1.
+  /// S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dGamma. Batchelor 1970; Pozrikidis 1992, section 5.1.
   Mat3 stresslet(std::size_t p = 0);
 
   /// Returns the power v.C v that the viscosity (3.10) of the membrane or interface of particle p dissipates.

@@ -81,7 +81,8 @@ Net InterfaceMotion::normals_at(const Net& x) const {
   });
 }
 
-/// Sets the relaxation velocity w (4.6) at the rank-owned collocation sites from the density f of the mesh's elastic force.
+/// Sets the relaxation velocity w (4.6) at the rank-owned collocation sites. `f`: control values of the tangential part of the density of the mesh's
+/// elastic force.
 void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
   for (const Drop& drop : drops_) {
     if (!drop.relaxed) continue;
@@ -105,9 +106,8 @@ std::vector<MotionOfShape> InterfaceMotion::motions(const Net& x, const Net& b, 
   return shapes;
 }
 
-/// Returns the control values of the mesh velocity (4.6), W + n n.(v - W) + (1 - n n).w, at the shape x. Here b = dV/dx, W is the motion of the
-/// shape (4.14), and w is the relaxation velocity, computed from the density f of the elastic force on the mesh; if f is empty, w = 0. Sets `rest` to
-/// v - W - w at the collocation sites.
+/// Returns the control values of the mesh velocity (4.6), W + n n.(v - W) + (1 - n n).w, at the shape x. Here b = dV/dx, W is the motion of the shape
+/// (4.14), and w is the relaxation velocity, computed by slide() from f; if f is empty, w = 0. Sets `rest` to v - W - w at the collocation sites.
 Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const {
   Net u = sites_ * v;
   const Net places = sites_ * x;

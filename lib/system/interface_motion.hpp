@@ -19,16 +19,16 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 
 /// Computes the velocity u of the control points from the fluid velocity v. At the collocation sites of each drop
 ///
-///   u = W + n n.(v - W) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed Q A0 Q^T M0^{-1} dE1/dx (`relaxed`)    (4.6)
+///   u = W + n n.(v - W) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed Q A0 Q^T (1 - n n).M0^{-1} dE1/dx (`relaxed`)    (4.6)
 ///
-/// W (4.14) is the motion of the drop's shape, a rigid motion and a uniform rate of stretch. The mesh moves with W: the mesh of a drop that is
-/// convected, or of an elongated drop that is rotated as a whole, moves rigidly, and that of a drop that elongates is stretched with it, so that its
-/// elements at the tips stay as small as those of a material surface. The mesh of a steady shape stays fixed while the fluid tank-treads around it.
+/// W (4.14) is the motion of the drop's shape, a rigid motion and a uniform rate of stretch. The mesh moves with W. If a drop is convected, or if an
+/// elongated drop rotates as a whole, its mesh moves rigidly. If a drop elongates, its mesh is stretched with it, so that the elements at the tips
+/// stay as small as elements that move with the material. If the shape is steady, the mesh does not move while the fluid tank-treads around it.
 /// E1 is the energy of a neo-Hookean membrane of modulus 1 whose unstressed shape is the initial shape. A0 and M0 are the single layer and the mass
-/// matrix of the drop's initial shape, and the rotation Q turns the initial shape with the mesh. The relaxed mesh slides along the interface like an
-/// elastic membrane that is pulled through the fluid by its tension. Elements therefore keep their shape, and the mesh comes to rest where E1 is
-/// smallest on the given interface. The equations of motion are no stiffer than for a capsule with the capillary number
-/// Ca = mu rate R_C / (mu speed), where `rate` is the shear rate. On all other particles u = v.
+/// matrix of the drop's initial shape, and the rotation Q turns the initial shape with the mesh. Only the tangential part of the elastic force moves
+/// the mesh: a relaxed mesh slides along the interface like an elastic membrane that is pulled through the fluid by its tension. Elements therefore
+/// keep their shape, and the mesh comes to rest where E1 is smallest on the given interface. The equations of motion are no stiffer than for a
+/// capsule with the capillary number Ca = mu rate R_C / (mu speed), where `rate` is the shear rate. On all other particles u = v.
 class InterfaceMotion {
  public:
   /// `initial`: net that the meshes relax towards. `mass`: factored mass matrix M0 of `initial`. References, except `initial`, must outlive this
@@ -48,12 +48,12 @@ class InterfaceMotion {
   /// Stores x, b = dV/dx, the normals, and the Hessian of the mesh energy E1 (4.6) at x, which `derivative` needs. Collective.
   void linearise(const Net& x, const Net& b);
 
-  /// Returns the change of the control points' velocity u (4.6) if the shape x of `linearise` is displaced by delta. `dv`, `db`: the resulting
-  /// changes of the fluid velocity v and of the volume gradient b. Includes the changes of the normals and of the linear map from v to the motion W
-  /// only if the last call of `velocity` before `linearise` was for the same net x. If db has no rows, this map is not changed. Collective.
+  /// Returns the change of the control points' velocity u (4.6) if the shape passed to `linearise` is displaced by delta. `dv`, `db`: changes of the
+  /// fluid velocity v and of the volume gradient b due to delta. The changes of the normals and of the linear map from v to the motion W are included
+  /// only if the last call of `velocity` before `linearise` was for the same net. If db has no rows, the change of the map is omitted. Collective.
   Net derivative(const Net& dv, const Net& delta, const Net& db);
 
-  /// Returns whether the mesh of any drop relaxes by itself (`relaxed`).
+  /// Returns true if any drop has the mesh motion `relaxed`.
   bool relaxes() const { return relaxed_; }
 
  private:

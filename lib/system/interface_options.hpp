@@ -18,7 +18,7 @@ inline const std::vector<std::string> mesh_motions{"material", "normal", "relaxe
 /// Options `Interface/*` of the deck: tangential motion of the control points along an interface. Without a membrane this motion is arbitrary.
 struct InterfaceOptions {
   std::optional<MeshMotion> motion;  ///< if not set: `relaxed` for a surface tension, `material` otherwise
-  double relaxation = 1;             ///< relaxation speed of the mesh, which moves like an elastic surface at capillary number 1/relaxation
+  double relaxation = 1;             ///< dimensionless speed of `relaxed`: the mesh moves like an elastic membrane of capillary number 1/relaxation
 
   void declare(deck::Section& section);
 };

@@ -14,7 +14,7 @@ namespace tanktread::coupling {
 class LayerPair {
  public:
   /// `points`: points on the particles. `unstressed`: control net of the unstressed surfaces, to which the loads of membranes refer. `medium`:
-  /// medium that contains all particles; null without one. References, except `unstressed` and `medium`, must outlive this object.
+  /// medium that contains all particles, or null. References, except `unstressed` and `medium`, must outlive this object.
   LayerPair(const spline::Space& space, const stokes::Sites& points, const Net& unstressed, std::span<const Particle> particles,
             const quadrature::Options& quadrature, const stokes::Medium* medium);
 

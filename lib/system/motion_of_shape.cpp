@@ -57,7 +57,8 @@ Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net
   return rotation;
 }
 
-/// Returns the centroid of a drop from its control points x and b = dV/dx, approximately: exactly that of a polyhedron with the volumes b.x/3.
+/// Returns an approximation of the centroid of a drop, computed from its control points x and b = dV/dx: the centroid of one cone per control
+/// point, with its apex at the mean of all control points and the volume b.y/3, where y is the position relative to this mean.
 Eigen::RowVector3d approximate_centroid(const Net& x, const Net& b) {
   const Eigen::RowVector3d mean = x.colwise().mean();
   const Net y = x.rowwise() - mean;

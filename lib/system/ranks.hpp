@@ -19,7 +19,7 @@ namespace tanktread::coupling {
 /// Session of MPI and Kokkos, which ends with this object. Starts MPI only if an MPI launcher started this process. Must be the first object of main.
 class Session {
  public:
-  /// Removes the arguments `--kokkos-...` from the command line.
+  /// Starts the session. Removes the arguments `--kokkos-...` from the command line.
   Session(int* argc, char*** argv);
   ~Session();
   int rank() const;

@@ -232,8 +232,8 @@ class Run:
         return [value for value in map(self.value, own) if value is not None]
 
     def value_of(self, key):
-        """Returns the value that a key of a deck or of `--set` has in the effective deck, which has no section
-        Particles/defaults; None if the particles have different values."""
+        """Returns the value of a key in the effective deck; None if the particles have different values. The key may
+        be in Particles/defaults, a section that the effective deck does not have."""
         own = key.removeprefix("Particles/defaults/")
         values = self.values_of(own) if own != key else [self.value(key)]
         return values[0] if all(value == values[0] for value in values) and values else None

@@ -261,8 +261,8 @@ class Study:
                 "processor_seconds": usage.ru_utime + usage.ru_stime, "command": " ".join(map(quoted, words))}
 
     def _start_timer(self):
-        """Starts the timer that ends a run of one rank at the limit. It is kept by exec, and counts fractions of a
-        second, which prlimit does not. It is not inherited by the ranks that mpirun starts."""
+        """Starts the timer that ends a run of one rank at the limit. The timer counts fractions of a second, which
+        prlimit does not, and exec keeps it. The ranks that mpirun starts do not inherit it."""
         if self.limit:
             signal.setitimer(signal.ITIMER_PROF, self.limit)
 

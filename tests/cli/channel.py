@@ -81,7 +81,7 @@ def a_run_ends_when_the_particle_is_past_the_given_position():
 
 
 def gaps_that_the_wall_mesh_does_not_resolve_are_reported():
-    """Prescribed bodies and searches for steady shapes warn as runs in time do."""
+    """Runs with a prescribed body and searches for steady shapes print the same warning as runs in time."""
     body = """Tanktread:
   Flow: {type: duct}
   Tube: {azimuthal elements: 8, axial elements: 8}

@@ -115,7 +115,7 @@ def suggested_commands_are_accepted(page, text, root):
 
 
 def pictures_are_made(text, root, keep):
-    """Checks the pictures of a page. Copies them into the source if `keep`."""
+    """Checks that the pictures of a page were made. If `keep` is true, copies them into the source directory."""
     names = re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text)
     check(names, "the page has no picture")
     for name in names:

@@ -57,7 +57,7 @@ def a_file_that_cannot_be_read_ends_the_run_and_nothing_is_removed():
     before = sorted(path.name for path in pathlib.Path("out").iterdir())
     newest = sorted(pathlib.Path("out").glob("snapshot_*.hdf"))[-1]
     newest.rename("kept")
-    newest.symlink_to("/proc/self/mem")  # opens, and reading it is an error of input
+    newest.symlink_to("/proc/self/mem")  # can be opened, but reading it is an input error
     said = run("--resume", "out", "--quiet", code=3).stderr
     check(f"cannot read out/{newest.name}: Input/output error" in said, said)
     check(newest.is_symlink() and before == sorted(path.name for path in pathlib.Path("out").iterdir()), "a file is gone")

@@ -11,8 +11,9 @@
 
     main()
 
-main() runs every function of the script whose docstring is not "not a test", each in an empty directory of its own, and fails if one
-fails. A script of two ranks has two processors: its functions that start one rank run two at a time, before the others. Relative paths given to run() that exist in the source directory are taken from there.
+main() runs every function of the script whose docstring is not "not a test", each in a separate empty directory, and fails if a
+function fails. In a script of two ranks, the functions that start only one rank run first, two at a time. If a relative path given to
+run() exists in the source directory, that file is used.
 """
 import concurrent.futures
 import importlib

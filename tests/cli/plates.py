@@ -253,7 +253,7 @@ Tanktread:
 """
     run(deck(text), "--output", "steady", "--quiet")
     run(deck(text), "--set", "Particle/center=[0.3, 0.2, -0.1]", "--output", "other", "--quiet")
-    check(abs(series("steady", "centroid_x3")[-1]) < 5e-3, series("steady", "centroid_x3"))  # of the coarse mesh
+    check(abs(series("steady", "centroid_x3")[-1]) < 5e-3, series("steady", "centroid_x3"))  # error of the coarse mesh
     for name in ("taylor_inertia", "centroid_x3", "inclination"):
         close(series("steady", name)[-1], series("other", name)[-1], 1e-5, name)
 

@@ -160,7 +160,7 @@ def a_run_in_a_tube_is_resumed_bitwise_equal():
     path = deck(DECK.replace("section: circle", "section: file, outline: outline.csv, flow elements: 24"))
     run(path, "--output", "whole", "--quiet")
     run(path, "--output", "parts", "--set", "Time/final time=0.1", "--quiet")
-    pathlib.Path("outline.csv").unlink()  # the results hold a copy
+    pathlib.Path("outline.csv").unlink()  # the results contain a copy
     run("--resume", "parts", "--set", "Time/final time=0.3", "--quiet")
     for name in _names("whole"):
         a, b = series("whole", name), series("parts", name)

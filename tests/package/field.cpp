@@ -16,7 +16,8 @@ struct ReflexOptions {
   }
 };
 
-/// One coefficient q: dq/dt = (A/A0 - 1 - q)/T. The load is that of the tension t q: t q dA/dx.
+/// Field with one coefficient q: dq/dt = (A/A0 - 1 - q)/T, where A is the area and A0 the unstressed area. Its load t q dA/dx is the load of a
+/// surface tension t q.
 class Reflex : public membrane::Field {
  public:
   Reflex(const ReflexOptions& options, const membrane::ParticleSurface& surface)

@@ -15,7 +15,7 @@ struct RotletOptions {
   }
 };
 
-/// v = g x r/|r|^3, r = x - position.
+/// The flow of a rotlet, v = g x r/|r|^3 with r = x - position.
 class Rotlet : public stokes::UserFlow {
  public:
   explicit Rotlet(const RotletOptions& options) : options_(options) {}

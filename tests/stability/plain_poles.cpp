@@ -1,5 +1,5 @@
-// Fixed Gauss rule on the degenerate elements of plain poles: the pressure does not converge, as in Figure 9(a) of the paper. Rules by tolerance on
-// the same surface converge, and so does the paper's transformation of the elements.
+// Pressure on a spheroid with plain poles, whose elements at the poles are degenerate. With a fixed Gauss rule it does not converge, as in Figure
+// 9(a) of the paper. It converges with adaptive rules, and with fixed rules if the elements are transformed as in the paper.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ TEST(PlainPoles, StagnateUnderAFixedRule) {
   const double coarse = pressure_error("plain", "fixed", 4), middle = pressure_error("plain", "fixed", 8),
                fine = pressure_error("plain", "fixed", 16);
   EXPECT_GT(middle, coarse / 3);  // at the order of the space it would be smaller by a factor of 8
-  EXPECT_GT(fine, coarse / 3);    // at the order of the space: a factor of 64
+  EXPECT_GT(fine, coarse / 3);    // at the order of the space it would be smaller by a factor of 64
   EXPECT_GT(fine, 1e-3);
 }
 

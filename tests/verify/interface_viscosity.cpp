@@ -84,7 +84,8 @@ class Drop {
   }
 
  private:
-  /// Returns the coefficients of the mesh's normal velocity, which is that of the fluids, and of the fluids' tangential velocity.
+  /// Returns the normal coefficient of the velocity of the mesh, whose normal part is the fluid velocity, and the tangential coefficient of the fluid
+  /// velocity.
   Coefficients of(const Net& x) {
     return {coefficients(scene_.capsule->velocity(x)).normal, coefficients(scene_.capsule->evaluate(x)->fluid_velocity()).tangential};
   }

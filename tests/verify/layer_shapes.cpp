@@ -61,8 +61,8 @@ surface::ParticleShape red_cell() {
   return shape;
 }
 
-/// Computes (1 / 8 pi) int kernel(x - y, n) (f - f(y)) dG by brute force. f(y) is only subtracted in the double layer and if the target y lies on the
-/// surface.
+/// Computes (1 / 8 pi) int kernel(x - y, n) (f - f(y)) dGamma by brute force. f(y) is only subtracted in the double layer and if the target y lies on
+/// the surface.
 class Reference {
  public:
   explicit Reference(const Particle& p) : particle_(p), surface_(p.space, p.x) {

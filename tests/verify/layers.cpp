@@ -55,7 +55,7 @@ struct Scene {
   }
 
  private:
-  /// Returns (1 / 8 pi) int kernel(x - x_i, n) f dG at every collocation point x_i. If `less_its_own`, f(x_i) is subtracted from f.
+  /// Returns (1 / 8 pi) int kernel(x - x_i, n) f dGamma at every collocation point x_i. If `less_its_own`, f(x_i) is subtracted from f.
   Net by_brute_force(const std::function<Mat3(const Vec3& r, const Vec3& n)>& kernel, bool less_its_own) const {
     const verify::BruteForce surface(space, x);
     std::vector<verify::Casteljau> field;

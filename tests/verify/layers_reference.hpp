@@ -67,7 +67,7 @@ class BruteForce {
     }
   }
 
-  /// Returns the integral of integrand(point) dG for a target on the elements of `sites`, or off the surface if there are no sites.
+  /// Returns the integral of integrand(point) dGamma for a target on the elements of `sites`, or off the surface if there are no sites.
   Vec3 integrate(const Vec3& target, const std::vector<spline::Site>& sites,
                  const std::function<Vec3(const SurfacePoint&)>& integrand) const {
     Vec3 sum = Vec3::Zero();

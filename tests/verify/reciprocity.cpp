@@ -35,7 +35,7 @@ struct Body {
   }
 };
 
-/// Returns int g.(S f) dG over `on`, where f is the density on `from`, by Gauss quadrature with `order` points per direction.
+/// Returns int g.(S f) dGamma over `on`, where f is the density on `from`, by Gauss quadrature with `order` points per direction.
 double work(const Body& on, const Body& from, int order) {
   const quadrature::TensorRule& rule = quadrature::tensor_gauss(order);
   std::vector<Vec3> places, strengths;

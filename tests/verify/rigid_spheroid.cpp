@@ -77,10 +77,10 @@ TEST(RigidSpheroid, DependsOnlyOnItsMotionRelativeToTheFlow) {
   EXPECT_NEAR(moving.error, held.error, 1e-9);
 }
 
-/// Returns the force and torque that the flow v_inf of the deck exerts on an ellipsoid held at rest, by the reciprocal theorem: component k is
-/// int z.v_inf dG, where z is the force density on the ellipsoid when it translates along axis k (torque: rotates about axis k) at unit rate. With
-/// h = x.n, z/h is a polynomial in x, and h dG = abc dOmega with the solid angle Omega of the unit sphere. The Gauss rule therefore integrates a
-/// polynomial v_inf exactly. For a sphere the result is Faxen's law.
+/// Returns the force and torque that the flow v_inf of the deck exerts on an ellipsoid held at rest, by the reciprocal theorem: component k is the
+/// integral of z.v_inf, where z is the force density on the ellipsoid when it translates along axis k (torque: rotates about axis k) at unit rate.
+/// For h = x.n, z/h is a polynomial in x, and h dGamma = abc dOmega with the solid angle Omega of the unit sphere. The Gauss rule therefore
+/// integrates a polynomial v_inf exactly. For a sphere the result is Faxen's law.
 std::pair<Vec3, Vec3> on_a_held_ellipsoid(const Vec3& semi_axes, const std::vector<std::string>& settings) {
   Scene scene;
   deck::Document deck = deck::read({SOURCE_DIRECTORY "/inputs/spheroid_cube.yaml"}, settings);

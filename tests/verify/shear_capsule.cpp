@@ -1,6 +1,6 @@
 // Neo-Hookean capsule in simple shear, Ca = 0.3, compared with a spherical-harmonic solution of the same equations (errors: 3e-7 in D, 0.01 degrees
-// in the inclination). Steps have the tolerance 1e-6. At n = 6, a ten times smaller one changes D by only 3e-6, so the remaining error is that of the
-// mesh.
+// in the inclination). Steps have the tolerance 1e-6. At n = 6, a ten times smaller tolerance changes D by only 3e-6, so the remaining error is due
+// to the mesh.
 
 #include <algorithm>
 #include <cmath>

@@ -46,7 +46,7 @@ TEST_P(SmallDeformation, GrowsWithTheCapillaryNumberAsInTheory) {
   const Case& c = GetParam();
   const double middle = slope(c, 0.01), fine = slope(c, 0.005);
   double limit = fine + (fine - middle) / 3;  // D/Ca is even in Ca because reversing the flow mirrors the shape
-  if (c.flow == std::string("uniaxial extension")) {  // here D/Ca is not even in Ca; the limit is that of a parabola through three values
+  if (c.flow == std::string("uniaxial extension")) {  // here D/Ca is not even in Ca; the limit is extrapolated by a parabola through three values
     const double finest = slope(c, 0.0025);
     limit = (8 * finest - 6 * fine + middle) / 3;
   }

@@ -46,7 +46,7 @@ struct Laden {
   const spline::Space& space() const { return scene.body().space; }
   const Net& rest() const { return scene.body().rest; }
 
-  /// Returns int N_A (n Y, Y) dG on the sphere. The first three columns belong to n Y.
+  /// Returns int N_A (n Y, Y) dGamma on the sphere. The first three columns belong to n Y.
   Eigen::MatrixX4d moments() const {
     Eigen::MatrixX4d sum = Eigen::MatrixX4d::Zero(space().n_points, 4);
     each_point([&](const spline::Element& element, const spline::Basis& basis, const surface::Point& p, double area) {
@@ -170,7 +170,7 @@ TEST_P(SurfactantInExtension, DeformsADropAsInSmallDeformationTheory) {
   const double diffusivity = GetParam(), elasticity = 0.4 / 0.6, tension = 0.6;
   const std::vector<std::string> linear = {"Interface/surfactant/elasticity number=0.4"};
   const double coarse = slope(0.01, diffusivity, linear), middle = slope(0.005, diffusivity, linear), fine = slope(0.0025, diffusivity, linear);
-  const double limit = (8 * fine - 6 * middle + coarse) / 3;  // the limit of a parabola through three values
+  const double limit = (8 * fine - 6 * middle + coarse) / 3;  // extrapolated by a parabola through three values
   const double exact = 15. / 32 / tension * (35 * diffusivity + 4 * elasticity * tension) / (10 * diffusivity + elasticity * tension);
   EXPECT_NEAR(limit / exact, 1, 1e-4) << coarse << ' ' << middle << ' ' << fine;
 }

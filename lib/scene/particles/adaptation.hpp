@@ -27,15 +27,16 @@ struct Adapted {
 };
 
 /// Refines the elements that the indicator marks. If no element is refined, merges elements that the indicator allows to be longer. Transfers the
-/// current surface, the unstressed surface, the slopes of the time scheme and the control net of the frozen operator to the new mesh. `block`: rows
-/// of this particle; the rows of other particles do not change. `load`: control values of this particle's load at state.x, per area of the unstressed
-/// surface if `per_unstressed_area`. `films`: width of the film at each element of the space body.nested(), or empty. `fields`: values of the fields
-/// on the surface, scaled to order 1. The results of all ranks are equal.
+/// control nets of the body and of the state to the new mesh: the current, unstressed, resting and initial surface, the slopes and secants of the
+/// time scheme, and the net of the frozen operator. `block`: rows of this particle; the rows of other particles do not change. `load`: control values
+/// of this particle's load at state.x, per unstressed area if `per_unstressed_area` is true, otherwise per current area. `films`: width of the fluid
+/// film at each element of the space body.nested(); empty if films do not cause refinement. `fields`: values of the fields on the surface, scaled to
+/// order 1. The results of all ranks are equal.
 Adapted adapted(const ParticleScene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields = {});
 
-/// Returns the warnings about an adaptation at this time: one for each limit of the section Adaptation that prevented a refinement, and one if the
-/// change of the mesh has moved the surface.
+/// Returns the warnings about an adaptation at this time: one for each limit of the section Adaptation that prevented a refinement, and one if a
+/// refinement has moved the surface of a deforming particle.
 std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time);
 
 /// Refines the mesh of an isolated rigid body in its initial position, according to the section Adaptation. The criteria are the shape of the body,

@@ -124,7 +124,7 @@ bool Limiter::respond(const motion::State& state) {
   return true;
 }
 
-/// Computes the contact forces. Returns the shape after the displacement that these forces cause.
+/// Computes the contact forces from the complementarity problem (4.23). Returns the shape `start` displaced by the changes of these forces.
 Net Limiter::moved(const Net& start) {
   const auto n = static_cast<Eigen::Index>(held_.size());
   Eigen::MatrixXd a(n, n);

@@ -20,11 +20,11 @@
 
 namespace tanktread {
 
-/// Run that is resumed.
+/// Data with which a run is resumed.
 struct Resumed {
   motion::State state;
   RunTotals totals;
-  output::Checkpoint checkpoint;  ///< checkpoint with the state, the totals and the data that `store` wrote
+  output::Checkpoint checkpoint;  ///< checkpoint with `state`, `totals` and the data that ParticleSystem::store() added
 };
 
 /// Shape of the particles at one time, and a function that samples their fields at the nodes of a snapshot on the calling rank.

@@ -23,7 +23,8 @@ ParticleRows::ParticleRows(std::vector<Member>& members, const coupling::Capsule
   add_treading(here.fluid_velocity());
 }
 
-/// Returns the data of the deforming particle p, except what add_treading() sets. Adds the columns of the particle's surface fields to `columns_`.
+/// Returns the data of the deforming particle p, without the velocity and the tank-treading, which add_treading() sets. Adds the columns of the
+/// particle's surface fields to `columns_`.
 DeformingRow ParticleRows::deforming(std::size_t p, const Net& y) {
   const Member& member = members_[p];
   const Net x = member.own(state_.x), slope = member.own(state_.history.front());

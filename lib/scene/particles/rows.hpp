@@ -17,7 +17,7 @@ class ParticleRows {
                const motion::State& state, const Net& y, coupling::Ranks& ranks);
 
   /// Advances the phase angle of each deforming particle by `step`, the step that led to the state, and returns the columns of all particles. The
-  /// fluid velocity on their surfaces is that of `here`. `recorded`: particles for user-defined series; empty if there are none.
+  /// fluid velocity on their surfaces is taken from `here`. `recorded`: particles for user-defined series; empty if there are none.
   Columns columns(double step, const std::vector<RecordedParticle>& recorded);
 
   Together together() const;  ///< returns totals and means of all particles, without the stresslets of pairs in contact

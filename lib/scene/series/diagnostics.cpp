@@ -67,7 +67,8 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
   return site;
 }
 
-/// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. If the flow has none, the rate is that of relaxation (Scene::rate).
+/// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. If the flow has neither, the rate is the
+/// relaxation rate (ParticleScene::rate).
 double unit_speed(const ParticleScene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : scene.rate() * body.radius; }
 
 /// Returns an array with one number per rank: `mine` for this rank and 0 for all others, so that a sum over ranks collects the numbers.

@@ -31,7 +31,7 @@ struct ProgressRow {
 struct SteadyRow {
   motion::BranchPoint point;
   double period = 0;
-  Vec3 mean_velocity = Vec3::Zero();  ///< of the particles over the period
+  Vec3 mean_velocity = Vec3::Zero();  ///< mean velocity of the particles over the period
   std::vector<motion::Mode> modes;
   void add_columns(const Scene& scene, Columns& to) const;
 };

@@ -70,7 +70,7 @@ class AmbientFlow {
 
   double amplitude() const { return moment_.amplitude; }  ///< amplitude at the time set last
 
-  /// Returns whether the amplitude at the time set last is zero up to rounding errors, such as that of a sine at its zeros.
+  /// Returns whether the amplitude at the time set last is zero up to rounding errors, for example at a zero of a sine.
   bool pauses() const { return std::abs(moment_.amplitude) <= 1e-10; }
 
   /// Returns the matrix a Q, amplitude times rotation, at the time set last. Velocities of walls and pressure gradients are multiplied by this

@@ -12,8 +12,8 @@ namespace tanktread::stokes {
 ///
 ///   c(x0) = 1/(8 pi) int G(x, x0) e1 dS                                                                         (2.13)
 ///
-/// Computes c by a line integral over the outline, which is exact for any section. With rho = (x - x0) in the plane, the outward normal nu of the
-/// outline in the plane, h = place - x0_1 and r^2 = rho^2 + h^2,
+/// Computes c by a line integral over the outline, which is exact for any cross-section. With rho = (x - x0) in the plane, the outward normal nu of
+/// the outline in the plane, h = place - x0_1 and r^2 = rho^2 + h^2,
 ///
 ///   8 pi c_1 = oint rho.nu / r dl,    8 pi c_a = -h oint nu_a / r dl,   a = 2, 3.
 ///

@@ -1,5 +1,5 @@
 #pragma once
-// The velocity profile of a duct of any section, by boundary elements.
+// The velocity profile of a duct of any cross-section, by boundary elements.
 
 #include <array>
 #include <vector>
@@ -66,10 +66,9 @@ class OutlineSpace {
   std::vector<OutlineSite> sites_;
 };
 
-/// Velocity u = v_c - r^2/4 (equations 34 and 35 of Maestre et al. 2017). r is the distance from the centroid of the section; v_c is harmonic with
-/// v_c = r^2/4 on the outline.
-/// The unknowns are the cubic spline sigma = q dl/dt with the flux q = dv_c/dn, and a constant kappa. They satisfy these equations at collocation
-/// points x0 on the outline:
+/// Velocity u = v_c - r^2/4 (equations 34 and 35 of Maestre et al. 2017). r is the distance from the centroid of the cross-section; v_c is harmonic
+/// with v_c = r^2/4 on the outline. The unknowns are the cubic spline sigma = q dl/dt with the flux q = dv_c/dn, and a constant kappa. They satisfy
+/// these equations at collocation points x0 on the outline:
 ///   int G sigma dt + kappa = int (v_c - v_c(x0)) dG/dn dl,   int sigma dt = 0,   G = -ln|x - x0|/(2 pi)                     (2.15)
 /// Without kappa and the condition int sigma dt = 0, the matrix is singular if the outline has logarithmic capacity 1, as a unit circle has.
 /// Inside, v_c is the real part of the analytic function F (2.17) with the boundary values v_c + i psi, psi = int q dl. The flow rate is

@@ -75,7 +75,7 @@ void DuctEnd::add(const Cell& cell, int order, Nodes& nodes) const {
 }
 
 /// Returns true if a point is closer to a cell than the size of the cell. Sets `around` to true if the cell is longer around the centroid of the
-/// section than along the rays from the centroid. `at`: height of the point above the plane of the end, then its two coordinates in this plane.
+/// cross-section than along the rays from the centroid. `at`: height of the point above the plane of the end, then its two coordinates in this plane.
 bool DuctEnd::close(const Cell& cell, const Vec3& at, bool& around) const {
   const Vec2 a = ray(cell, cell.t[0], cell.r[0]), b = ray(cell, cell.t[1], cell.r[0]), c = ray(cell, cell.t[0], cell.r[1]),
              d = ray(cell, cell.t[1], cell.r[1]), middle = ray(cell, (cell.t[0] + cell.t[1]) / 2, (cell.r[0] + cell.r[1]) / 2);

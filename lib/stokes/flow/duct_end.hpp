@@ -14,8 +14,8 @@ namespace tanktread::stokes {
 ///
 ///   P_i(x0) = -1/(8 pi) int G_ij(x, x0) (n.along) u_,a (e_a)_j dS + 1/(8 pi) int u along_j T_ijk(x, x0) n_k dS,   a = 2, 3  (2.29)
 ///
-/// where n points into the fluid and e_a are the axes of the section. Velocity and traction of the duct flow are exact. The plane is integrated by
-/// Gauss points on rays from the centroid, with cells that are halved near a close target.
+/// where n points into the fluid and e_a are the axes of the cross-section. Velocity and traction of the duct flow are exact. The plane is integrated
+/// by Gauss points on rays from the centroid, with cells that are halved near a close target.
 class DuctEnd {
  public:
   /// `place`: position and axes of the end's cross-section. `flow`: flow of the straight duct with this cross-section. `inward`: 1 if the direction
@@ -26,7 +26,7 @@ class DuctEnd {
   /// Returns the velocity (2.29) that the end causes at each row of x, a point in the fluid or on the wall. Units length/time.
   Net velocities(const Net& x) const;
 
-  /// Gauss points of the section: positions and areas.
+  /// Gauss points of the cross-section: positions and areas.
   struct Points {
     Net x;
     Eigen::VectorXd area;
@@ -36,8 +36,8 @@ class DuctEnd {
   const DuctFlow& flow() const { return flow_; }
 
  private:
-  /// Part of the section: the rays from the centroid to the points t[0] .. t[1] (curve parameter) of one side, over the fractions r[0] .. r[1] of
-  /// their length.
+  /// Part of the cross-section: the rays from the centroid to the points t[0] .. t[1] (curve parameter) of one side, over the fractions r[0] .. r[1]
+  /// of their length.
   struct Cell {
     int side;
     double t[2], r[2];

@@ -8,13 +8,13 @@
 
 namespace tanktread::stokes {
 
-/// Velocity profile of a duct: u with u_,22 + u_,33 = -1 in the section and u = 0 on its outline. Units: u length^2, coordinates x2, x3.
+/// Velocity profile of a duct: u with u_,22 + u_,33 = -1 in the cross-section and u = 0 on its outline. Units: u length^2, coordinates x2, x3.
 class DuctProfile {
  public:
   virtual ~DuctProfile() = default;
 
   /// Evaluates u and, unless `u2` is null, its derivatives with respect to x2 and x3 at n points; arrays of length n. Points must not lie outside the
-  /// section.
+  /// cross-section.
   virtual void evaluate(int n, const double* x2, const double* x3, double* u, double* u2, double* u3) const = 0;
 
   virtual double flow_rate() const = 0;  ///< int u dA, units length^4
@@ -27,9 +27,9 @@ std::unique_ptr<DuctProfile> rectangle_profile(const surface::Vec2& sides);
 /// Returns the profile selected by TubeOptions: a closed form or the boundary-element profile.
 std::unique_ptr<DuctProfile> duct_profile(const surface::TubeOptions& options, const surface::Outline& outline);
 
-/// Unidirectional flow v = (v_1(x2, x3), 0, 0) with  mu (v_1,22 + v_1,33) = p_,1 = -G  and v_1 = 0 on the wall (equation 33 of Maestre et al.
-/// 2017), with a given mean velocity in the section. Only the pressure p = -G x1 depends on x1. For channels with varying section, a derived class
-/// overrides the velocities; all other members then refer to the inlet.
+/// Unidirectional flow v = (v_1(x2, x3), 0, 0) with  mu (v_1,22 + v_1,33) = p_,1 = -G  and v_1 = 0 on the wall (equation 33 of Maestre et al. 2017),
+/// with a given mean velocity in the cross-section. Only the pressure p = -G x1 depends on x1. For channels with varying cross-section, a derived
+/// class overrides the velocities; all other members then refer to the inlet.
 class DuctFlow {
  public:
   DuctFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity);

@@ -30,7 +30,7 @@ struct FlowOptions {
   std::optional<Mat3> gradient;          ///< velocity gradient L_ij = dv_i/dx_j of the flow type `linear`
   std::optional<Vec3> velocity;          ///< velocity of the flow type `uniform`
   std::optional<Vec3> gravity;           ///< gravitational acceleration, for particles with a density difference
-  std::optional<double> mean_velocity;   ///< mean velocity, flow rate/(area of the section); set for `duct`
+  std::optional<double> mean_velocity;   ///< flow rate divided by the area of the cross-section; set for `duct`
   std::string held = "flow rate";        ///< quantity of `duct` that is held constant when particles disturb the flow: flow rate, pressure drop
   std::optional<std::string> profile;      ///< round (v_1 depends on x2 and x3) or plane (v_1 depends only on x3); set for `parabolic`
   std::optional<double> maximum_velocity;  ///< velocity of `parabolic` at x2 = x3 = 0, units length/time

@@ -51,7 +51,7 @@ void Lattice::subtract_surfaces(LayerSources& sources, const LayerTargets& targe
   for (std::size_t k = 0; k < rows.size(); ++k) u.row(rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
 }
 
-/// Adds the contribution of the images that are not in the far sum, and for a double layer with three periods the pressure of (2.28).
+/// Adds the contribution of the images that are not near (PeriodicSum), and for a double layer with three periods the pressure of (2.28).
 void Lattice::add_rest(LayerSources& sources, const LayerTargets& targets, Net& u) {
   const auto clock = sources.phases.time("rest of the lattice");
   std::vector<Vec3> at = rows_of(targets.at, targets.rows);
@@ -73,9 +73,9 @@ void Lattice::add_rest(LayerSources& sources, const LayerTargets& targets, Net& 
   for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.rows[k]) += sums.row(static_cast<Eigen::Index>(k));
 }
 
-/// Computes the double layer of constant unit densities due to the images that are not in the far sum, at the targets `at`, one column per component
-/// of the density. Each surface has images in the far sum and others that are not. Therefore neither the far sum nor this double layer vanishes for a
-/// constant density.
+/// Computes rest_stress_ at the targets `at`: the double layer of a constant unit density on all images that are not near, one column per component
+/// of the density. Each node is wrapped into the cell separately, so that the near images can contain a part of a surface only. Therefore neither the
+/// double layer of the near images nor that of the other images vanishes for a constant density.
 void Lattice::place_rest(LayerSources& sources, const std::vector<Vec3>& at) {
   rest_at_ = at;
   rest_stress_.assign(at.size(), Mat3::Zero());
@@ -88,8 +88,8 @@ void Lattice::place_rest(LayerSources& sources, const std::vector<Vec3>& at) {
   }
 }
 
-/// Returns the contribution of the additional pressure of (2.28) to the double layer, -(8 pi/V) sum_p k_p int_p (f.n) (x - x_p) dG, for the density f
-/// whose moments are set. x_p is the mean of the nodes of surface p, and k_p the factor of (2.2).
+/// Returns the contribution of the additional pressure of (2.28) to the double layer, -(8 pi/V) sum_p k_p int_p (f.n) (x - x_p) dGamma, for the
+/// density f whose moments are set. x_p is the mean of the nodes of surface p, and k_p the factor of (2.2).
 Vec3 Lattice::pressure_along(const LayerSources& sources) const {
   const LayerSurface& surface = sources.surface;
   const auto number = [&](int e) { return static_cast<std::size_t>(surface.near_field.surface(e)); };

@@ -181,7 +181,7 @@ void PeriodicKernel::add_smooth_images(const Vec3& r0, double* values) const {
   }
 }
 
-/// Applies the correction (2.27) for two periods: subtracts the Fourier mode with wave vector k = 0.
+/// Applies the correction (2.27) for two periods to the Fourier mode with the in-plane wave vector k = 0.
 void PeriodicKernel::add_mode_across(const Vec3& r, double* values) const {
   const Vec3 e = cell_.vectors().col(2);
   const double z = e.dot(r), scale = 4 * pi / std::abs(periods_.determinant());

@@ -60,15 +60,15 @@ class PeriodicCell {
 /// The columns of H are the lattice vectors, and n has integer components. xi is just large enough that A is negligible for all images that are not
 /// near. A near image contributes A to the sum (2.25). If its G is subtracted, only A - G remains, which is smooth.
 ///
-/// With two periods, the sum is computed with a third period. The third period is so long that only the mode with the wave vector k = 0 reaches
-/// across it, and this mode is subtracted. With the coordinate z along the unit vector e normal to the two periods, the area S of the cell and the
-/// third period L3,
+/// With two periods, the sum is computed with a third period. The third period is so long that only the mode with the in-plane wave vector k = 0
+/// reaches across it. (2.27) replaces this mode by the mode without a third period, -(4 pi/S) |z| (I - e e). With the coordinate z along the unit
+/// vector e normal to the two periods, the area S of the cell and the third period L3,
 ///
-///   G = G^P - (4 pi/(S L3)) z^2 (I - e e),   p_i = p^P_i + (8 pi/(S L3)) z e_i                                                  (2.27)
+///   G = G^P - (4 pi/(S L3)) (z^2 + L3^2/6) (I - e e),   p_i = p^P_i + (8 pi/(S L3)) z e_i                                       (2.27)
 ///
 /// With one period of length h along the unit vector e, the tail of the sum is computed by the Euler-Maclaurin formula. With one or two periods, G is
-/// defined up to a constant. With one period, the reference distance l of the cell fixes the constant: far from the row of images, the axial velocity
-/// depends on the distance rho from the row like -ln(rho/l):
+/// defined up to a constant. With two periods, (2.27) fixes the constant. With one period, the reference distance l of the cell fixes the constant:
+/// far from the row of images, the axial velocity depends on the distance rho from the row like -ln(rho/l):
 ///
 ///   G^P = sum_n G(r + n h e) - sum_{n != 0} (I + e e)/|n h| + (2/h) (ln(l/2h) + gamma + 1/2) (I + e e),
 ///   e.G^P e -> -(4/h) ln(rho/l)                                                                                           (2.43)

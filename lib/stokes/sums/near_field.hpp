@@ -59,7 +59,7 @@ class NearField {
   bool far_enough(int e, const Vec3& target, std::span<const SelfPair> self_pairs) const;
 
   const Panels& panels_;
-  quadrature::Demand demand_;  ///< required accuracy. The members that depend on the surface area are 0 here; update() sets them in each View
+  quadrature::Demand demand_;  ///< required accuracy. Its members that depend on the surface area are 0; update() sets them in the copies in `views_`
   std::vector<int> surface_;   ///< for each panel, the index of the surface that contains it
   int n_surfaces_ = 1;
   bool steep_, across_gaps_;

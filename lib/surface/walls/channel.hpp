@@ -41,8 +41,8 @@ class Channel {
   Vec3 coordinates(const Vec3& x) const;
   bool inside(const Vec3& x) const;
 
-  /// Returns the knots, in the longitudinal parameter u, of a spline surface for the wall from start() to end(). at() returns the section at any u in
-  /// this range. At a step, the scale factors f2 and f3 change with u while the arc length s is constant.
+  /// Returns the knots, in the longitudinal parameter u, of a spline surface for the wall from start() to end(). at() returns the cross-section at
+  /// any u in this range. At a step, the scale factors f2 and f3 change with u while the arc length s is constant.
   std::vector<double> knots(int elements) const;
   int elements() const;  ///< number of elements along the wall: Channel/axial elements or, if not given, such that elements are about as long as wide
   Section at(double u) const;

@@ -47,7 +47,7 @@ SolidSurface plate(const Vec3& middle, const Vec3& first, const Vec3& second, co
 SolidSurface cylinder(const Vec3& middle, const Vec3& period, double radius, int around, int along) {
   const Outline circle = Outline({Ellipse{Vec2::Zero(), Vec2::Constant(radius)}}).spline(around);
   const CubicCurve& curve = std::get<CubicCurve>(circle.side(0));
-  const double wider = radius / circle.radius();  // scales the spline section to the exact area of the circle
+  const double wider = radius / circle.radius();  // scales the spline cross-section to the exact area of the circle
   const Vec3 axis = period.normalized(), a = axis.unitOrthogonal(), b = axis.cross(a);
   Line ring;
   add(ring, curve.breaks, true, false);

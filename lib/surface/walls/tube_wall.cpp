@@ -159,8 +159,8 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
     const Channel::Section at = channel->at(knots[k]);
     if (k == 0 || at.factor.minCoeff() > narrowest) continue;
     const double widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
-    // If several knots have the narrowest section, uses the smallest `widest` of these knots, because elements at the ends of a straight channel are
-    // longer.
+    // If several knots have the narrowest cross-section, uses the smallest `widest` of these knots, because elements at the ends of a straight
+    // channel are longer.
     wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);
     narrowest = at.factor.minCoeff();
   }

@@ -26,7 +26,7 @@ struct TubeWall {
   Outline outline;  ///< cross-section of the wall (in a channel: at its inlet), with cubic sides
   double start = 0, end = 0;
   int n_around = 0, n_along = 0;
-  double widest = 0;                       ///< approximate largest side length of the elements at x1 = 0, or at the narrowest section of a channel
+  double widest = 0;                       ///< approximate largest side length of the elements at x1 = 0, or where a channel is narrowest
   std::shared_ptr<const Channel> channel;  ///< channel of this wall; null for a straight tube
   /// collocation points of densities on the wall; on a wall that is not periodic, they are the collocation points of `space`
   std::vector<std::vector<spline::Site>> sites;
@@ -41,8 +41,9 @@ struct TubeWall {
   double radius() const { return outline.radius(); }  ///< returns R_T = sqrt(area/pi)
 };
 
-/// Returns the wall of a section over [-length/2, length/2], with the numbers of elements and the grading g given in the options: the element density
-/// is proportional to 1 + (g - 1)/(1 + (x1/w)^4), where w is the larger of the tube radius R_T and `half_length`, half the length of the particle.
+/// Returns the wall of a straight tube over [-length/2, length/2], with the numbers of elements and the grading g given in the options: the element
+/// density is proportional to 1 + (g - 1)/(1 + (x1/w)^4), where w is the larger of the tube radius R_T and `half_length`, half the length of the
+/// particle.
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
 
 /// Returns one period of a periodic wall with the cross-section `section`, approximately for x1 in [-period/2, period/2). It has `elements` elements

@@ -66,7 +66,7 @@ std::shared_ptr<Wall> ChannelFlow::made(Phases* phases, const surface::Symmetry&
 
 /// Returns the velocity that drives the flow, without the velocity due to the wall traction. In an open channel it is P_I + P_O of (2.30), the
 /// contributions of both ends. In a periodic channel it is Poiseuille flow in a circular tube with a unit pressure gradient, for any shape of the
-/// section.
+/// cross-section.
 Net ChannelFlow::driving_velocity(const Net& x) const {
   if (!channel_->repeats()) return ends_[0].velocities(x) + ends_[1].velocities(x);
   Net v = Net::Zero(x.rows(), 3);

@@ -19,7 +19,7 @@ namespace tanktread::coupling {
 /// Flow through a channel with the flow rate Q. At each end the flow is fully developed, as in a straight duct. The velocity v follows from an
 /// equation of the first kind for the wall traction f:
 ///
-///   v = -(1/mu) G_W f + dp c + P_I + P_O,   (1/mu) G_W f = dp c + P_I + P_O on the wall,   int v.n dS = Q through a section      (2.30)
+///   v = -(1/mu) G_W f + dp c + P_I + P_O,   (1/mu) G_W f = dp c + P_I + P_O on the wall,   int v.n dS = Q through a cross-section (2.30)
 ///
 /// G_W is the single layer of the wall, dp the pressure drop between the ends, and c the velocity due to a unit pressure at the inlet: 1/mu times
 /// (2.13). P_I and P_O are the velocities (2.29) due to the duct flow through the inlet and the outlet. The wall operator is constructed by all ranks
@@ -43,7 +43,7 @@ class ChannelFlow : public stokes::DuctFlow {
   std::vector<Mat3> gradients(const Net& x) const override;
 
   double pressure_drop() const;        ///< pressure drop between the ends
-  double extra_pressure_drop() const;  ///< pressure drop minus the pressure drop of a straight duct that has the inlet's section and the length of
+  double extra_pressure_drop() const;  ///< pressure drop minus the pressure drop of a straight duct with the inlet's cross-section and the length of
                                        ///< the centre line
   const Net& wall_traction() const;    ///< control values of f
 
@@ -57,7 +57,7 @@ class ChannelFlow : public stokes::DuctFlow {
   /// communication between ranks. Collective.
   std::shared_ptr<Wall> wall(Phases* phases = nullptr) const;
 
-  /// Returns the wall operator for fields with the symmetries of a particle inside. All later fields must have these symmetries.
+  /// Returns the wall operator for fields with the symmetries of the particle in the channel. From then on, all fields must have these symmetries.
   std::shared_ptr<Wall> wall(Phases& phases, const surface::Symmetry& particle) const;
 
  private:

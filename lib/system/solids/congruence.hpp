@@ -15,9 +15,9 @@ struct Congruence {
   std::vector<int> image, source;  ///< Q maps control point k of each cross-section (ring) to image[k]. source: inverse of image
 };
 
-/// Returns the maps of the wall onto itself, the identity first: 2 n maps for a circle with n points around, 4 for a rectangle, 2 for the section of
-/// a bent channel. A map is accepted if it moves every control point to a control point and every collocation point (`sites`) to a collocation point,
-/// up to 1e-10 tube radii.
+/// Returns the maps of the wall onto itself, the identity first: 2 n maps for a circle with n points around, 4 for a rectangle, 2 for the
+/// cross-section of a bent channel. A map is accepted if it moves every control point to a control point and every collocation point (`sites`) to a
+/// collocation point, up to 1e-10 tube radii.
 ///
 /// The kernels do not change if source, target and force are rotated or reflected together. The 3 x 3 blocks of an operator A on the wall, for target
 /// i and source p, therefore satisfy A(Q i, Q p) = Q A(i, p) Q^T.
@@ -26,7 +26,7 @@ std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& si
 /// Orbit representative of a point of a cross-section (ring): the point of the same ring that a map moves to the given point. Matrix rows are
 /// assembled only for representatives.
 struct Original {
-  int point;               ///< index of the representative in the ring: the smallest of the indices of all points that maps move to the given point
+  int point;               ///< index of the representative in the ring: the smallest index of a point that a map moves to the given point
   const Congruence* from;  ///< map that moves the representative to the given point; points into the list passed to originals()
 };
 

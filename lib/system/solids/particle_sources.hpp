@@ -23,7 +23,7 @@ struct SourceTargets {
 
 /// The particles as sources of flow at points off their surfaces. The load f and the velocity v of the particles, given by control values, cause
 ///
-///   u = -(1/mu) G_C f + (1/8 pi) int_C T q n dG,   q = (1 - lambda) v
+///   u = -(1/mu) G_C f + (1/8 pi) int_C T q n dGamma,   q = (1 - lambda) v
 ///
 /// with the single layer G_C of the particles divided by 8 pi. LayerPair is the counterpart for points on the particles.
 ///
@@ -67,7 +67,7 @@ class ParticleSources {
   stokes::Evaluations evaluations() const;
 
   stokes::Layer single_layer;
-  std::optional<stokes::Layer> double_layer;  ///< without the factor 1 - lambda; set if has_double()
+  std::optional<stokes::Layer> double_layer;  ///< double layer without the factor 1 - lambda; set if has_double() is true
 
  private:
   const spline::Space& space_;

@@ -59,7 +59,7 @@ class LoneRigidBody : public Dynamics {
 
   virtual RigidMotion motion(const Net& position) const = 0;
   virtual Net force_density(const Net& position) const = 0;  ///< force density on the fluid, control values
-  virtual Mat3 stresslet(const Net& position) const = 0;     ///< int [(t_i x_j + t_j x_i)/2 - delta_ij t.x/3] dG; t: traction on the body
+  virtual Mat3 stresslet(const Net& position) const = 0;     ///< int [(t_i x_j + t_j x_i)/2 - delta_ij t.x/3] dGamma; t: traction on the body
   virtual double pressure_drop(const Net&) const { return 0; }  ///< additional pressure drop due to the body, in a tube
 
   /// Returns the latest solution of the linear system; empty if no system is solved iteratively. The next solve starts from this solution.
@@ -112,7 +112,7 @@ class FreeBody : public LoneRigidBody {
 /// A free body in a tube or in a medium such as that in front of a plane wall. Equation (2.40) is solved at each position. In a tube the force
 /// density f and the motion (U, Omega) are the unknowns of one system in body-fixed axes,
 ///
-///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = F,   int r x f dG = T,
+///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dGamma = F,   int r x f dGamma = T,
 ///
 /// where u(f) is the velocity that wall and pressure drop cause for the load f (Tube::respond), and F, T are the given force and torque. In a tube
 /// the single layer A does not depend on the position. The preconditioner is the inverse of the system without the term u(f). The initial guess is

@@ -14,7 +14,7 @@ struct RigidMotion {
 struct SolvedBody {
   RigidMotion motion;
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque (about the centre) of the body on the fluid
-  Mat3 moment = Mat3::Zero();                        ///< first moment int f_i r_j dG, with the position r from the centre
+  Mat3 moment = Mat3::Zero();                        ///< first moment int f_i r_j dGamma, with the position r from the centre
 
   /// Returns the symmetric, traceless part of `moment`.
   Mat3 stresslet() const { return (moment + moment.transpose()) / 2 - moment.trace() / 3 * Mat3::Identity(); }

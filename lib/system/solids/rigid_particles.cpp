@@ -257,7 +257,7 @@ Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
   return flat(functional);
 }
 
-/// Computes int df r dG in closed form for the load df = -(a + b x r). The vectors a and b follow from the force and torque on body p.
+/// Computes int df r dGamma in closed form for the load df = -(a + b x r). The vectors a and b follow from the force and torque on body p.
 Mat3 RigidParticles::load_moment(std::size_t p) const {
   const Body& of = body(p);
   const RigidMotion load = of.with_integrals(of.force, of.torque);

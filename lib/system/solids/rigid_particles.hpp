@@ -17,7 +17,7 @@
 namespace tanktread::coupling {
 
 /// Correction of the collocation error of the velocity u that a single or double layer on a body induces on the body itself, for unit viscosity. It
-/// is the control net of u by least-squares projection minus the control net of u by collocation, M^-1 int N_A u dG - R^-1 u (M: mass matrix, R:
+/// is the control net of u by least-squares projection minus the control net of u by collocation, M^-1 int N_A u dGamma - R^-1 u (M: mass matrix, R:
 /// collocation matrix). At its collocation sites, a spline surface of n elements per side lies farther out than between them, by about 1/n^4 radii.
 /// The velocity of a double layer and the velocity gradient of a single layer jump across a surface. Therefore the velocity at the sites has a
 /// systematic error. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4, and
@@ -36,7 +36,7 @@ struct SelfCorrection {
 /// The limit lambda -> infinity (rigid bodies) of equation (2.22) for particles of viscosity ratio lambda. In this limit v = V + w/(lambda - 1) on
 /// the body, V = U + Omega x r, and
 ///
-///   V(x0) = v_inf(x0) - sum_p G df_p - (1 / 8 pi) int (w - w(x0)) T n dG + contributions of v and w of the other particles        (2.23)
+///   V(x0) = v_inf(x0) - sum_p G df_p - (1 / 8 pi) int (w - w(x0)) T n dGamma + contributions of v and w of the other particles    (2.23)
 ///
 /// The density w replaces v in the unknowns. The integral does not change if a rigid motion is added to w. The rigid motion <w> nearest to w (least
 /// squares) is therefore not determined by the integral, and represents another unknown of the body. If the force and torque are given, this unknown
@@ -91,7 +91,7 @@ class RigidParticles {
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
   RigidDrive given(std::size_t p) const { return body(p).given(); }    ///< prescribed motion, or prescribed force and torque plus push()
-  Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
+  Mat3 load_moment(std::size_t p) const;                               ///< int df r dGamma
 
   /// Returns whether the bodies p and q have equal shapes and orientations at rest.
   bool alike(std::size_t p, std::size_t q) const { return body(p).self_correction && body(p).self_correction == body(q).self_correction; }
@@ -113,11 +113,11 @@ class RigidParticles {
     double radius = 0, viscosity = 0;
     Net rest;             // control net in the reference orientation, relative to the centre of volume
     std::shared_ptr<const SelfCorrection> self_correction;  // shared by equal bodies
-    Eigen::VectorXd weight;              // int N_A dG
-    Net moment;                          // int N_A r dG
+    Eigen::VectorXd weight;              // int N_A dGamma
+    Net moment;                          // int N_A r dGamma
     Eigen::Matrix<double, 6, 6> inertia;  // entry (j, k): integral of u_j.u_k over the surface, with the velocity field u_k of unit motion k
-    Mat3 second;                          // int r r dG
-    Vec3 first;                           // int r dG
+    Mat3 second;                          // int r r dGamma
+    Vec3 first;                           // int r dGamma
     Vec3 rest_centre, centre;
     Vec3 cell_velocity = Vec3::Zero();  // velocity of the body minus the velocity of its image in the cell
     Mat3 turn = Mat3::Identity();

@@ -33,8 +33,8 @@ class RigidResidual {
 
   void repeat(const stokes::PeriodicCell& cell) { layers_.repeat(cell); }
 
-  /// Returns the weighted collocation error int N_A (v - u) dG over the bodies, with the spline functions N_A and the fluid velocity u at the Gauss
-  /// points. `flow`: v_inf at the Gauss points. `load`, `v`: load and velocity of all particles, whose net is x.
+  /// Returns the weighted collocation error int N_A (v - u) dGamma over the bodies, with the spline functions N_A and the fluid velocity u at the
+  /// Gauss points. `flow`: v_inf at the Gauss points. `load`, `v`: load and velocity of all particles, whose net is x.
   Net integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls);
 
   const BetweenSites& points() const { return between_; }

@@ -173,7 +173,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   set_shape(x, centres, std::move(around));
   const bool has_pressure = walls_.tube && all_rigid(), driven_by_pressure = flow.duct() && flow.amplitude() != 0;
-  const bool apart = has_pressure && !driven_by_pressure;  // true if the density due to the flow of the duct, for (2.41), needs a solve of its own
+  const bool apart = has_pressure && !driven_by_pressure;  // true if the density due to the flow of the duct (2.41) needs a separate solve
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1 + apart), fields = Eigen::MatrixXd::Zero(n, m);
   const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);
   Net empty = around_ ? Net(-around_->flow) : at_sites;

@@ -25,18 +25,18 @@ namespace tanktread::coupling {
 
 /// The first-kind equation on the surfaces of all rigid bodies, with the force density f on the fluid:
 ///
-///   (1/mu) sum_q A_pq f_q = U_p + Omega_p x r - v_inf   on body p,     int f_p dG = F_p,   int r x f_p dG = T_p                  (2.40)
+///   (1/mu) sum_q A_pq f_q = U_p + Omega_p x r - v_inf   on body p,     int f_p dGamma = F_p,   int r x f_p dGamma = T_p          (2.40)
 ///
 /// where either the motion U_p, Omega_p or the force F_p and torque T_p of each body is given. A_pq is the single layer of body q at body p. The
 /// operator is assembled at every position, made regular by one flux condition per body as in (2.10), and factored. Thin films between bodies
 /// therefore cost no additional iterations. f is a sum of the densities z_k that unit motions of the bodies require, and the density that the ambient
 /// flow requires.
 ///
-/// The collocation error of the force or torque that belongs to z_k is corrected by the reciprocal theorem (2.11): int z_k.(v - (1/mu) A f) dG over
-/// all bodies is added, with v the right-hand side. The error of a stresslet is corrected in the same way with the densities of unit strains of its
-/// body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. With the double-layer equation (2.23), the errors
-/// of forces are linear in the error of one density. In a channel the residual on the wall is included (2.42). The matrix is dense, which limits the
-/// number of control points to a few thousand.
+/// The collocation error of the force or torque that belongs to z_k is corrected by the reciprocal theorem (2.11): int z_k.(v - (1/mu) A f) dGamma
+/// over all bodies is added, with v the right-hand side. The error of a stresslet is corrected in the same way with the densities of unit strains of
+/// its body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. With the double-layer equation (2.23), the
+/// errors of forces are linear in the error of one density. In a channel the residual on the wall is included (2.42). The matrix is dense, which
+/// limits the number of control points to a few thousand.
 ///
 /// The fluid may have other boundaries: images on a lattice, the wall of a tube and its pressure drop, plates and posts (2.47), and deformable
 /// particles. These boundaries change the solution as follows:
@@ -106,11 +106,12 @@ class RigidTractions {
   /// Returns whether the bodies with the net x are inside the tube and in the medium. If there is a tube, call Tube::set_shape(x) before.
   bool inside(const Net& x) const;
 
-  /// Returns the results for the bodies in the order of the particles. Their moments lack the collocation-error correction that moment() adds.
+  /// Returns the results for the bodies in the order of the particles. Their moments are not corrected for the collocation
+  /// error; moment() returns corrected moments.
   const std::vector<SolvedBody>& bodies() const { return bodies_; }
 
-  /// Returns int f r dG of body p for the latest solve. Unless there is a tube, its symmetric traceless part is corrected for the collocation error.
-  /// This takes five additional solves, one for each unit strain. Collective.
+  /// Returns int f r dGamma of body p for the latest solve. Unless there is a tube, its symmetric traceless part is corrected for the collocation
+  /// error. This takes five additional solves, one for each unit strain. Collective.
   Mat3 moment(std::size_t p);
 
   bool all_rigid() const;                            ///< returns whether all particles are rigid bodies
@@ -146,7 +147,7 @@ class RigidTractions {
   double tolerance_;
   std::optional<Surroundings> around_;  // surroundings passed to set_shape() last
   Net x_, sites_;                       // x_: net passed to set_shape() last. sites_: positions of the collocation sites on this net
-  Eigen::VectorXd weighted_residual_;   // int N_A (v - v_inf - (1/mu) A f) dG for the latest f: residual of (2.40), used by (2.11)
+  Eigen::VectorXd weighted_residual_;   // int N_A (v - v_inf - (1/mu) A f) dGamma for the latest f: residual of (2.40), used by (2.11)
   std::vector<Vec3> centres_;
   std::vector<SolvedBody> bodies_;
   Net unknowns_;

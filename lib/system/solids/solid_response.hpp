@@ -30,10 +30,10 @@ Vec3 velocity_integral(const SolidScene& scene, const Solids::Flow& flow);
 
 /// Velocity u that solids (with the surface S) add to the ambient flow v_inf and to the layers of the particles (with the surface C):
 ///
-///   u = (1/mu) G_S f + U,   u = V - v_inf + (1/mu) G_C df - (1/8 pi) int_C (1 - lambda) T v n dG on the solids            (2.47)
+///   u = (1/mu) G_S f + U,   u = V - v_inf + (1/mu) G_C df - (1/8 pi) int_C (1 - lambda) T v n dGamma on the solids        (2.47)
 ///
 /// V is the prescribed velocity of the solids, which changes in time like the flow; df and v are load and velocity of the particles. f and U are the
-/// solution of (2.46) for the force F = V_c g + int df dG, where V_c is the volume of the cell and g the mean pressure gradient. With this F, the
+/// solution of (2.46) for the force F = V_c g + int df dGamma, where V_c is the volume of the cell and g the mean pressure gradient. With this F, the
 /// total force on the fluid in one cell balances the pressure gradient g. The layers of the particles include all images. `empty` returns the
 /// solution without particles, and `respond` the part of the solution that is linear in df and v. Nets of particles are replicated on all ranks. All
 /// calls except queries are collective.
@@ -64,11 +64,11 @@ class SolidResponse {
   /// three periods the integral is the volume times U (2.46). In front of a single plate it is not defined, and zero is returned. Between two plates
   /// at the distance D it has components along the plates only, and follows from the reciprocal theorem:
   ///
-  ///   int u_i dV = (1/mu) (int_S f_i phi dG - int_C df_i phi dG) + int_C (1 - lambda) v.sigma_i n dG                         (2.49)
+  ///   int u_i dV = (1/mu) (int_S f_i phi dGamma - int_C df_i phi dGamma) + int_C (1 - lambda) v.sigma_i n dGamma             (2.49)
   ///
   /// In this formula, f_i is the force density of the solids (`flow`) and df_i the load of the particles (the argument f). S are the surfaces of the
-  /// solids, C those of the particles. With z the distance from one plate and phi = z (D - z)/2, a pressure that decreases along e_i with unit
-  /// gradient drives the flow phi e_i/mu, which has the stress sigma_i.
+  /// solids, and C the surfaces of the particles. With z the distance from one plate and phi = z (D - z)/2, a pressure that decreases along e_i with
+  /// unit gradient drives the flow phi e_i/mu, which has the stress sigma_i.
   Vec3 velocity_integral(const Solids::Flow& flow, const Net& f, const Net& v);
 
   /// Returns the force of the particles on the fluid for a load f.

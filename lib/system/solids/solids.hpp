@@ -28,7 +28,7 @@ struct Rod {
 /// Single layer of solids on a lattice, assembled and factored once. f is the force per area that the solids exert on the fluid. F is the given total
 /// force of the solids of one cell on the fluid. U is a uniform velocity:
 ///
-///   (1/mu) G_S f + U = u on the solids,   e.int f dG = e.F for every free direction e of U,   int_s f.n dG = 0 for every solid s     (2.46)
+///   (1/mu) G_S f + U = u on the solids,   e.int f dGamma = e.F for every free direction e of U,   int_s f.n dGamma = 0 for every solid s     (2.46)
 ///
 /// The last condition makes f unique, because f = n on one solid produces no velocity. U is a combination of the free directions e. With three
 /// periods, all directions are free because the mean velocity follows from the pressure gradient. At a single plate with unbounded fluid on its other
@@ -80,10 +80,11 @@ class Solids {
 
   std::vector<Vec3> forces(const Net& f) const;  ///< returns the integral of the force density f over each solid
 
-  /// Returns the power int f.V dG of a force density f, with the prescribed velocities V of the solids.
+  /// Returns the power int f.V dGamma of a force density f, with the prescribed velocities V of the solids.
   double power(const Net& f) const { return f.cwiseProduct(areas_.asDiagonal() * velocities_).sum(); }
 
-  /// Returns int N_A phi dG for every control point A, where phi is the given function. The inner product with a force density f is int phi f dG.
+  /// Returns int N_A phi dGamma for every control point A, where phi is the given function. The inner product with a force density f is
+  /// int phi f dGamma.
   Eigen::VectorXd moments(const std::function<double(const Vec3& x)>& function) const;
 
   const Net& sites() const { return sites_; }            ///< collocation points
@@ -110,18 +111,18 @@ class Solids {
   std::vector<int> own_;
   std::array<Vec3, 2> across_;            // lowest and highest coordinates of the solids, in the axes of the cell
   std::array<Vec3, 2> reached_;           // lowest and highest coordinates, in the axes of the cell, for which `layer_` is set up
-  std::unique_ptr<stokes::Layer> layer_;  // at points off the solids
+  std::unique_ptr<stokes::Layer> layer_;  // single layer at points off the solids
   Net sites_, velocities_;
-  Eigen::VectorXd areas_;   // int N_A dG
+  Eigen::VectorXd areas_;   // int N_A dGamma
   std::vector<int> first_;  // index of the first collocation point of each solid; last entry: number of all collocation points
-  Net normals_;                        // at the collocation points
-  Net flux_;                           // int N_A n dG
+  Net normals_;                        // unit normals at the collocation points
+  Net flux_;                           // int N_A n dGamma
   std::vector<Rod> rods_;
   std::optional<PlateFactors> plates_;  // inverse of the operator by Fourier series; set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
                                         // each plate
-  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced; those of the current
-                                        // `layer_` are not included
+  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced, without the evaluations
+                                        // of the current `layer_`
 };
 
 }  // namespace tanktread::coupling

@@ -39,8 +39,8 @@ struct TubeParameters {
 /// Response of the wall and the pressure drop to a load f and a velocity v on the particle, both given by control values. The response is linear in
 /// (f, v):
 ///
-///   wall      (1/mu) G_W f^D - dp c = -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dG            at the wall      (2.6)
-///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dG                                                           (2.7)
+///   wall      (1/mu) G_W f^D - dp c = -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dGamma        at the wall      (2.6)
+///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dGamma                                                       (2.7)
 ///   response  u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
 ///
 /// G_W and G_C are the single layers of the wall and of the particle divided by 8 pi, and c is 1/mu times the integral over the inlet (2.13). f^D is
@@ -88,7 +88,7 @@ class Tube {
     Net velocity;       ///< velocity u (2.5) that wall and pressure drop cause at the particle's collocation points, shape (N, 3)
     Net wall_traction;  ///< disturbance f^D of the traction on the wall, control values
     double pressure_drop = 0;  ///< disturbance dp of the pressure drop
-    Net load, moves;  ///< load f and velocity v of the particle; set in a periodic duct only
+    Net load, moves;  ///< load f and velocity v of the particle that cause this response; set only in a periodic duct
   };
 
   /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `pressure_correction`: collocation-error correction of dp.
@@ -106,7 +106,7 @@ class Tube {
   Net frozen_response(const Net& f, const Net& v = {});
 
   /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
-  Net particle_on_wall(const Net& f, const Net& v = {});    ///< -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dG
+  Net particle_on_wall(const Net& f, const Net& v = {});    ///< -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dGamma
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity due to the particle's images in a periodic duct
@@ -127,14 +127,14 @@ class Tube {
   /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
   struct Checks {
     double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
-    double force = 0;         ///< unbalanced axial force of the disturbance: dp times section area, minus axial forces on wall and particle. It is
-                              ///< divided by the product of section area, radius and pressure gradient of the empty duct
+    double force = 0;         ///< unbalanced axial force of the disturbance: A dp minus the axial forces on wall and particle, divided by the product
+                              ///< of A, the radius and the pressure gradient of the empty duct, where A is the area of the cross-section
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
     double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops that would make `flux` or `force` zero
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
-  /// Discretisation error of the response to a load f. `velocity`: int N_A u dG over the wall, with u the velocity at Gauss points between the
+  /// Discretisation error of the response to a load f. `velocity`: int N_A u dGamma over the wall, with u the velocity at Gauss points between the
   /// collocation points. `flow`: flow rate of the disturbance through the inlet. Both vanish for the exact response.
   struct Leak {
     Net velocity;

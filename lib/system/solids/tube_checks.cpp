@@ -17,8 +17,8 @@ constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // check_sharpness: f
                                                            // integrals over the wall, because pressures are large. sharpest: upper limit of
                                                            // this product
 
-/// Adds points of a section to `points`: points on straight lines from the centroid to the outline, if they are inside the outline. `place`: maps
-/// points of the section into space.
+/// Adds points of a cross-section to `points`: points on straight lines from the centroid to the outline, if they are inside the outline. `place`:
+/// maps points of the cross-section into space.
 template <class Place>
 void add_points_of_cap(const surface::Outline& outline, const Place& place, std::vector<Vec3>& points) {
   const surface::Vec2 centre = outline.centroid();

@@ -15,9 +15,9 @@
 
 namespace tanktread::coupling {
 
-/// The surface of all particles in a tube, in the frame of the wall: what it causes at the wall, the weights with which its load and velocity enter
-/// the pressure drop (2.7), and the frozen operators of the Jacobian. set_shape() sets all members that depend on the shape, except those of
-/// `frozen`, which freeze() sets. Calls are collective.
+/// The surface of all particles in a tube, in the frame of the wall: the velocity that it causes at the wall, the weights of its load and velocity in
+/// the pressure drop (2.7), and the frozen operators of the Jacobian. set_shape() sets all members that depend on the shape, except `frozen`, which
+/// freeze() sets. Calls are collective.
 struct Tube::ParticleData {
   ParticleData(const spline::Space& space, const TubeParameters& parameters, const Wall& wall, Phases& phases);
 
@@ -48,7 +48,7 @@ struct Tube::ParticleData {
   std::vector<int> own;  ///< rank-owned points
   Ranks ranks;
   surface::Geometry geometry;
-  ParticleSources sources;            ///< shape in the wall's frame
+  ParticleSources sources;            ///< the particle as a source of flow, with its shape in the wall's frame
   membrane::DirectSolver from_sites;  ///< factored collocation matrix R, to compute control values from values at the sites
   bool periodic;                      ///< whether the duct is periodic
 

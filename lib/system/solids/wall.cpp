@@ -269,8 +269,8 @@ Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
   return net;
 }
 
-/// Returns int N_A field dG over the wall for every control point A. Along the wall, the map s = 3 q^2 - 2 q^3 moves the Gauss points q towards both
-/// ends of each element, because the inlet integral (2.13) is steep at the rim of the inlet.
+/// Returns int N_A field dGamma over the wall for every control point A. Along the wall, the map s = 3 q^2 - 2 q^3 moves the Gauss points q towards
+/// both ends of each element, because the inlet integral (2.13) is steep at the rim of the inlet.
 Net Wall::weights(const std::function<Vec3(const surface::Point&)>& field) const {
   constexpr int along = 16, around = 6;
   const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);

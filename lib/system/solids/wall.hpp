@@ -69,7 +69,7 @@ struct WallSolver {
 /// combines WallPatches and data recycled from earlier solves (2.24).
 ///
 /// A periodic wall is represented by one period, with the kernels of one period and no ends. Tractions f are periodic, with one row of control values
-/// per site. A traction q n of constant pressure q produces no velocity. Therefore the condition int f.n dG = 0 is added to A.
+/// per site. A traction q n of constant pressure q produces no velocity. Therefore the condition int f.n dGamma = 0 is added to A.
 class Wall {
  public:
   /// Assembles and factors the operator. Collective. `phases`: if given, records the time of communication between ranks, also in `apply`; must
@@ -103,7 +103,7 @@ class Wall {
   void from_space(stokes::Rows<Real>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
 
   /// Returns A f = points().collocated(u), where u is the velocity of the single layer at the targets x_i:
-  /// u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In a periodic wall, A includes the condition int f.n dG = 0.
+  /// u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dGamma f_B. In a periodic wall, A includes the condition int f.n dGamma = 0.
   Net apply(const Net& f) const;
   Net solve(const Net& rhs) const;  ///< returns A^-1 rhs
   void forget_recycled() const;     ///< discards the data that the preconditioner keeps from earlier solves
@@ -115,10 +115,10 @@ class Wall {
   const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet integral c (2.13); 0 for a periodic wall
   const Net& pumped() const { return pumped_; }              ///< wall traction A^-1 c (2.13) in the open, empty tube per unit pressure drop
 
-  /// Returns weights int N_A c dG, one row per control point A, with c = flow_of_forces(x). Their inner product with a traction on the wall is mu
+  /// Returns weights int N_A c dGamma, one row per control point A, with c = flow_of_forces(x). Their inner product with a traction on the wall is mu
   /// times the flow rate that the traction causes.
   Net flow_weights() const;
-  /// Returns weights int N_A e1 dG, one row per control point A. Their inner product with a traction on the wall is its axial force.
+  /// Returns weights int N_A e1 dGamma, one row per control point A. Their inner product with a traction on the wall is its axial force.
   Net force_weights() const;
 
   /// Returns mu times the flow rate along the duct due to a unit force, one row per point of `at` and one column per direction of the force. If the
@@ -167,7 +167,7 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net inlet_column_, pumped_;
-  Net pressure_, flux_;  // periodic wall only. pressure_: w n at the sites, the traction of a constant pressure w. flux_: int N_A n dG
+  Net pressure_, flux_;  // periodic wall only. pressure_: traction of a uniform pressure at the sites. flux_: int N_A n dGamma
   std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
   DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;

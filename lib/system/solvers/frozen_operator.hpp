@@ -14,9 +14,9 @@ namespace tanktread::coupling {
 
 /// Rows of a dense operator whose 3 x 3 blocks are symmetric, such as the Stokeslet and the stresslet in free space. Of other blocks, such as those
 /// with images in a wall, only the symmetric part is kept. Each block has six entries, each rounded to 16 bits (the upper half of a float, relative
-/// error 2^-9). The rounding has no visible effect, because the quasi-Newton iteration omits (dA/dx) f and
-/// therefore reduces its error only by a factor of about ten per iteration, even without rounding. Vectors are in double precision. With float
-/// vectors, runs on different numbers of ranks would differ by 1e-10 instead of 1e-16, because each iteration of GMRES enlarges the differences.
+/// error 2^-9). The rounding hardly affects the convergence of the quasi-Newton iteration. This iteration omits (dA/dx) f, and therefore reduces its
+/// error only by a factor of about ten per iteration, even without rounding. Vectors are in double precision. With float vectors, runs on different
+/// numbers of ranks would differ by 1e-10 instead of 1e-16, because each iteration of GMRES enlarges the differences.
 class FrozenOperator {
  public:
   static constexpr double bytes_a_pair = 12;  ///< bytes per pair of control points

@@ -18,13 +18,13 @@ namespace tanktread::coupling {
 
 /// The single layer A of (4.2) by the trapezoidal rule at the collocation sites x_B, corrected for control points near the target:
 ///
-///   (A f)_i = sum_B G(x_B, x_i) w_B (R f)_B / 8 pi  +  sum over near C of K_iC f_C,   w_B = int N_B dG0                         (4.11)
+///   (A f)_i = sum_B G(x_B, x_i) w_B (R f)_B / 8 pi  +  sum over near C of K_iC f_C,   w_B = int N_B dGamma_0                    (4.11)
 ///   K_iC = A_iC - sum_B G(x_B, x_i) w_B R_BC / 8 pi
 ///
-/// G is the Stokeslet, R the collocation matrix, N_B a basis function and dG0 the unstressed area element. In the sums over B, the node at the target
-/// itself is omitted. Only the near blocks K_iC are stored, about thirty per target. The first sum is evaluated in every product, on large surfaces
-/// by a treecode. Double precision is used, because rounding errors of single precision would grow from step to step: runs with and without symmetry,
-/// which agree to 1e-8 in the deformation D, would then differ by more.
+/// G is the Stokeslet, R the collocation matrix, N_B a basis function and dGamma_0 the unstressed area element. In the sums over B, the node at the
+/// target itself is omitted. Only the near blocks K_iC are stored, about thirty per target. The first sum is evaluated in every product, on large
+/// surfaces by a treecode. Double precision is used, because rounding errors of single precision would grow from step to step: runs with and without
+/// symmetry, which agree to 1e-8 in the deformation D, would then differ by more.
 ///
 /// The error of this operator is the error of the trapezoidal rule for nodes a few elements away. This error slows the quasi-Newton iteration
 /// slightly and does not affect accuracy.

@@ -16,8 +16,8 @@ namespace tanktread::coupling {
 /// each particle, the Lagrange multiplier pi of the constraint (2.8). The equations are
 ///
 ///   B v + R^-1 [(1/mu) G_W f^D - dp c] + pi n = r_v,   B = 1 - (1 - lambda) R^-1 H        at the particle                (2.5)
-///   (1/mu) G_W f^D - dp c - (1 - lambda) (1 / 8 pi) int T v n dG = r_W                    at the wall                    (2.6)
-///   dp + (1/Q) (1 - lambda) int f_inf.v dG = r_p                                                                         (2.7)
+///   (1/mu) G_W f^D - dp c - (1 - lambda) (1 / 8 pi) int T v n dGamma = r_W                at the wall                    (2.6)
+///   dp + (1/Q) (1 - lambda) int f_inf.v dGamma = r_p                                                                     (2.7)
 ///   b.v / (b.n) = 0                                                                       for each particle              (2.8)
 ///
 /// A load that depends on v, such as the load of a body with prescribed motion, contributes to (2.5), (2.6) and (2.7) like f. The terms of such a

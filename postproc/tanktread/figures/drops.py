@@ -116,7 +116,7 @@ def measures(bases, c):
 
 
 class Energy:
-    """Energy of the membrane of a run, as a function of the result of measures()."""
+    """Energy of a membrane with the parameters of a run, as a function of the four integrals of measures()."""
 
     def __init__(self, run):
         expect((run.value("Membrane/law"), run.value("Membrane/bending reference")) == ("surface tension", "flat"),

@@ -32,7 +32,8 @@ def field_of(shots, field):
 
 
 def colour_bar(figure, norm, colours, **properties):
-    """Draws a horizontal colour bar. The text of a common offset or factor of its ticks would overlap the label."""
+    """Draws a horizontal colour bar. The tick labels have no common offset or factor, because its text would overlap
+    the label of the colour bar."""
     longest = max(len(TICKS(place)) for place in MaxNLocator(4).tick_values(norm.vmin, norm.vmax))
     figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), orientation="horizontal", format=TICKS,
                     ticks=MaxNLocator(2) if longest > 4 else None, **properties)

@@ -102,8 +102,8 @@ class OutlineData(Datum):
                       doc="The number of residuals: one per point, and one of a scale with an error.")
 
     def start(self, prediction):
-        """Returns start values (2,) or (3,): the shift that moves the middle of the data's extents to that of the
-        prediction, and 0 for the logarithm of the scale factor."""
+        """Returns start values (2,) or (3,): the shift that moves the centre of the bounding box of the data to the
+        centre of the bounding box of the prediction, and 0 for the logarithm of the scale factor if it is fitted."""
         own, middle = ((points.min(0) + points.max(0)) / 2 for points in (self.points, prediction.points))
         return numpy.append(middle - self.scale * own, numpy.zeros(self.places - 2))
 

@@ -13,7 +13,8 @@ namespace {
 const Law soft = SurfaceTension{0};  // no elastic energy in addition to bending
 const Bending flat{1.5, false}, curved{1.5, true}, spontaneous{1.5, false, -0.7};
 
-/// Steps of a random net must be small compared with the elements, because curvature contains second derivatives.
+/// Returns a random displacement that is small compared with the elements. Larger displacements would change the curvature too much, because the
+/// curvature contains second derivatives.
 Net small_net(Eigen::Index n, unsigned seed) { return 0.1 * random_net(n, seed); }
 
 TEST(Bending, LoadIsTheGradientOfTheEnergyAndTangentThatOfTheLoad) {

@@ -46,7 +46,7 @@ TEST(MaxwellElement, GivesRefinementTheLogarithmOfItsStrainInSpace) {
   }
 }
 
-/// At small strains its law has the energy E = int (G |dev e|^2 + K/2 (tr e)^2) dG, like every law with the same moduli.
+/// At small strains its law has the energy E = int (G |dev e|^2 + K/2 (tr e)^2) dGamma, like every law with the same moduli.
 TEST(MaxwellElement, IsAnElasticMembraneForShortTimes) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);

@@ -22,7 +22,7 @@ struct Sphere {
     for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) all.push_back(e);
   }
 
-  /// Returns C v at the net x.
+  /// Returns the viscous load C v (3.10) in the shape x.
   Net load(const SurfaceViscosity& viscosity, const Net& x, const Net& v) const {
     const Membrane membrane(space, net, Materials{{{NeoHookean{1}, {}, viscosity}}, {}});
     ViscousLoad viscous(membrane);

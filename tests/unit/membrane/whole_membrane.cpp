@@ -82,7 +82,7 @@ TEST(WholeMembrane, TangentIsTheDerivativeOfTheLoad) {
   EXPECT_LT((hu - (of.load(of.x + h * of.slant) - of.load(of.x - h * of.slant)) / (2 * h)).norm(), 1e-8 * hu.norm());
 }
 
-/// If the stress-free area difference is that of a sphere, the load is that of a spontaneous curvature and a tension.
+/// If the stress-free area difference is the area difference of a sphere, the load equals the load of a spontaneous curvature and a tension.
 TEST(WholeMembrane, AreaDifferenceActsLikeASpontaneousCurvatureAndATension) {
   const Whole of(0, 3);
   const double stiffness = 3 * std::numbers::pi / surface::measures(of.space, of.unstressed).area;

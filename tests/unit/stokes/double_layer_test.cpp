@@ -58,7 +58,7 @@ TEST(DoubleLayer, AssembledRowsTimesAVelocityAreTheSum) {
   }
 }
 
-// The integrand vanishes for a translation. For a rotation, int T_ijk n_k (omega x r)_j dG = 0 inside and on the surface (2.3).
+// The integrand vanishes for a translation. For a rotation, int T_ijk n_k (omega x r)_j dGamma = 0 inside and on the surface (2.3).
 TEST(DoubleLayer, VanishesForRigidBodyMotions) {
   Net translation = Net::Zero(scene().space.n_points, 3), rotation = translation;
   translation.rowwise() = Eigen::RowVector3d(1, -2, 3);
@@ -89,7 +89,7 @@ struct Film {
   }
 };
 
-// int T_ijk n_k (U + omega x r)_j dG = 0 outside (2.3), at any distance and for any velocity of the surface that contains the target.
+// int T_ijk n_k (U + omega x r)_j dGamma = 0 outside (2.3), at any distance and for any velocity of the surface that contains the target.
 TEST(DoubleLayer, VanishesAcrossAFilmForRigidBodyMotionsOfTheOtherSurface) {
   for (const double gap : {0.1, 1e-3}) {
     const Film film(gap);

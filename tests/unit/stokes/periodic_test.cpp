@@ -114,7 +114,7 @@ TEST(PeriodicKernel, CellsOfTheSameLatticeAreEqual) {
   EXPECT_LT((two - stokeslet_at({Mat3::Identity(), 3}, r)).norm(), 1e-10);
 }
 
-/// Returns int T_ijk n_k dG over a sphere of radius a about the origin, for the target x0; i is the row.
+/// Returns int T_ijk n_k dGamma over a sphere of radius a about the origin, for the target x0; i is the row.
 Mat3 over_sphere(const PeriodicCell& cell, const Vec3& x0, double a) {
   constexpr int n = 24;
   const auto& rule = quadrature::gauss(n);

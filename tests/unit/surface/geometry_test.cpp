@@ -109,7 +109,7 @@ TEST(Geometry, VolumeGradientObeysTranslationAndScaling) {
   const CubeMesh cube(4);
   const Net net = cube.crumpled(0.1);
   const Net b = Geometry(cube.space).volume_gradient(net);
-  EXPECT_LT(b.colwise().sum().norm(), 1e-13);                                  // closed surface: int n dG = 0
+  EXPECT_LT(b.colwise().sum().norm(), 1e-13);                                  // closed surface: int n dGamma = 0
   EXPECT_NEAR(b.cwiseProduct(net).sum(), 3 * volume(cube.space, net), 1e-12);  // V is homogeneous of degree three
   Vec3 torque = Vec3::Zero();
   for (int a = 0; a < net.rows(); ++a) torque += Vec3(net.row(a)).cross(Vec3(b.row(a)));

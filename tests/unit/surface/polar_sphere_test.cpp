@@ -56,7 +56,7 @@ TEST(PolarSphere, NormalOfThePapersSpheroidIsBetterThanThePapers) {
 }
 
 TEST(PolarSphere, ErrorOfTheTransformAtThePolesIsProportionalToTheAngleOfAPiece) {
-  // On the unit sphere with 146 points, the error that the transform adds to that of the plain mesh halves with each subdivision.
+  // On the unit sphere with 146 control points, the transform adds an error to the error of the plain mesh. Each subdivision halves the added error.
   const double plain = normal_error({16, 8, PoleRule::plain}, Vec3::Ones());
   double before = 0;
   for (int n = 0; n <= 4; ++n) {
@@ -78,8 +78,8 @@ TEST(PolarSphere, IsClosedWithOutwardNormals) {
     const double exact = 4 * std::numbers::pi / 3;
     EXPECT_NEAR(volume(space, net), exact, 5e-6 * exact);
     const Net flux = Geometry(space).volume_gradient(net);
-    EXPECT_LT(flux.colwise().sum().norm(), 1e-13);                             // int n dG = 0
-    EXPECT_NEAR(flux.cwiseProduct(net).sum(), 3 * volume(space, net), 1e-12);  // int x.n dG = 3 V
+    EXPECT_LT(flux.colwise().sum().norm(), 1e-13);                             // int n dGamma = 0
+    EXPECT_NEAR(flux.cwiseProduct(net).sum(), 3 * volume(space, net), 1e-12);  // int x.n dGamma = 3 V
     for (std::size_t e = 0; e < space.elements.size(); ++e) {
       const Jet at = jet(ElementPoints(space, net, static_cast<int>(e)).patch(), 0.3, 0.6);
       EXPECT_GT(at.s.cross(at.t).normalized().dot(at.x), 0.98);
@@ -105,13 +105,13 @@ TEST(PolarSphere, ConvergesOnUnequalMeshes) {
   }
 }
 
-// A long slide of closely spaced rows along the meridian would fold the surface, and its area would be 2 to 10 % too large.
+// If closely spaced rows of control points moved far along the meridian, the surface would be folded, and its area would be 2 to 10 % too large.
 TEST(PolarSphere, IsNotFoldedWhereRowsAreCloserThanThePointsOfARow) {
   for (const auto& [m, r] : {std::array{16, 32}, {16, 48}, {24, 96}})
     for (const PoleRule rule : {PoleRule::c1, PoleRule::bezier_transform}) {
       const spline::PolarMesh mesh{m, r, rule};
       const spline::Space space = spline::space(mesh);
-      EXPECT_NEAR(measures(space, unit_sphere(mesh, space, 2)).area / (4 * std::numbers::pi), 1, 2e-5) << m << " " << r;  // for 16 points per row
+      EXPECT_NEAR(measures(space, unit_sphere(mesh, space, 2)).area / (4 * std::numbers::pi), 1, 2e-5) << m << " " << r;  // error for m = 16
     }
 }
 

@@ -49,7 +49,7 @@ TEST(Quality, AFoldedElementIsReportedWithItsPosition) {
   const CubeMesh cube(6);
   const BezierMap map(cube.space);
   Net net = cube.sphere();
-  // A control point moved past its neighbour makes a fold between them.
+  // If a control point is moved past its neighbour, the surface has a fold between them.
   const spline::Element& element = cube.space.elements[14];
   const Net before = net;
   net.row(element.points[5]) += 3 * (net.row(element.points[6]) - net.row(element.points[5]));

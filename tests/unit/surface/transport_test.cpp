@@ -12,7 +12,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Returns the control values of U + W x (x - centre), which are exact.
+/// Returns the control values of the rigid motion U + W x (x - centre). The spline represents this field exactly.
 Net rigid(const Net& x, const Vec3& u, const Vec3& w, const Vec3& centre) {
   Net v(x.rows(), 3);
   for (Eigen::Index a = 0; a < x.rows(); ++a) v.row(a) = (u + w.cross(x.row(a).transpose() - centre)).transpose();
@@ -36,7 +36,8 @@ TEST(Transport, TheVelocityOfTheCentroidIsItsDerivative) {
   EXPECT_LT((centroid_velocity(geometry.bezier(), x, v) - difference).norm(), 1e-8);  // e^2, and round-off divided by e
 }
 
-/// The material of a sphere that has become an ellipsoid and circulates in the plane x1 x3: a cos, b sin of an angle that grows at this rate.
+/// An ellipsoid, deformed from a sphere, whose material circulates parallel to the plane x1 x3. With the semi-axes a and c along x1 and x3, a
+/// material point moves along (x1, x3) = (a sin q, c cos q) times a constant, and its angle q grows at the rate `rate`.
 struct TreadingEllipsoid {
   CubeMesh cube{6};
   BezierMap map{cube.space};

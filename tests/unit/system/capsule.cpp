@@ -64,8 +64,8 @@ TEST(Capsule, NoFluxThroughTheSurface) {
   }
 }
 
-// The frozen operator is that of another shape, so that it alone gives a flux. An implicit step would then inflate the capsule, and the tension of
-// the membrane would make it grow.
+// The operator is frozen in another shape. Without the volume projection, it would cause a flux through the surface. An implicit step would then
+// inflate the capsule, and the tension of the membrane would make it grow.
 TEST(Capsule, TheJacobianGivesNoFluxThroughTheSurfaceFarFromTheFrozenShape) {
   for (const double ratio : {1.0, 5.0}) {
     Fixture f;
@@ -234,8 +234,9 @@ TEST(Capsule, RigidMotionDoesNotDependOnTheViscosityInside) {
   }
 }
 
-// A unit sphere under the small strain E. The strain of the membrane is P E P, P = I - n n. Its energy is G_s int e:e + (tr e)^2 dG = 4 pi G_s 3/5
-// E:E, because the means of the two terms over the sphere are 7/15 and 2/15. The stresslet is the derivative of the energy with respect to E.
+// A unit sphere under the small strain E. The strain of the membrane is P E P, P = I - n n. Its energy is
+// G_s int e:e + (tr e)^2 dGamma = 4 pi G_s 3/5 E:E, because the means of the two terms over the sphere are 7/15 and 2/15. The stresslet is the
+// derivative of the energy with respect to E.
 TEST(Capsule, StressletOfASmallStrainIsThatOfTheMembrane) {
   Fixture f;
   Capsule capsule = f.capsule();

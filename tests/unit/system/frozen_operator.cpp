@@ -27,8 +27,8 @@ TEST(FrozenOperator, MultipliesByItsRowsToTheRoundingOfItsEntries) {
   const Eigen::VectorXd exact = full.cast<double>() * Eigen::Map<const Eigen::VectorXd>(f.data(), f.size());
   for (const int i : targets)
     for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(u(i, c), exact[3 * i + c], 3 * n * 2 * std::ldexp(1.0, -9));  // |entry| <= 2, |f| <= 1, rounding error of half a unit in the ninth
-                                                                                // bit each
+      EXPECT_NEAR(u(i, c), exact[3 * i + c], 3 * n * 2 * std::ldexp(1.0, -9));  // 3 n products with |entry| <= 2, |f| <= 1, and a relative rounding
+                                                                                // error of 2^-9
   EXPECT_EQ(u(1, 0), 7);  // rows of other targets are unchanged
 }
 

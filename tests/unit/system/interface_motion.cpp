@@ -87,8 +87,8 @@ TEST(InterfaceMotion, StressletDoesNotDependOnTheMotionOfTheMesh) {
 }
 
 // If control points slide along an interface, its normals turn at these points, and with them the pressure jump across it. A pressure causes no flow
-// at any shape, but the frozen layer, that of the shape before, gives the turned pressure a velocity. With it, the error of the Jacobian would be 20
-// times the true change, which is due only to the mesh of the sphere.
+// at any shape, but the layer that is frozen at the earlier shape computes a velocity from the turned pressure. With this velocity, the error of the
+// Jacobian would be 20 times the true change, which is due only to the mesh of the sphere.
 TEST(InterfaceMotion, TheJacobianOfPointsThatSlideContainsNoFlowByPressure) {
   Drop drop;
   drop.flow.type = "quiescent";

@@ -22,7 +22,8 @@ struct Ball : SphereInFlow {
     const spline::Block all = spline::blocks(std::vector<const spline::Space*>{&space}).front();
     return label_rotation(space, all, unstressed, x, axis, collocation);
   }
-  /// Returns the rate of change of the energy of a membrane of this shape along D x, divided by its maximum over all displacements of this norm.
+  /// Returns the rate of change of the energy of a membrane in the shape x along the displacement rotation(sphere, x, axis), divided by the largest
+  /// rate of change along any displacement of equal norm.
   double gain(const Net& x, int axis) const {
     const membrane::Membrane membrane(space, sphere, membrane::NeoHookean{1});
     std::vector<int> elements(space.elements.size());

@@ -15,7 +15,7 @@ TEST(Secants, AreEmptyAtFirst) { EXPECT_EQ(Secants()(net(1)).norm(), 0); }
 TEST(Secants, ReproduceStoredPairsAtAnyScale) {
   Secants secants;
   for (unsigned k : {1u, 2u, 3u}) secants.add(1e-3 * net(k), 1e-3 * net(10 + k), 3);
-  for (unsigned k : {1u, 2u, 3u})  // twice the regularisation of the fit, 1e-2
+  for (unsigned k : {1u, 2u, 3u})  // tolerance: twice the regularisation 1e-2 of the least-squares fit
     EXPECT_LT((secants(net(k)) - net(10 + k)).norm(), 2e-2 * net(10 + k).norm());
 }
 
@@ -38,7 +38,7 @@ TEST(Secants, KeepTheLatestPairs) {
 TEST(Secants, StayBoundedForParallelCorrections) {
   Secants secants;
   secants.add(net(1), net(2), 2);
-  secants.add(net(1), net(3), 2);  // an equal correction with another error: the result is the mean of both
+  secants.add(net(1), net(3), 2);  // the same correction with another error: the result is the mean of both errors
   EXPECT_LT((secants(net(1)) - 0.5 * (net(2) + net(3))).norm(), 2e-2 * net(2).norm());
 }
 

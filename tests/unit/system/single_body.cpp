@@ -112,7 +112,7 @@ TEST(SingleBody, IsIndependentOfAUniformPressure) {
   const Fixture s = spheroid();
   const Net f = s.density([](const Vec3& x) -> Vec3 { return Vec3(1, 0, 0) + Vec3(0, 0, 1).cross(x); });
   const Net b = surface::Geometry(s.space).volume_gradient(s.rest);
-  EXPECT_LT(std::abs(b.cwiseProduct(f).sum()), 1e-10 * b.norm() * f.norm());  // the condition int f.n dG = 0 is a choice
+  EXPECT_LT(std::abs(b.cwiseProduct(f).sum()), 1e-10 * b.norm() * f.norm());  // the condition int f.n dGamma = 0 is a choice
 }
 
 TEST(SingleBody, AbsorbsANetFluxIntoThePressure) {
