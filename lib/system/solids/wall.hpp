@@ -80,7 +80,8 @@ class Wall {
   bool iterates() const { return patches_of_rows_.has_value(); }
 
   /// Returns whether the constructor would construct the same operator from these arguments.
-  bool is_for(const surface::TubeWall& wall, const quadrature::Options& quadrature, const surface::Symmetry& symmetry, const WallSolver& solver) const;
+  bool is_for(const surface::TubeWall& wall, const quadrature::Options& quadrature, const surface::Symmetry& symmetry,
+              const WallSolver& solver) const;
 
   const surface::TubeWall& surface() const { return surface_; }
   const surface::Symmetry& symmetry() const { return symmetry_; }
@@ -174,7 +175,8 @@ class Wall {
   std::unique_ptr<Krylov> krylov_;
 };
 
-/// Walls that several systems of one run share. A branch of steady shapes, for example, has one system per value of its parameter, but often one wall.
+/// Walls that several systems of one run share. A branch of steady shapes, for example, has one system per value of its parameter, but often one
+/// wall.
 class Walls {
  public:
   /// Returns the wall for these arguments of the constructor of Wall: the wall of another system if there is one, otherwise a new one. This object
