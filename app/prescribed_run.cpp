@@ -14,6 +14,7 @@
 #include "scene/series/series.hpp"
 #include "scene/tube.hpp"
 #include "surface/geometry.hpp"
+#include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
 
@@ -81,7 +82,7 @@ int resist(const Scene& whole, const RunRequest& request) {
   const RigidSolution solution = rigid_solution(scene, body, tractions, run.phases);
   stop_where_told();
   const double seconds = run.seconds();
-  const stokes::Evaluations kernel = run.ranks.of_all(tractions.kernel_evaluations());
+  const stokes::Evaluations kernel = run.ranks.of_all(tractions.kernel_evaluations() + scene.walls->evaluations());
   Columns row;
   ProgressRow now{.wall_seconds = seconds};
   now.counts.solver_iterations = solution.iterations;

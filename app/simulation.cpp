@@ -22,6 +22,7 @@
 #include "scene/plane_wall.hpp"
 #include "scene/tube.hpp"
 #include "system/agreement.hpp"
+#include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
 
@@ -104,7 +105,7 @@ class Run {
     earlier_wall_seconds_ = totals_.wall_seconds;
     warnings_.remember(totals_.warnings);
     earlier_seconds_ = totals_.seconds;
-    const stokes::Evaluations again = ranks_.of_all(particle_->kernel_evaluations()), before = totals_.kernel;
+    const stokes::Evaluations again = kernel_evaluations(), before = totals_.kernel;
     earlier_kernel_ = {before.far - again.far, before.near - again.near, before.self - again.self};
   }
 
@@ -211,11 +212,13 @@ class Run {
   }
 
   /// Collects the totals of the run after a finished step, for a checkpoint: counts of operations, phase angle, contacts and warnings.
+  stokes::Evaluations kernel_evaluations() const { return ranks_.of_all(particle_->kernel_evaluations() + scene_.walls->evaluations()); }
+
   void collect_totals() {
     totals_.counts = particle_->counts();
     totals_.phase_angle = particle_->phase_angle();
     totals_.contacts = particle_->contacts();
-    totals_.kernel = earlier_kernel_ + ranks_.of_all(particle_->kernel_evaluations());
+    totals_.kernel = earlier_kernel_ + kernel_evaluations();
     totals_.warnings = warnings_.memory();
 #ifndef NDEBUG
     if (!output::equal_on_all_ranks(state_)) fail("the states on the ranks are not identical");

@@ -7,6 +7,7 @@
 #include "base/formatted.hpp"
 #include "record/results.hpp"
 #include "scene/particles/particle_system.hpp"
+#include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
 
@@ -32,11 +33,12 @@ Cost measured(const Scene& scene) {
   dynamics.at(0, 0);
   Cost cost{};
   cost.setup = ranks.seconds_since(start);
-  const stokes::Evaluations before = particles->kernel_evaluations();
+  const auto evaluations = [&] { return ranks.of_all(particles->kernel_evaluations() + scene.walls->evaluations()).total(); };
+  const auto before = evaluations();
   const auto evaluation = std::chrono::steady_clock::now();
   dynamics.velocity(x);
   cost.seconds = ranks.seconds_since(evaluation);
-  cost.kernel_evaluations = static_cast<double>(ranks.of_all(particles->kernel_evaluations()).total() - ranks.of_all(before).total());
+  cost.kernel_evaluations = static_cast<double>(evaluations() - before);
   cost.elements = static_cast<double>(particles->body().space.elements.size());
   cost.memory = peak_memory(ranks).back().second;
   return cost;

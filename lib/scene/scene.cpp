@@ -12,6 +12,7 @@
 #include "scene/memory.hpp"
 #include "scene/searches.hpp"
 #include "scene/tube.hpp"
+#include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
 
@@ -231,6 +232,7 @@ void Scene::declare(deck::Section& root) {
   idle_keys = root.idle_keys();
   if (root.documenting()) return;
   complete_walls(*this);
+  walls = std::make_shared<coupling::SharedWalls>();
   take_posts(*this);
 }
 

@@ -47,7 +47,7 @@
 namespace tanktread {
 
 namespace coupling {
-class Walls;
+struct SharedWalls;
 }
 namespace deck {
 class Units;
@@ -140,7 +140,7 @@ struct SharedOptions {
   accuracy::Options accuracy;
   std::vector<SeriesParts::Chosen> series;  ///< Output/series
   bool volume_given = false;  ///< true if the deck has the section Volume
-  std::shared_ptr<coupling::Walls> walls;  ///< walls of ducts that the systems of one search share; null in other runs
+  std::shared_ptr<coupling::SharedWalls> walls;  ///< walls, plates and posts, which the systems of one search share
   std::vector<std::pair<std::string, std::string>> files;  ///< files that the deck names: path, and name of the copy that the run keeps
 
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra

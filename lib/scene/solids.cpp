@@ -8,6 +8,7 @@
 #include "quadrature/gauss.hpp"
 #include "scene/posts.hpp"
 #include "stokes/flow/ambient_flow.hpp"
+#include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
 
@@ -58,8 +59,9 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
     all.push_back({surface::cylinder(center, period, post.radius, post.around, elements_along(post, period)), Vec3::Zero(),
                    coupling::Rod{center, Vec3::Unit(post.axis), post.radius}});
   }
+  const Solids::Parameters parameters{cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature};
   return coupling::SolidScene{
-      std::make_shared<Solids>(all, Solids::Parameters{cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature}, phases),
+      scene.walls->solids.of([&](const Solids& one) { return one.is_for(all, parameters); }, [&] { return new Solids(all, parameters, phases); }),
       scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(), pressure_gradient, scene.quadrature};
 }
 

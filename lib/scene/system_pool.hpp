@@ -18,7 +18,7 @@
 #include "scene/series/run_totals.hpp"
 #include "scene/series/surface_fields.hpp"
 #include "scene/steady_system.hpp"
-#include "system/solids/wall.hpp"
+#include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
 
@@ -121,7 +121,7 @@ class SystemPool {
   coupling::OperationCounts counts_;           // operation counts of deleted systems
   stokes::Evaluations kernel_;                 // kernel evaluations of deleted systems on this rank
   std::vector<std::weak_ptr<System>> built_;   // all systems
-  std::shared_ptr<coupling::Walls> walls_ = std::make_shared<coupling::Walls>();  // shared by all systems with the same duct
+  std::shared_ptr<coupling::SharedWalls> walls_ = std::make_shared<coupling::SharedWalls>();  // walls of all systems
   std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // parameters and systems of the branch, last used first
   Net rest_, unstressed_;                      // resting and unstressed shapes of the branch on the mesh of the deck
   std::optional<output::Checkpoint> mesh_;     // mesh of the branch; not set if it is the mesh of the deck

@@ -61,7 +61,7 @@ class ParticleSystem {
   virtual coupling::OperationCounts counts() const = 0;
   /// Returns the phase angle of each particle when the series were last computed.
   virtual std::vector<PhaseAngle> phase_angle() const = 0;
-  virtual stokes::Evaluations kernel_evaluations() const = 0;
+  virtual stokes::Evaluations kernel_evaluations() const = 0;  ///< on this rank, without those of walls, which SharedOptions::walls counts
   /// Returns a row of results: the data of the particles and of `progress`, with the time and the work of the run.
   virtual Columns row(const motion::State& state, ProgressRow progress) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()

@@ -7,6 +7,7 @@
 #include "base/indices.hpp"
 #include "surface/geometry.hpp"
 #include "surface/symmetry.hpp"
+#include "system/solids/shared_walls.hpp"
 
 namespace tanktread::coupling {
 
@@ -23,7 +24,7 @@ stokes::DuctFlow developed_flow(const surface::Channel& channel, double viscosit
 }  // namespace
 
 ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
-                         const WallSolver& solver, std::shared_ptr<Walls> walls)
+                         const WallSolver& solver, std::shared_ptr<SharedWalls> walls)
     : DuctFlow(developed_flow(surface::Channel(options), viscosity, mean_velocity)),
       channel_(std::make_shared<const surface::Channel>(options)),
       surface_(std::make_shared<const surface::TubeWall>(surface::channel_wall(channel_, options.azimuthal_elements))),
@@ -45,7 +46,7 @@ stokes::DuctEnd ChannelFlow::section(double s, int inward) const {
 }
 
 std::shared_ptr<Wall> ChannelFlow::wall(Phases* phases) const {
-  if (!wall_) wall_ = made(phases, surface::Symmetry());
+  if (!wall_) wall_ = shared_wall(walls_.get(), *surface_, quadrature_, phases, surface::Symmetry(), solver_);
   return wall_;
 }
 
@@ -55,13 +56,8 @@ std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry&
   std::vector<surface::Image> images;
   for (const surface::Image& image : particle.images()) images.push_back(surface::image(surface_->space, net, image.signs).value());
   const surface::Symmetry symmetry = images.empty() ? surface::Symmetry() : surface::Symmetry(images, surface_->net);
-  wall_ = made(&phases, symmetry);
+  wall_ = shared_wall(walls_.get(), *surface_, quadrature_, &phases, symmetry, solver_);
   return wall_;
-}
-
-std::shared_ptr<Wall> ChannelFlow::made(Phases* phases, const surface::Symmetry& symmetry) const {
-  if (walls_) return walls_->of(*surface_, quadrature_, phases, symmetry, solver_);
-  return std::make_shared<Wall>(*surface_, quadrature_, phases, symmetry, solver_);
 }
 
 /// Returns the velocity that drives the flow, without the velocity due to the wall traction. In an open channel it is P_I + P_O of (2.30), the

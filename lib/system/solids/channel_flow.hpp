@@ -16,6 +16,8 @@
 
 namespace tanktread::coupling {
 
+struct SharedWalls;
+
 /// Flow through a channel with the flow rate Q. At each end the flow is fully developed, as in a straight duct. The velocity v follows from an
 /// equation of the first kind for the wall traction f:
 ///
@@ -30,9 +32,9 @@ namespace tanktread::coupling {
 /// is the traction of the fluid inside minus the traction of a fictitious fluid outside, whose velocity also vanishes on the wall.
 class ChannelFlow : public stokes::DuctFlow {
  public:
-  /// `walls`: walls of other systems of the run, with which the wall operator is shared; null if there are none.
+  /// `walls`: walls of the run, of which the channel takes its own; null: the channel makes its own wall.
   ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
-              const WallSolver& solver = {}, std::shared_ptr<Walls> walls = {});
+              const WallSolver& solver = {}, std::shared_ptr<SharedWalls> walls = {});
 
   /// Returns the velocities at x, accurate up to the wall. At points outside the channel the values are undefined. The values at the latest points x
   /// are cached. Collective.
@@ -61,7 +63,6 @@ class ChannelFlow : public stokes::DuctFlow {
   std::shared_ptr<Wall> wall(Phases& phases, const surface::Symmetry& particle) const;
 
  private:
-  std::shared_ptr<Wall> made(Phases* phases, const surface::Symmetry& symmetry) const;
   const Wall::EmptyFlow& solved() const;
   Wall::EmptyFlow solution(const Wall& wall) const;
   Net driving_velocity(const Net& x) const;
@@ -75,7 +76,7 @@ class ChannelFlow : public stokes::DuctFlow {
   surface::TubeOptions options_;
   quadrature::Options quadrature_;
   WallSolver solver_;
-  std::shared_ptr<Walls> walls_;
+  std::shared_ptr<SharedWalls> walls_;
   std::vector<stokes::DuctEnd> ends_;
   mutable std::shared_ptr<Wall> wall_;
   mutable std::shared_ptr<const Wall::EmptyFlow> solved_;

@@ -36,13 +36,13 @@ SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space
       particles_(space, scene.solids->viscosity(), scene.quadrature, &scene.solids->cell(), {.across = scene.solids->across()}) {}
 
 void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> own) {
+  Solids& solids = *scene_.solids;
+  solids.reach(x);  // always, because another system may share the solids
   if (same(shape_, x) && same(at_, at) && std::ranges::equal(own, own_)) return;
   shape_ = x, at_ = at;
   own_.assign(own.begin(), own.end());
   particles_.set_shape(x);
   areas_ = particles_.single_layer.moments(particles_.single_layer.weights());
-  Solids& solids = *scene_.solids;
-  solids.reach(x);
   solids_on_particles_ = solids.layer().near(at_, own_);
   on_solids_ = particles_.prepared(solids.sites(), solids.own());
 }

@@ -57,6 +57,14 @@ Solids::Solids(const std::vector<Solid>& solids, const Parameters& parameters, P
   evaluations_ += on_itself.evaluations();
 }
 
+bool Solids::is_for(const std::vector<Solid>& solids, const Parameters& parameters) const {
+  const surface::SolidSurface all = all_of(solids);
+  if (!(parameters == parameters_) || !same(all.net, surface_.net) || solids.size() + 1 != first_.size()) return false;
+  for (std::size_t s = 0; s < solids.size(); ++s)
+    if (solids[s].surface.n_points() != first_[s + 1] - first_[s] || velocities_.row(first_[s]) != solids[s].velocity.transpose()) return false;
+  return true;
+}
+
 /// Computes the inverse of the operator by Fourier series. All solids must be plates with the same grid of points.
 void Solids::factor_plates(stokes::Layer& on_itself, const std::array<int, 2>& grid) {
   const auto [n1, n2] = grid;

@@ -51,10 +51,15 @@ class Solids {
     std::vector<Vec3> free;     ///< unit vectors e along which the uniform velocity U of (2.46) is an unknown
     double viscosity;           ///< viscosity mu of the fluid
     quadrature::Options quadrature;
+
+    bool operator==(const Parameters&) const = default;
   };
 
   /// `solids` need not outlive this object.
   Solids(const std::vector<Solid>& solids, const Parameters& parameters, Phases& phases);
+
+  /// Returns whether the constructor would construct the same operator from these arguments.
+  bool is_for(const std::vector<Solid>& solids, const Parameters& parameters) const;
 
   /// Solution of (2.46): the force density f and the uniform velocity U.
   struct Flow {

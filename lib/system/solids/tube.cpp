@@ -1,6 +1,7 @@
 #include "system/solids/tube.hpp"
 
 #include "system/collocation.hpp"
+#include "system/solids/shared_walls.hpp"
 #include "system/solids/tube_particle.hpp"
 
 namespace tanktread::coupling {
@@ -9,8 +10,7 @@ Tube::Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const sp
            Phases& phases)
     : flow_(std::make_shared<stokes::DuctFlow>(flow)), phases_(phases) {
   const auto clock = phases_.time("wall assembly");
-  wall_ = parameters.walls ? parameters.walls->of(wall, parameters.quadrature, &phases_, surface::Symmetry(), {})
-                           : std::make_shared<Wall>(wall, parameters.quadrature, &phases_);
+  wall_ = shared_wall(parameters.walls.get(), wall, parameters.quadrature, &phases_, surface::Symmetry(), {});
   particle_ = std::make_unique<ParticleData>(particle, parameters, *wall_, phases_);
 }
 

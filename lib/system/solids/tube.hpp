@@ -24,7 +24,7 @@
 namespace tanktread::coupling {
 
 class Wall;
-class Walls;
+struct SharedWalls;
 struct BetweenSites;
 
 struct TubeParameters {
@@ -33,7 +33,7 @@ struct TubeParameters {
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
-  std::shared_ptr<Walls> walls;      ///< walls of other systems of the run, which a straight tube shares; null if there are none
+  std::shared_ptr<SharedWalls> walls;  ///< walls of the run, of which a straight tube takes its own; null: the tube makes its own wall
 };
 
 /// Response of the wall and the pressure drop to a load f and a velocity v on the particle, both given by control values. The response is linear in

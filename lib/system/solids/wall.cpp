@@ -315,24 +315,4 @@ stokes::Evaluations Wall::evaluations() const {
   return on_itself_->evaluations() + layer_.evaluations();
 }
 
-std::shared_ptr<Wall> Walls::of(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases,
-                                const surface::Symmetry& symmetry, const WallSolver& solver) {
-  for (const std::weak_ptr<Wall>& one : known_)
-    if (const std::shared_ptr<Wall> known = one.lock(); known && known->is_for(wall, quadrature, symmetry, solver)) return latest_ = known;
-  std::erase_if(known_, [](const std::weak_ptr<Wall>& one) { return one.expired(); });
-  latest_.reset(new Wall(wall, quadrature, phases, symmetry, solver), [this](Wall* old) {
-    of_deleted_ += old->evaluations();
-    delete old;
-  });
-  known_.push_back(latest_);
-  return latest_;
-}
-
-stokes::Evaluations Walls::evaluations() const {
-  stokes::Evaluations all = of_deleted_;
-  for (const std::weak_ptr<Wall>& one : known_)
-    if (const std::shared_ptr<Wall> wall = one.lock()) all += wall->evaluations();
-  return all;
-}
-
 }  // namespace tanktread::coupling

@@ -175,21 +175,4 @@ class Wall {
   std::unique_ptr<Krylov> krylov_;
 };
 
-/// Walls that several systems of one run share. A branch of steady shapes, for example, has one system per value of its parameter, but often one
-/// wall.
-class Walls {
- public:
-  /// Returns the wall for these arguments of the constructor of Wall: the wall of another system if there is one, otherwise a new one. This object
-  /// must outlive the result. Collective.
-  std::shared_ptr<Wall> of(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases, const surface::Symmetry& symmetry,
-                           const WallSolver& solver);
-
-  stokes::Evaluations evaluations() const;  ///< kernel evaluations of all walls on this rank, including those no longer used
-
- private:
-  stokes::Evaluations of_deleted_;
-  std::vector<std::weak_ptr<Wall>> known_;
-  std::shared_ptr<Wall> latest_;  // kept for the next system even if no system uses it
-};
-
 }  // namespace tanktread::coupling

@@ -11,6 +11,7 @@
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
 #include "system/solids/channel_flow.hpp"
+#include "system/solids/shared_walls.hpp"
 #include "system/solids/tube.hpp"
 
 namespace tanktread::coupling {
@@ -52,7 +53,7 @@ TEST(ChannelFlow, OfASharedWallIsThatOfAWallOfItsOwn) {
   for (const double period : {0., 5.6}) {
     surface::TubeOptions options = channel("constriction", 12);
     if (period > 0) options.period = period, options.channel->start.reset(), options.channel->end.reset();
-    const auto walls = std::make_shared<Walls>();
+    const auto walls = std::make_shared<SharedWalls>();
     const ChannelFlow first(options, 1, 1, {}, {}, walls), second(options, 1.7, -0.3, {}, {}, walls), own(options, 1.7, -0.3, {});
     const Net before = first.velocities(points());
     EXPECT_EQ(first.wall(), second.wall());
@@ -64,13 +65,13 @@ TEST(ChannelFlow, OfASharedWallIsThatOfAWallOfItsOwn) {
   }
 }
 
-TEST(Walls, ShareOnlyEqualWallsAndCountThemOnce) {
+TEST(SharedWalls, AreEqualAndCountedOnce) {
   const surface::TubeOptions options = channel("constriction", 12);
   surface::TubeOptions other = options;
   other.channel->depth = 0.31;
   quadrature::Options finer;
   finer.tolerance = 1e-5;
-  const auto walls = std::make_shared<Walls>();
+  const auto walls = std::make_shared<SharedWalls>();
   const ChannelFlow one(options, 1, 1, {}, {}, walls), deeper(other, 1, 1, {}, {}, walls), sharper(options, 1, 1, finer, {}, walls);
   const ChannelFlow iterated(options, 1, 1, {}, {"iterative", 1e-8}, walls), again(options, 1, 2, {}, {}, walls);
   const auto wall = one.wall();

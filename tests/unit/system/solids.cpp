@@ -67,6 +67,18 @@ TEST(Solids, VelocitiesAtAPlateDoNotDependOnEarlierTargets) {
   }
 }
 
+TEST(Solids, AreSharedOnlyIfTheyAndTheirVelocitiesAreEqual) {
+  Phases phases;
+  const Vec3 lower(0.3, -0.2, 0), upper(-1, 0.5, 0);
+  const Solids::Parameters parameters{slab(), {}, 0.7, fine()}, other{slab(), {}, 0.8, fine()};
+  const Solids solids(plates(1.3, lower, upper), parameters, phases);
+  EXPECT_TRUE(solids.is_for(plates(1.3, lower, upper), parameters));
+  EXPECT_FALSE(solids.is_for(plates(1.3, lower, upper), other));
+  EXPECT_FALSE(solids.is_for(plates(1.2, lower, upper), parameters));
+  EXPECT_FALSE(solids.is_for(plates(1.3, lower, -upper), parameters));
+  EXPECT_FALSE(solids.is_for({plates(1.3, lower, upper).front()}, parameters));
+}
+
 TEST(Solids, ForcesBalanceThePressureGradient) {
   Phases phases;
   const stokes::PeriodicCell cell(Mat3(Vec3(1, 1.2, 0.8).asDiagonal()), 3);
