@@ -41,8 +41,8 @@ class Shared {
   std::shared_ptr<Object> latest_;  // kept for the next system even if no system uses it
 };
 
-/// Walls of ducts, plates and posts of one run. A branch of steady shapes, for example, has one system per value of its parameter, but often one wall,
-/// which is then assembled and factored only once. Counts the kernel evaluations of each wall once.
+/// Walls of ducts, plates and posts of one run. A branch of steady shapes, for example, has one system per value of its parameter, but often one
+/// wall, which is then assembled and factored only once. Counts the kernel evaluations of each wall once.
 struct SharedWalls {
   Shared<Wall> ducts;
   Shared<Solids> solids;
