@@ -37,8 +37,8 @@ void check_fits_channel(const ParticleScene& scene, const Body& body, const surf
                               "Channel/start = %.4g and Channel/end = %.4g.",
                               first, last, margin, channel.start(), channel.end()));
   const surface::ElementBoxes its(particle), walls(around);
-  const double gap = surface::closest_points(its, walls, 1e-5 * wall.radius(), wall.radius()).gap;
-  if (const double least = scene.tube.contact_gap * scene.least_radius.value_or(body.radius); gap < least)
+  const double least = scene.tube.contact_gap * scene.least_radius.value_or(body.radius);
+  if (const double gap = surface::closest_points(its, walls, 1e-5 * wall.radius(), least).gap; gap < least)
     throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
                               gap, scene.tube.contact_gap, least));
 }

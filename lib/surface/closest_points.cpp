@@ -141,13 +141,20 @@ class PairSearch {
     }
   }
 
-  /// Replaces the closest pair of points found so far if two corners of the parts are closer. Corners are points of the surfaces.
+  /// Replaces the closest pair of points found so far if two corners of the parts are closer. Corners are points of the surfaces. Newton's method then
+  /// moves the points along the surfaces, because corners that are not opposite to each other have a distance that is too large by a multiple of the
+  /// square of their offset: the search would go on until the parts are so small that this error is below the tolerance.
   void meet(const Part& a, const Part& b) {
+    bool closer = false;
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
         const Vec3 x = a.corner(i % 2, i / 2), y = b.corner(j % 2, j / 2);
-        if (const double gap = (y - x).norm(); gap < best_.gap) best_ = {x, y, gap, {a.site(i % 2, i / 2), b.site(j % 2, j / 2)}};
+        if (const double gap = (y - x).norm(); gap < best_.gap) best_ = {x, y, gap, {a.site(i % 2, i / 2), b.site(j % 2, j / 2)}}, closer = true;
       }
+    if (!closer) return;
+    const ClosestPoints moved = nearest_points(trees_[0]->surface()[a.low.element], trees_[1]->surface()[b.low.element], best_);
+    const auto inside = [](const spline::Site& at) { return std::min(at.s, at.t) >= 0 && std::max(at.s, at.t) <= 1; };
+    if (moved.gap < best_.gap && inside(moved.sites[0]) && inside(moved.sites[1])) best_ = moved;
   }
 
   double bound(const Pair& pair) const {
@@ -179,12 +186,13 @@ class PairSearch {
 
 }  // namespace
 
-ElementBoxes::ElementBoxes(const Patches& surface) : surface_(surface), order_(indices(surface.size())) {
+ElementBoxes::ElementBoxes(const Patches& surface, std::vector<int> elements)
+    : surface_(surface), order_(elements.empty() ? indices(surface.size()) : std::move(elements)) {
   for (int e = 0; e < surface.size(); ++e) {
     const Points points = bezier_points(surface[e]);
     own_.push_back({points.rowwise().minCoeff(), points.rowwise().maxCoeff(), 0, 0});
   }
-  split(0, surface.size());
+  split(0, static_cast<int>(order_.size()));
 }
 
 int ElementBoxes::split(int first, int last) {

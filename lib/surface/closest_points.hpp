@@ -27,11 +27,11 @@ class ElementBoxes {
     int child[2] = {};  ///< indices in boxes() of the two halves of a box with several elements
   };
 
-  /// `surface` must outlive the tree.
-  explicit ElementBoxes(const Patches& surface);
+  /// `surface` must outlive the tree. `elements`: elements that the tree contains; all elements if not given.
+  explicit ElementBoxes(const Patches& surface, std::vector<int> elements = {});
 
   const Patches& surface() const { return surface_; }
-  const std::vector<Box>& boxes() const { return boxes_; }  ///< all boxes of the tree; the first one is the root and contains all elements
+  const std::vector<Box>& boxes() const { return boxes_; }  ///< all boxes of the tree; the first one is the root
   int element(int k) const { return order_[static_cast<std::size_t>(k)]; }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "base/indices.hpp"
 #include "surface/clearance.hpp"
@@ -154,14 +155,17 @@ double Tube::gap_to_straight_wall() const {
   return surface::clearance(surface::Patches(particle_->geometry.bezier(), particle_->shape), wall().outline).gap;
 }
 
-/// Returns the gap to the wall of a channel, from the closest points of the two surfaces.
+/// Returns the gap to the wall of a channel, from the closest points of the two surfaces. Of elements that are images of each other, searches one.
 double Tube::gap_to_channel_wall() const {
+  const auto points = [&](int e) -> std::span<const int> { return particle_->space.elements[static_cast<std::size_t>(e)].points; };
+  const std::vector<int> elements =
+      surface::fundamental_elements(particle_->parameters.symmetry, static_cast<int>(particle_->space.elements.size()), points).element;
   double nearest = std::numeric_limits<double>::infinity();
   for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may extend beyond the end of the period
     const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
     if (beyond == 0 || wall().period > 0)
-      nearest =
-          std::min(nearest, surface::closest_points(surface::ElementBoxes(seen), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
+      nearest = std::min(
+          nearest, surface::closest_points(surface::ElementBoxes(seen, elements), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
   }
   return inside(particle_->sites(), indices(particle_->sites().rows())) ? nearest : -nearest;
 }
