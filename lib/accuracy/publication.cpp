@@ -36,6 +36,13 @@ void link_files(const fs::path& from, const fs::path& to) {
   }
 }
 
+/// Returns the error of the row at `time`, or the larger error of the rows before and after it. `times`: ascending times of the rows.
+double error_at(const std::vector<double>& times, const std::vector<double>& errors, double time) {
+  const auto after = static_cast<std::size_t>(std::ranges::lower_bound(times, time) - times.begin());
+  if (after == 0 || after == times.size()) return after == 0 ? errors.front() : errors.back();
+  return times[after] == time ? errors[after] : std::fmax(errors[after - 1], errors[after]);
+}
+
 /// Returns, for each expectation, the estimated error of its series at the time of the expectation; NaN if none is estimated.
 std::vector<double> estimates(const deck::Expectations& expect, const std::vector<SeriesError>& errors, const std::vector<double>& times) {
   std::vector<double> all;
@@ -44,7 +51,7 @@ std::vector<double> estimates(const deck::Expectations& expect, const std::vecto
     if (found == errors.end())
       all.push_back(NAN);
     else
-      all.push_back(one.at ? envelope({times, found->values}, {*one.at}).front() : found->values.back());
+      all.push_back(one.at ? error_at(times, found->values, *one.at) : found->values.back());
   }
   return all;
 }

@@ -141,9 +141,9 @@ class PairSearch {
     }
   }
 
-  /// Replaces the closest pair of points found so far if two corners of the parts are closer. Corners are points of the surfaces. Newton's method then
-  /// moves the points along the surfaces, because corners that are not opposite to each other have a distance that is too large by a multiple of the
-  /// square of their offset: the search would go on until the parts are so small that this error is below the tolerance.
+  /// Replaces the closest pair of points found so far if two corners of the parts are closer. Corners are points of the surfaces. Newton's method
+  /// then moves the points along the surfaces, because corners that are not opposite to each other have a distance that is too large by a multiple
+  /// of the square of their offset.
   void meet(const Part& a, const Part& b) {
     bool closer = false;
     for (int i = 0; i < 4; ++i)

@@ -23,8 +23,12 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
   for (const Particle& particle : parameters.particles) {
     if (!particle.slides()) continue;
     const spline::Block& block = particle.block;
+    const bool relaxed = particle.interface_motion == MeshMotion::relaxed;
+    const SharedMotion shared = !particle.interface_turns ? SharedMotion::translation
+                                : relaxed                 ? SharedMotion::stretching
+                                                          : SharedMotion::rigid;
     radius_ = std::min(radius_, particle.radius);
-    drops_.push_back({block, particle.interface_motion == MeshMotion::relaxed, particle.interface_turns, particle.interface_speed, {}, {}, {}});
+    drops_.push_back({block, relaxed, shared, particle.interface_speed, {}, {}, {}});
     Drop& drop = drops_.back();
     const auto holds = [&](int e) { return block.holds_element(e); };
     std::ranges::copy_if(layout.points(), std::back_inserter(drop.points), [&](int i) { return block.holds(i); });
@@ -101,7 +105,7 @@ std::vector<MotionOfShape> InterfaceMotion::motions(const Net& x, const Net& b, 
   std::vector<MotionOfShape> shapes;
   for (const Drop& drop : drops_) {
     const auto own = [&](const Net& net) { return drop.block.rows(net); };
-    shapes.push_back(motion_of_shape({own(x), own(b), own(v), own(places), own(normals), own(velocities)}, drop.turns));
+    shapes.push_back(motion_of_shape({own(x), own(b), own(v), own(places), own(normals), own(velocities)}, drop.shared));
   }
   return shapes;
 }

@@ -21,9 +21,10 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 ///
 ///   u = W + n n.(v - W) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed Q A0 Q^T (1 - n n).M0^{-1} dE1/dx (`relaxed`)    (4.6)
 ///
-/// W (4.14) is the motion of the drop's shape, a rigid motion and a uniform rate of stretch. The mesh moves with W. If a drop is convected, or if an
-/// elongated drop rotates as a whole, its mesh moves rigidly. If a drop elongates, its mesh is stretched with it, so that the elements at the tips
-/// stay as small as elements that move with the material. If the shape is steady, the mesh does not move while the fluid tank-treads around it.
+/// W (4.14) is the motion of the drop's shape, a rigid motion and for `relaxed` a uniform rate of stretch. The mesh moves with W. If a drop is
+/// convected, or if an elongated drop rotates as a whole, its mesh moves rigidly. If a drop elongates, a relaxed mesh is stretched with it, so that
+/// the elements at the tips stay as small as elements that move with the material. Without relaxation the stretch would be unstable: in an
+/// oscillating shear flow, the mesh would not return to itself. If the shape is steady, the mesh does not move while the fluid tank-treads around it.
 /// E1 is the energy of a neo-Hookean membrane of modulus 1 whose unstressed shape is the initial shape. A0 and M0 are the single layer and the mass
 /// matrix of the drop's initial shape, and the rotation Q turns the initial shape with the mesh. Only the tangential part of the elastic force moves
 /// the mesh: a relaxed mesh slides along the interface like an elastic membrane that is pulled through the fluid by its tension. Elements therefore
@@ -60,7 +61,7 @@ class InterfaceMotion {
   struct Drop {
     spline::Block block;
     bool relaxed;
-    bool turns;  // false: the motion W (4.14) is a translation
+    SharedMotion shared;  // of the mesh with the shape of the drop
     double speed;
     std::vector<int> points;      // rank-owned control points
     std::vector<int> places;      // indices of this drop's sites among the sites of VelocityProjection

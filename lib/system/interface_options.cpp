@@ -7,8 +7,8 @@ namespace tanktread::coupling {
 void InterfaceOptions::declare(deck::Section& section) {
   section.key("motion", motion, mesh_motions,
               "motion of the control points of a drop's interface. `material`: with the fluid. `normal`: with the fluid in the normal direction, and "
-              "tangentially with the rotation and uniform stretch of the drop's shape. `relaxed`: in addition tangentially so that elements keep "
-              "their shape. If not given, `relaxed` for Membrane/law `surface tension`, and `material` for all other laws");
+              "tangentially with the rotation of the drop's shape. `relaxed`: in addition tangentially with the uniform stretch of the shape, and "
+              "so that elements keep their shape. If not given, `relaxed` for Membrane/law `surface tension`, and `material` for all other laws");
   section.key("relaxation", relaxation, deck::not_negative(), "1",
               "dimensionless speed at which the mesh of a drop slides along the interface to keep its elements well shaped, with "
               "Interface/motion `relaxed`: it slides like an elastic membrane of capillary number 1/relaxation. Increase it if elements "

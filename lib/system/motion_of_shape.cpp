@@ -30,9 +30,9 @@ Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rota
 /// Returns the weight g (4.14) of an axis, divided by m. m is about 1.6 D^2, with the Taylor deformation D of the drop in the plane normal to the
 /// axis.
 double weight_of_axis(double m) {
-  constexpr double elongated = 0.02;  // value of m at the Taylor deformation D = 0.11, from which on g = 1: the mesh turns with the shape of the drop
-  const double along = m / elongated;
-  return along < 1 ? along * (3 - 2 * along) / elongated : 1 / m;
+  constexpr double elongated = 0.2;  // value of m at the Taylor deformation D = 0.35, from which on g = 1: the mesh turns with the shape of the drop
+  const double t = m / elongated;
+  return t < 1 ? t * t * (10 - 15 * t + 6 * t * t) / elongated : 1 / m;
 }
 
 /// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. The area weight of a site is |b|, with the
@@ -81,15 +81,16 @@ Mat3 stretch_of_shape(const Net& y, const Net& normals, const Net& b, const Net&
 
 }  // namespace
 
-MotionOfShape motion_of_shape(const Moving& drop, bool turns) {
+MotionOfShape motion_of_shape(const Moving& drop, SharedMotion shared) {
   const Eigen::RowVector3d centre = approximate_centroid(drop.x, drop.b);
   const Net from_centre = drop.x.rowwise() - centre, y = drop.places.rowwise() - centre;
   const Vec3 of_fluid = mean_rotation(from_centre, drop.b, drop.v);
   const Eigen::RowVector3d mean = mean_motion(from_centre, drop.b, drop.v - rotated(of_fluid, from_centre));
   MotionOfShape shape{centre.transpose(), mean.transpose(), Mat3::Zero()};
-  if (!turns) return shape;
+  if (shared == SharedMotion::translation) return shape;
   const Vec3 rotation = rotation_of_shape(y, drop.normals, drop.b, drop.velocities.rowwise() - mean);
-  shape.gradient = stretch_of_shape(y, drop.normals, drop.b, (drop.velocities.rowwise() - mean) - rotated(rotation, y));
+  if (shared == SharedMotion::stretching)
+    shape.gradient = stretch_of_shape(y, drop.normals, drop.b, (drop.velocities.rowwise() - mean) - rotated(rotation, y));
   for (int k = 0; k < 3; ++k) shape.gradient.col(k) += rotation.cross(Vec3::Unit(k));
   return shape;
 }

@@ -20,9 +20,11 @@ struct MotionOfShape {
   Vec3 at(const Vec3& x) const { return velocity + gradient * (x - centre); }
 };
 
-/// Returns the motion W (4.14) of the shape of a drop: the mean velocity of its fluid, the rotation of its shape, and the rate of stretch E (4.36)
-/// without volume change. Its velocity is linear in v. On a sphere the rotation is 0, on a steady shape also E. `turns`: false if W is to be a
-/// translation.
-MotionOfShape motion_of_shape(const Moving& drop, bool turns);
+/// Motion W (4.14) that a mesh shares with the shape of its drop: a translation, in addition the rotation of the shape, or in addition its stretch.
+enum class SharedMotion { translation, rigid, stretching };
+
+/// Returns the motion W (4.14) of the shape of a drop, which is linear in v: the mean velocity of its fluid, and depending on `shared` the rotation
+/// of its shape and the rate of stretch E (4.36) without volume change. On a sphere the rotation is 0, on a steady shape also E.
+MotionOfShape motion_of_shape(const Moving& drop, SharedMotion shared);
 
 }  // namespace tanktread::coupling

@@ -48,8 +48,17 @@ TEST(InterfaceMotion, AllMotionsHaveTheSameNormalVelocity) {
   }
 }
 
+TEST(InterfaceMotion, NormalMotionHasNoTangentialPart) {
+  Drop drop;
+  drop.parameters.volume.constraint = VolumeConservation::none;
+  const Net v = drop.velocity(MeshMotion::normal, drop.sphere);
+  const auto [across, along] = drop.components(drop.sphere, v);
+  EXPECT_GT(across, 0.1);
+  EXPECT_LT(along, 1e-10);  // round-off of the interpolation
+}
+
 // A flow that stretches a drop along its axes stretches its mesh. Without tension the fluid has the velocity of the flow.
-TEST(InterfaceMotion, AFlowThatStretchesTheDropStretchesItsMesh) {
+TEST(InterfaceMotion, AFlowThatStretchesTheDropStretchesARelaxedMesh) {
   for (const Vec3& axes : {Vec3(1, 1, 1), Vec3(1.5, 1, 0.8)}) {
     std::vector<double> errors;
     for (const int elements : {3, 6}) {
@@ -58,8 +67,9 @@ TEST(InterfaceMotion, AFlowThatStretchesTheDropStretchesItsMesh) {
       drop.flow.gradient = Vec3(1, 0.5, -1.5).asDiagonal();
       drop.parameters.volume.constraint = VolumeConservation::none;
       drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
+      drop.parameters.particles.front().interface_speed = 0;
       const Net x = drop.sphere * axes.asDiagonal(), v = x * *drop.flow.gradient;
-      errors.push_back((drop.velocity(MeshMotion::normal, x) - v).norm() / v.norm());
+      errors.push_back((drop.velocity(MeshMotion::relaxed, x) - v).norm() / v.norm());
     }
     EXPECT_LT(errors[0], 0.06);
     EXPECT_LT(errors[1], errors[0] / 3);  // integrals over the surface by its sites: order 2
@@ -156,12 +166,12 @@ TEST(InterfaceMotion, AFlowThatTranslatesTheDropTranslatesItsMesh) {
 }
 
 // If the rotation W is added to the gradient of the flow, W x is added to the velocity of the control points, so the mesh rotates with the drop. For
-// the motions `normal` and `relaxed` this holds for elongated drops only: see the next test.
+// the motions `normal` and `relaxed` this holds only for rotations about an axis across which the drop is elongated: see the next test.
 TEST(InterfaceMotion, AFlowThatRotatesTheDropRotatesItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
   const Mat3 strain = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
-  const Mat3 turns = (Mat3() << 0, -0.7, 2, 0.7, 0, 0.4, -2, -0.4, 0).finished();
+  const Mat3 turns = (Mat3() << 0, 0, 2, 0, 0, 0, -2, 0, 0).finished();
   Net x = drop.sphere;
   x.col(0) *= 2, x.col(2) *= 0.5;
   x = x.rowwise() + Eigen::RowVector3d(0.4, -1, 2);
