@@ -30,9 +30,9 @@ Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rota
 /// Returns the weight g (4.14) of an axis, divided by m. m is about 1.6 D^2, with the Taylor deformation D of the drop in the plane normal to the
 /// axis.
 double weight_of_axis(double m) {
-  constexpr double elongated = 0.2;  // value of m at the Taylor deformation D = 0.35, from which on g = 1: the mesh turns with the shape of the drop
+  constexpr double elongated = 0.02;  // value of m at the Taylor deformation D = 0.11, from which on g = 1: the mesh turns with the shape of the drop
   const double t = m / elongated;
-  return t < 1 ? t * t * (10 - 15 * t + 6 * t * t) / elongated : 1 / m;
+  return t < 1 ? t * (3 - 2 * t) / elongated : 1 / m;
 }
 
 /// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. The area weight of a site is |b|, with the
