@@ -211,9 +211,10 @@ class Run {
     }
   }
 
-  /// Collects the totals of the run after a finished step, for a checkpoint: counts of operations, phase angle, contacts and warnings.
+  /// Returns the kernel evaluations of this part of the run on all ranks. Collective.
   stokes::Evaluations kernel_evaluations() const { return ranks_.of_all(particle_->kernel_evaluations() + scene_.walls->evaluations()); }
 
+  /// Collects the totals of the run after a finished step, for a checkpoint: counts of operations, phase angle, contacts and warnings.
   void collect_totals() {
     totals_.counts = particle_->counts();
     totals_.phase_angle = particle_->phase_angle();

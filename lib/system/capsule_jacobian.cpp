@@ -88,22 +88,18 @@ Net CapsuleJacobian::inflation(const Net& c) {
   return along.allFinite() ? along : c;
 }
 
-/// Returns d2V/dx2 dx, exact because V is a cubic form.
-Net CapsuleJacobian::volume_gradient_change(const Net& dx) const { return (volumes_.gradient(x_ + dx) - volumes_.gradient(x_ - dx)) / 2; }
-
-/// Returns H dx without the change of a pressure p on each particle whose control points slide:
+/// Returns `work` (0 if it has no rows) minus the change of the work of a pressure p on each particle whose control points slide, so that product()
+/// adds to it
 ///
 ///   (H - p d2V/dx2) dx,   p = (dE/dx).y/(dV/dx.y),   y = x minus its mean                                                          (4.35)
 ///
-/// A pressure causes no flow, A n = 0, at any shape. If points slide, the normals n at these points change. The operator A is frozen at an earlier
-/// shape, and would compute a velocity proportional to p from this change. With this velocity, a drop with Ca = 1e-4 in a tube takes nine times as
-/// many steps.
-Net CapsuleJacobian::load_work_change(const Net& dx) const {
-  Net change = membranes_.work_change(dx);
-  if (pressures_.empty()) return change;
-  const Net turned = volume_gradient_change(dx);
-  for (const auto& [block, p] : pressures_) block.rows(change) -= p * block.rows(turned);
-  return change;
+/// `db`: d2V/dx2 dx. A pressure causes no flow, A n = 0, at any shape. If points slide, the normals n at these points change. The operator A is
+/// frozen at an earlier shape, and would compute a velocity proportional to p from this change. With this velocity, a drop with Ca = 1e-4 in a tube
+/// takes nine times as many steps.
+Net CapsuleJacobian::without_pressure(Net work, const Net& db) const {
+  if (work.size() == 0) work = Net::Zero(db.rows(), 3);
+  for (const auto& [block, p] : pressures_) block.rows(work) -= p * block.rows(db);
+  return work;
 }
 
 /// Returns P B P v + (1 - P) v - shift B J dx, with the operator B of (4.2) and
@@ -111,8 +107,8 @@ Net CapsuleJacobian::load_work_change(const Net& dx) const {
 ///   B J dx = P (grad v_inf dx - (1/mu) R^{-1} A M0^{-1} H dx)                                                                      (4.3)
 ///
 /// P is the volume projection (2.8), v_inf the ambient velocity, R the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the
-/// membrane tangent, changed by (4.35). `work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid
-/// bodies, B is the identity and B J dx is 0. The layers and the tube are applied once, to the sum of all loads.
+/// membrane tangent. `work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies, B is the identity
+/// and B J dx is 0. The layers and the tube are applied once, to the sum of all loads.
 Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& work) {
   const bool moves = v.size() > 0 && has_system(), displaced = dx.size() > 0;
   if (!moves && !displaced) return v;
@@ -123,7 +119,7 @@ Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Ne
     if (membranes_.viscous()) work_change = membranes_.viscous_work_change(moving);
   }
   if (displaced) {
-    Net h = shift * load_work_change(dx);
+    Net h = shift * membranes_.work_change(dx);
     if (work.size() > 0) h += shift * work;
     work_change = work_change.size() > 0 ? Net(work_change + h) : std::move(h);
   }
@@ -155,9 +151,10 @@ Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& work) {
 }
 
 CapsuleJacobian::RateChange CapsuleJacobian::velocity_change(const Net& dx, const Net& work) {
-  const Net dv = fluid_velocity_change(dx, work);
-  if (!interface_) return {dv, {}};
-  const Net du = interface_->derivative(dv, dx, volume_gradient_change(dx));
+  if (!interface_) return {fluid_velocity_change(dx, work), {}};
+  const Net db = (volumes_.gradient(x_ + dx) - volumes_.gradient(x_ - dx)) / 2;  // d2V/dx2 dx, exact because V is a cubic form
+  const Net dv = fluid_velocity_change(dx, without_pressure(work, db));
+  const Net du = interface_->derivative(dv, dx, db);
   return {du, dv - du};
 }
 

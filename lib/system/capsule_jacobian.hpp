@@ -77,8 +77,7 @@ class CapsuleJacobian {
   bool has_system() const { return frozen_.has_double() || membranes_.viscous(); }
   std::vector<Mat3> gradients_at(const Net& x) const;
   Net product(const Net& v, const Net& dx, double shift, const Net& work);
-  Net volume_gradient_change(const Net& dx) const;
-  Net load_work_change(const Net& dx) const;
+  Net without_pressure(Net work, const Net& db) const;
   Net fluid_velocity_change(const Net& dx, const Net& work);
   Net without_flux(Net rate) const;
   double weight_of_rotation() const;

@@ -181,17 +181,18 @@ void InterfaceMotion::linearise(const Net& x, const Net& b) {
   x_ = x, flux_ = b;
   normals_ = normals_at(x);
   known_ = same(latest_.x, x) ? latest_ : Latest();
+  shapes_ = known_.x.size() > 0 ? motions(x, b, normals_, known_.v) : std::vector<MotionOfShape>();
   if (relaxed_) tangent_.update(x, own_elements_);
 }
 
 /// Returns the tangential part of the change of W (4.14) with the shape, per distance `aside`, at the points `at`, which move to `there`.
 Net InterfaceMotion::change_of_motion(const Displaced& to, const Net& at, const Net& there, const Net& normals, double aside,
                                       std::vector<int> Drop::* rows) const {
-  const std::vector<MotionOfShape> before = motions(x_, flux_, normals_, known_.v), after = motions(to.x, to.b, to.normals, known_.v);
+  const std::vector<MotionOfShape> after = motions(to.x, to.b, to.normals, known_.v);
   Net change = Net::Zero(at.rows(), 3);
   for (size_t d = 0; d < drops_.size(); ++d)
     for (const int i : drops_[d].*rows)
-      change.row(i) = (after[d].at(there.row(i).transpose()) - before[d].at(at.row(i).transpose())).transpose() / aside;
+      change.row(i) = (after[d].at(there.row(i).transpose()) - shapes_[d].at(at.row(i).transpose())).transpose() / aside;
   return along_interface(normals, std::move(change));
 }
 

@@ -95,6 +95,7 @@ class InterfaceMotion {
   Latest latest_, known_;  // latest_: data of the last call of velocity(). known_: copy of latest_ made by linearise(x); empty if the last call of
                            // velocity() was at a shape other than x
   Net x_, flux_, normals_;  // shape, b = dV/dx and normals at which the system was linearised
+  std::vector<MotionOfShape> shapes_;  // W (4.14) of each drop at this shape; empty if known_ is
 };
 
 }  // namespace tanktread::coupling

@@ -70,20 +70,32 @@ Net ChannelFlow::driving_velocity(const Net& x) const {
   return v;
 }
 
-/// Returns the flow that was solved first on the wall, scaled to the flow rate and viscosity of this channel. Solves for it if it is not known.
-const Wall::EmptyFlow& ChannelFlow::solved() const {
-  if (solved_) return *solved_;
+EmptyChannel& ChannelFlow::kept() const {
   const std::shared_ptr<Wall> wall = this->wall();
-  if (!wall->empty_flow) wall->empty_flow = std::make_shared<const Wall::EmptyFlow>(solution(*wall));
-  Wall::EmptyFlow scaled = *wall->empty_flow;
+  if (!wall->empty_channel) {
+    quadrature::Options options = quadrature_;
+    options.tolerance = std::max(1e-10, sharpness * quadrature_.tolerance);
+    wall->empty_channel.reset(new EmptyChannel{{stokes::Layer::Kernel::single_layer, wall->surface().space, stokes::Sites(), options}, {}});
+    if (wall->cell()) wall->empty_channel->layer.repeat(*wall->cell());
+    wall->empty_channel->layer.set_shape(surface_->net);
+  }
+  return *wall->empty_channel;
+}
+
+/// Returns the flow through this channel. Solves for it only if no other channel with the same wall has.
+const EmptyFlow& ChannelFlow::solved() const {
+  if (solved_) return *solved_;
+  EmptyChannel& channel = kept();
+  if (!channel.flow) channel.flow = solution(*wall());
+  EmptyFlow scaled = *channel.flow;
   const double factor = viscosity() * flow_rate() / scaled.strength;
   scaled.strength *= factor, scaled.pressure_drop *= factor, scaled.traction *= factor;
   if (channel_->repeats()) scaled.driving *= factor;
-  solved_ = std::make_shared<const Wall::EmptyFlow>(std::move(scaled));
+  solved_ = std::move(scaled);
   return *solved_;
 }
 
-Wall::EmptyFlow ChannelFlow::solution(const Wall& wall) const {
+EmptyFlow ChannelFlow::solution(const Wall& wall) const {
   const std::vector<int>& own = wall.points().own_targets();
   Net of_ends(wall.points().targets().rows(), 3);
   of_ends(own, Eigen::all) = driving_velocity(wall.points().targets()(own, Eigen::all));
@@ -101,27 +113,15 @@ Wall::EmptyFlow ChannelFlow::solution(const Wall& wall) const {
   return {strength, pressure_drop, 1, without + pressure_drop * with};
 }
 
-quadrature::Options ChannelFlow::quadrature_of_flow() const {
-  quadrature::Options options = quadrature_;
-  options.tolerance = std::max(1e-10, sharpness * quadrature_.tolerance);
-  return options;
-}
-
 /// Returns the velocity at the points x due to the wall traction and the pressure drop, plus `driving` times driving_velocity(x). If there are many
 /// points, ranks share them. The tolerance of the layer is smaller than in Wall, because large pressures at the ends amplify errors of the velocity.
 Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const {
   const std::shared_ptr<Wall> wall = this->wall();
-  std::shared_ptr<stokes::Layer>& layer = wall->sharp_layer;
-  if (!layer) {
-    const spline::Space& space = wall->surface().space;
-    layer = std::make_shared<stokes::Layer>(stokes::Layer::Kernel::single_layer, space, stokes::Sites(), quadrature_of_flow());
-    if (wall->cell()) layer->repeat(*wall->cell());
-    layer->set_shape(surface_->net);
-  }
+  stokes::Layer& layer = kept().layer;
   const Net density = wall->on_space(traction);
   const auto evaluate = [&](std::span<const int> own, Net& v) {
     const Net at = x(own, Eigen::all);
-    layer->apply(density, x, own, v);
+    layer.apply(density, x, own, v);
     Net rest = Net::Zero(at.rows(), 3);
     if (!wall->cell()) rest = pressure_drop / viscosity() * wall->inlet().integral(at);
     if (driving != 0) rest += driving * driving_velocity(at);
@@ -134,7 +134,7 @@ Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_d
 }
 
 Net ChannelFlow::evaluated(const Net& x) const {
-  const Wall::EmptyFlow& known = solved();
+  const EmptyFlow& known = solved();
   return velocities(x, known.traction, known.pressure_drop, known.driving);
 }
 

@@ -2,6 +2,7 @@
 // The flow in an empty channel.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "quadrature/options.hpp"
 #include "stokes/flow/duct_end.hpp"
 #include "stokes/flow/duct_flow.hpp"
+#include "stokes/layer.hpp"
 #include "surface/walls/channel.hpp"
 #include "surface/walls/tube_wall.hpp"
 #include "system/solids/wall.hpp"
@@ -17,6 +19,20 @@
 namespace tanktread::coupling {
 
 struct SharedWalls;
+
+/// Flow (2.30) through an empty channel. All values are proportional to `strength`, except `driving` in an open channel.
+struct EmptyFlow {
+  double strength = 1;       ///< viscosity times flow rate
+  double pressure_drop = 0;
+  double driving = 1;        ///< factor of ChannelFlow::driving_velocity()
+  Net traction;              ///< control values of f
+};
+
+/// Data that ChannelFlow computes once per wall.
+struct EmptyChannel {
+  stokes::Layer layer;            ///< single layer of the wall at points off the wall, with a smaller tolerance than Wall::layer
+  std::optional<EmptyFlow> flow;  ///< the flow that was solved first
+};
 
 /// Flow through a channel with the flow rate Q. At each end the flow is fully developed, as in a straight duct. The velocity v follows from an
 /// equation of the first kind for the wall traction f:
@@ -63,10 +79,10 @@ class ChannelFlow : public stokes::DuctFlow {
   std::shared_ptr<Wall> wall(Phases& phases, const surface::Symmetry& particle) const;
 
  private:
-  const Wall::EmptyFlow& solved() const;
-  Wall::EmptyFlow solution(const Wall& wall) const;
+  EmptyChannel& kept() const;
+  const EmptyFlow& solved() const;
+  EmptyFlow solution(const Wall& wall) const;
   Net driving_velocity(const Net& x) const;
-  quadrature::Options quadrature_of_flow() const;
   Net velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const;
   Net evaluated(const Net& x) const;  // velocities at x, not cached
   stokes::DuctEnd section(double s, int inward) const;
@@ -79,7 +95,7 @@ class ChannelFlow : public stokes::DuctFlow {
   std::shared_ptr<SharedWalls> walls_;
   std::vector<stokes::DuctEnd> ends_;
   mutable std::shared_ptr<Wall> wall_;
-  mutable std::shared_ptr<const Wall::EmptyFlow> solved_;
+  mutable std::optional<EmptyFlow> solved_;  // the flow of EmptyChannel scaled to the viscosity and flow rate of this channel
   mutable Net latest_at_, latest_;
 };
 

@@ -59,6 +59,8 @@ struct WallSolver {
   }
 };
 
+struct EmptyChannel;
+
 /// The single layer of the wall on itself, assembled and factored, and the inlet integral (2.13). The viscosity is not included. Nets are in the
 /// wall's frame. The ranks share the assembly, but each rank stores all factors: 72 bytes per pair of control points.
 ///
@@ -133,14 +135,7 @@ class Wall {
   /// the strength through this surface must be 0.
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
-  /// Flow through the empty channel (2.30), which ChannelFlow computes.
-  struct EmptyFlow {
-    double strength = 1;   ///< viscosity times flow rate, to which all values below are proportional, except `driving` in an open channel
-    double pressure_drop = 0, driving = 1;  ///< driving: factor of ChannelFlow::driving_velocity()
-    Net traction;                           ///< control values of f
-  };
-  std::shared_ptr<const EmptyFlow> empty_flow;  ///< kept for all systems that share this wall; null until it is needed
-  std::shared_ptr<stokes::Layer> sharp_layer;   ///< as layer(), with the smaller tolerance of ChannelFlow; null until it is needed
+  std::shared_ptr<EmptyChannel> empty_channel;  ///< what ChannelFlow keeps for all systems that share this wall; null until it is needed
 
   /// Returns the bounding boxes of the elements of a channel wall, used to compute distances from the wall.
   const surface::ElementBoxes& boxes() const { return *boxes_; }
