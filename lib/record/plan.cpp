@@ -148,10 +148,13 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
                                        wall.space.description.c_str()));
   if (wall.period > 0)
     lines.emplace_back("period", formatted("%.6g along x1: one period of the wall, all images by the kernels of one period", wall.period));
-  const bool iterates = wall.channel && coupling::WallSolver{scene.solvers.wall}.iterates(unknowns, wall.period > 0);
-  const double megabytes = 8e-6 * unknowns * unknowns;
+  const surface::Symmetry of_wall = coupling::reflections(wall, coupling::positions(wall, wall.sites));
+  const double bytes = coupling::WallFactors::bytes(of_wall, wall.channel ? body.symmetry : surface::Symmetry());
+  const bool iterates = wall.channel && coupling::WallSolver{scene.solvers.wall}.iterates(bytes, wall.period > 0);
+  const std::string parities = of_wall.order() > 1 ? " for each parity under " + of_wall.description() : "";
   const std::string how = iterates ? "found by GMRES and clusters in each velocity"
-                                   : formatted("factored once: %.1f MB on each of %d rank%s", megabytes, ranks, ranks > 1 ? "s" : "");
+                                   : formatted("factored once%s: %.1f MB on each of %d rank%s", parities.c_str(), 1e-6 * bytes, ranks,
+                                               ranks > 1 ? "s" : "");
   lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; ", unknowns, wall_solver(scene).c_str()) + how);
 }
 

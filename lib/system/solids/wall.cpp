@@ -107,11 +107,12 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
   on_itself_->set_shape(wall.net);
   if (cell_) find_pressure();
-  if (solver.iterates(3.0 * n / symmetry_.order(), cell_.has_value())) {
+  const surface::Symmetry of_wall = reflections(surface_, points_.sites());
+  if (solver.iterates(WallFactors::bytes(of_wall, symmetry_), cell_.has_value())) {
     patches_of_rows_.emplace(surface_, *on_itself_, symmetry_.fundamental());
     krylov_ = std::make_unique<Krylov>(IterativeOptions{.solver = "GMRES", .preconditioner = "recycled"});
   } else {
-    factors_ = DenseFactors(assembled());
+    factor(of_wall);
   }
   inlet_column_ = cell_ ? Net(Net::Zero(n, 3)) : points_.collocated(inlet_->integral(points_.targets()));
   pumped_ = cell_ ? inlet_column_ : solve(inlet_column_);
@@ -154,53 +155,41 @@ void Wall::assemble_rows(std::span<const int> targets, stokes::Rows<double>& row
   from_space(rows);
 }
 
-/// Returns, on every rank, the matrix of the wall's operator A. Its rows and columns are the components at fundamental points that symmetry does not
-/// make zero (4.12). Many rows are assembled at a time, because each row is a mean over a collocation point and adjacent element midpoints (2.39),
-/// and neighbouring collocation points share these midpoints. If rotations or reflections of the wall map collocation points to each other, only the
-/// rows of one of these points are assembled. These maps then yield the rows of the other points.
-Eigen::MatrixXd Wall::assembled() {
+/// Assembles and factors the wall's operator A. Many rows are assembled at a time, because each row is a mean over a collocation point and adjacent
+/// element midpoints (2.39), and neighbouring collocation points share these midpoints. If rotations or reflections of the cross-section map
+/// collocation points to each other, only the rows of one of these points are assembled. These maps then yield the rows of the other points.
+void Wall::factor(const surface::Symmetry& of_wall) {
   constexpr std::size_t at_a_time = 240;
-  const Net& signs = symmetry_.signs();
-  Eigen::VectorXi of_component = Eigen::VectorXi::Constant(3 * signs.rows(), -1);
-  int n = 0;
-  for (const int a : symmetry_.fundamental())
-    for (int c = 0; c < 3; ++c)
-      if (signs(a, c) != 0) of_component[3 * a + c] = n++;
+  factors_ = WallFactors(of_wall, symmetry_);
+  const auto n = static_cast<int>(n_sites());
   const int m = surface_.n_around;
   const std::vector<Congruence> maps = congruences(surface_, points_.sites());
   const std::vector<Original> original = originals(maps, m);
   const auto original_of = [&](int site) { return original[static_cast<std::size_t>(site % m)]; };
-  std::vector<int> own = points_.own();  // rank-owned sites, sorted by Original::point (congruence.hpp): equal originals are adjacent
+  std::vector<int> own;  // sites of this rank, sorted by Original::point (congruence.hpp): equal originals are adjacent
+  for (const int k : points_.ranks().share(static_cast<int>(of_wall.fundamental().size())))
+    own.push_back(of_wall.fundamental()[static_cast<std::size_t>(k)]);
   std::ranges::stable_sort(own, {}, [&](int site) { return site - site % m + original_of(site).point; });
-  // Adds the rows of `site` to the matrix `all`. `rows`: the three rows of the congruent site that `map` moves to `site`.
-  const auto add_rows = [&](int site, const Congruence& map, const auto& rows, Eigen::MatrixXd& all) {
-    for (int p = 0; p < static_cast<int>(signs.rows()); ++p) {
+  // Adds the rows of `site`. `rows`: the three rows of the congruent site that `map` moves to `site`.
+  const auto add_rows = [&](int site, const Congruence& map, const auto& rows) {
+    for (int p = 0; p < n; ++p) {
       const int from = p - p % m + map.source[static_cast<std::size_t>(p % m)];
-      const Mat3 block = map.q * rows.template middleCols<3>(3 * from) * map.q.transpose();
-      for (int d = 0; d < 3; ++d) {
-        if (signs(p, d) == 0) continue;
-        const int column = of_component[3 * symmetry_.source()[static_cast<std::size_t>(p)] + d];
-        for (int c = 0; c < 3; ++c)
-          if (const int to = of_component[3 * site + c]; to >= 0) all(to, column) += signs(p, d) * block(c, d);
-      }
+      factors_.add(site, p, map.q * rows.template middleCols<3>(3 * from) * map.q.transpose());
     }
   };
-  Eigen::MatrixXd complete = points_.ranks().assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
-    for (std::size_t first = 0, last = 0; first < own.size(); first = last) {
-      std::vector<int> some, row;  // some: sites whose rows are assembled. row: for each site of `own`, index in `some` of the congruent site
-      for (; last < own.size() && some.size() < at_a_time; ++last) {
-        const int site = own[last] - own[last] % m + original_of(own[last]).point;
-        if (some.empty() || some.back() != site) some.push_back(site);
-        row.push_back(static_cast<int>(some.size()) - 1);
-      }
-      stokes::Rows<double> part;
-      points_.collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { assemble_rows(targets, rows); }, part);
-      for (std::size_t k = 0; k < row.size(); ++k)
-        add_rows(own[first + k], *original_of(own[first + k]).from, part.middleRows<3>(3 * row[k]), all);
+  for (std::size_t first = 0, last = 0; first < own.size(); first = last) {
+    std::vector<int> some, row;  // some: sites whose rows are assembled. row: for each site of `own`, index in `some` of the congruent site
+    for (; last < own.size() && some.size() < at_a_time; ++last) {
+      const int site = own[last] - own[last] % m + original_of(own[last]).point;
+      if (some.empty() || some.back() != site) some.push_back(site);
+      row.push_back(static_cast<int>(some.size()) - 1);
     }
-  });
-  if (cell_) complete += Eigen::Map<const Eigen::VectorXd>(pressure_.data(), n) * Eigen::Map<const Eigen::RowVectorXd>(flux_.data(), n);
-  return complete;
+    stokes::Rows<double> part;
+    points_.collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { assemble_rows(targets, rows); }, part);
+    for (std::size_t k = 0; k < row.size(); ++k) add_rows(own[first + k], *original_of(own[first + k]).from, part.middleRows<3>(3 * row[k]));
+  }
+  if (cell_ && points_.ranks().rank() == 0) factors_.add_product(pressure_, flux_);
+  factors_.factor(points_.ranks());
 }
 
 Net Wall::apply(const Net& f) const {
@@ -211,10 +200,7 @@ Net Wall::apply(const Net& f) const {
 }
 
 Net Wall::solve(const Net& rhs) const {
-  if (iterates()) return iterated(rhs);
-  Net f = fundamental_net(factors_.solve(fundamental(rhs)));
-  symmetry_.complete(f);
-  return f;
+  return iterates() ? iterated(rhs) : factors_.solve(symmetry_.completed(rhs));
 }
 
 void Wall::forget_recycled() const {
@@ -242,12 +228,11 @@ Net Wall::iterated(const Net& rhs) const {
 }
 
 Net Wall::solve_transposed(const Net& weights) const {
-  Net folded = weights;
-  for (Eigen::Index p = 0; p < weights.rows(); ++p) {
-    const int a = symmetry_.source()[static_cast<std::size_t>(p)];
-    if (a != p) folded.row(a) += symmetry_.signs().row(p).cwiseProduct(weights.row(p));
-  }
-  return fundamental_net(factors_.solve_transposed(fundamental(folded)));
+  const Net everywhere = factors_.solve_transposed(weights);
+  Net folded = Net::Zero(weights.rows(), 3);
+  for (Eigen::Index p = 0; p < weights.rows(); ++p)
+    folded.row(symmetry_.source()[static_cast<std::size_t>(p)]) += symmetry_.signs().row(p).cwiseProduct(everywhere.row(p));
+  return folded;
 }
 
 /// Returns the components of a net at fundamental points as a vector, without the components that symmetry makes zero.

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "base/dense_factors.hpp"
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
 #include "stokes/flow/cap.hpp"
@@ -18,6 +17,7 @@
 #include "surface/geometry.hpp"
 #include "surface/symmetry.hpp"
 #include "surface/walls/tube_wall.hpp"
+#include "system/solids/wall_factors.hpp"
 #include "system/solids/wall_points.hpp"
 #include "system/solvers/krylov.hpp"
 
@@ -51,21 +51,19 @@ struct WallSolver {
 
   bool operator==(const WallSolver&) const = default;
 
-  /// may_iterate: returns whether a system of any size can be solved iteratively. iterates: returns whether a system with `unknowns` unknowns is. The
-  /// operator of a periodic wall is always factored.
+  /// may_iterate: returns whether a system of any size can be solved iteratively. iterates: returns whether a system whose factors take `bytes` is.
+  /// The operator of a periodic wall is always factored.
   bool may_iterate(bool periodic) const { return !periodic && method != "factored"; }
-  bool iterates(double unknowns, bool periodic) const {
-    return may_iterate(periodic) && (method == "iterative" || 8 * unknowns * unknowns > most_bytes);
-  }
+  bool iterates(double bytes, bool periodic) const { return may_iterate(periodic) && (method == "iterative" || bytes > most_bytes); }
 };
 
 struct EmptyChannel;
 
 /// The single layer of the wall on itself, assembled and factored, and the inlet integral (2.13). The viscosity is not included. Nets are in the
-/// wall's frame. The ranks share the assembly, but each rank stores all factors: 72 bytes per pair of control points.
+/// wall's frame. The ranks share the assembly, but each rank stores all factors: 72 bytes per pair of control points, divided by the number of
+/// reflections that map the wall to itself (WallFactors).
 ///
-/// If a symmetry is given, all fields must have it. Only rows of fundamental points are then assembled, and columns of image points are added to the
-/// columns of their fundamental points (4.12).
+/// If a symmetry is given, all fields must have it. Only the parities are then factored that fields with this symmetry can have.
 ///
 /// If the factors would be too large and the wall is open, each system is solved by GMRES, with products by a treecode (TreeSum). The preconditioner
 /// combines WallPatches and data recycled from earlier solves (2.24).
@@ -146,7 +144,7 @@ class Wall {
   Eigen::Index n_sites() const { return points_.sites().rows(); }
   Net weights(const std::function<Vec3(const surface::Point&)>& field) const;
   void assemble_rows(std::span<const int> targets, stokes::Rows<double>& rows);
-  Eigen::MatrixXd assembled();
+  void factor(const surface::Symmetry& of_wall);
   Net iterated(const Net& rhs) const;
   void find_pressure();
   Eigen::VectorXd fundamental(const Net& net) const;
@@ -165,7 +163,7 @@ class Wall {
   Net inlet_column_, pumped_;
   Net pressure_, flux_;  // periodic wall only. pressure_: traction of a uniform pressure at the sites. flux_: int N_A n dGamma
   std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
-  DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
+  WallFactors factors_;                       // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;
   std::unique_ptr<Krylov> krylov_;
 };

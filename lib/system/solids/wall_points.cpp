@@ -11,14 +11,14 @@ constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity err
                                         // the harmonics of the error decrease with the wave number k like k^-5 (k^-4 from spline interpolation, k^-1
                                         // from the single layer)
 
+}  // namespace
+
 Net positions(const surface::TubeWall& wall, const stokes::Sites& sites) {
   Net at(static_cast<Eigen::Index>(sites.size()), 3);
   for (Eigen::Index i = 0; i < at.rows(); ++i)
     at.row(i) = surface::value(wall.space, wall.net, sites[static_cast<std::size_t>(i)].front()).transpose();
   return at;
 }
-
-}  // namespace
 
 WallPoints::WallPoints(const surface::TubeWall& wall, const surface::Symmetry& symmetry, Phases* phases) : sites_(positions(wall, wall.sites)) {
   own_ = ranks_.divide_in_order(symmetry);

@@ -14,6 +14,9 @@
 
 namespace tanktread::coupling {
 
+/// Returns the positions of parametric points of a wall; of several sites for the same point, the first.
+Net positions(const surface::TubeWall& wall, const stokes::Sites& sites);
+
 /// Collocation points of a wall, and in a channel the midpoints of elements, with their division among the ranks.
 ///
 /// If the velocity vanishes at the collocation points of a wall, the residual velocity between these points has the same sign everywhere, so that

@@ -72,5 +72,48 @@ TEST(Congruence, MapsRowsOfTheWallToRows) {
   }
 }
 
+TEST(Reflections, OfAWallAreFoundWithItsImagesAlongTheAxis) {
+  const auto order = [&](const surface::TubeWall& wall) { return reflections(wall, positions(wall, wall.sites)).order(); };
+  surface::TubeOptions odd = circle();
+  odd.azimuthal_elements = 7;
+  EXPECT_EQ(order(open(circle())), 8);
+  EXPECT_EQ(order(open(rectangle(1))), 8);
+  EXPECT_EQ(order(open(odd)), 4);
+  EXPECT_EQ(order(bent()), 2);
+  EXPECT_EQ(order(surface::periodic_tube_wall(surface::outline(circle()), circle(), 3, 6)), 8);
+}
+
+// A dense matrix whose entries satisfy A(Q i, Q p) = Q A(i, p) Q^T, and its factors (4.37) for fields without and with a symmetry.
+TEST(WallFactors, AreThoseOfTheWholeMatrix) {
+  const surface::TubeWall wall = open(rectangle(1));
+  const Net sites = positions(wall, wall.sites);
+  const auto n = static_cast<int>(sites.rows());
+  const surface::Symmetry group = reflections(wall, sites);
+  const auto block = [&](int i, int p) -> Mat3 {
+    const Vec3 d = (sites.row(i) - sites.row(p)).transpose(), at = sites.row(p).transpose();
+    return std::exp(-d.squaredNorm()) * (Mat3::Identity() + d * d.transpose() + 0.3 * at * at.transpose());
+  };
+  Eigen::MatrixXd whole(3 * n, 3 * n);
+  for (int i = 0; i < n; ++i)
+    for (int p = 0; p < n; ++p) whole.block<3, 3>(3 * i, 3 * p) = block(i, p) + (i == p ? 3 : 0) * Mat3::Identity();
+  Net f = Net::Random(n, 3);
+  const auto as_vector = [](const Net& net) { return Eigen::Map<const Eigen::VectorXd>(net.data(), net.size()); };
+  const Ranks ranks;
+  for (const bool symmetric : {false, true}) {
+    const surface::Symmetry fields = symmetric ? surface::Symmetry({group.images()[1]}, sites) : surface::Symmetry(n);
+    WallFactors factors(group, fields);
+    for (const int k : ranks.share(static_cast<int>(factors.fundamental().size())))
+      for (int p = 0; p < n; ++p) {
+        const int i = factors.fundamental()[static_cast<std::size_t>(k)];
+        factors.add(i, p, whole.block<3, 3>(3 * i, 3 * p));
+      }
+    factors.factor(ranks);
+    fields.complete(f);
+    const Eigen::VectorXd of = whole * as_vector(f), transposed = whole.transpose() * as_vector(f);
+    EXPECT_LT((factors.solve(Eigen::Map<const Net>(of.data(), n, 3)) - f).norm() / f.norm(), 1e-12);
+    EXPECT_LT((factors.solve_transposed(Eigen::Map<const Net>(transposed.data(), n, 3)) - f).norm() / f.norm(), 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace tanktread::coupling
