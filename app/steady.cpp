@@ -216,7 +216,8 @@ class SteadySearch : public SteadyRun {
     write();
     if (!found.converged)
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g; another Steady/step or Steady/method "
-                                 "`newton-krylov` may help", found.iterations, found.rest));
+                                 "`%s` may help", found.iterations, found.rest,
+                                 scene_.steady.method == "anderson" ? "newton-krylov" : "anderson"));
   }
 };
 
@@ -236,6 +237,7 @@ class PeriodicSearch : public SteadyRun {
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     found_.period = returns_->period(), found_.mean_velocity = returns_->mean_velocity();
+    system_->motion->restore_volume(state_.x);
     write();
     if (!found.converged)
       throw RunFailure(formatted("no periodic motion was found: after %d periods the residual is %.2g", found.iterations, found.rest));
@@ -262,6 +264,7 @@ class BranchSearch : public SteadyRun {
       stop_where_told();
       use(pool_.at({point->parameter, point->second}, state_.x));
       state_.x = point->x, state_.time = k, totals_.step = k;
+      system_->motion->restore_volume(state_.x);
       report_.iterations = point->iterations, report_.error = point->rest, found_.point = *point;
       write();
       if (ranks_.rank() == 0 && !request_.quiet)

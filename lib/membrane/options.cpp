@@ -53,10 +53,12 @@ void declare_bending(Options& options, deck::Section& section) {
   section.key("bending number", options.bending_number, deck::not_negative(), "1",
               "dimensionless bending modulus E_b/(G_s R_C^2) of the membrane, instead of `bending modulus`. G_s: surface shear modulus, "
               "for a drop the surface tension. R_C: radius of the sphere with the particle's volume");
-  if (section.given("spontaneous curvature")) options.bending_reference = "flat";
+  if (section.given("spontaneous curvature") || options.law == "surface tension") options.bending_reference = "flat";
   section.key("bending reference", options.bending_reference, deck::Choice{"unstressed", "flat"},
               "curvature at which the bending moment of the membrane vanishes. `unstressed`: curvature of the unstressed surface. `flat`: "
-              "Membrane/spontaneous curvature everywhere, by default 0");
+              "Membrane/spontaneous curvature everywhere, by default 0; default with `spontaneous curvature` and for Membrane/law "
+              "`surface tension`");
+  if (options.bending(1, 1) == 0) section.without_effect({"bending reference"}, "without bending modulus or bending number");
   section.key("spontaneous curvature", options.spontaneous_curvature, deck::any(), "1/length",
               "spontaneous curvature c0 of the membrane in Helfrich's bending energy (3.8), with Membrane/bending reference `flat`: sum of "
               "the principal curvatures, positive where the surface bulges outwards; 0 if not given");
@@ -153,6 +155,8 @@ void Options::reject(Rejections& to) const {
           "it is implemented by virtual work, in the form `weak` only");
   to.pair(law == "surface tension" && pre_inflation != 0.0, "Membrane/pre-inflation", "Membrane/law `surface tension`",
          "a fluid interface has no unstressed shape");
+  to.pair(bending_reference == "unstressed" && law == "surface tension", "Membrane/bending reference `unstressed`",
+          "Membrane/law `surface tension`", "a fluid interface has no unstressed shape, whose curvature it could keep at points that flow");
   to.pair(relaxation_time.has_value() && law == "surface tension", "Membrane/relaxation time", "Membrane/law `surface tension`",
          "the viscosity of a fluid interface has no memory, because the interface has no stress-free shape");
   to.pair(viscosity.any() && load == "strong",

@@ -68,6 +68,11 @@ void AdaptationOptions::declare(deck::Section& section) {
   section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length",
               "largest allowed displacement of the surface by one coarsening of the mesh; default 1e-4 R_C, where R_C is the radius of the "
               "sphere with the particle's volume");
+  if (!enabled)
+    section.without_effect({"indicator", "surface tolerance", "load tolerance", "reference length", "reference curvature variation",
+                            "reference traction variation", "reference velocity variation", "limit aspect ratio", "order", "film resolution",
+                            "minimum length", "interval", "levels", "largest number of points", "coarsen", "coarsening margin",
+                            "coarsening tolerance"}, "without Adaptation/enabled");
 }
 
 void AdaptationOptions::check(int first_points, double first_length) const {

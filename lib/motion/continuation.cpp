@@ -46,6 +46,10 @@ void ContinuationOptions::declare(deck::Section& section) {
   section.key("second values", second_values, deck::any(), "that of the key",
               "values of the key Continuation/second parameter for which the fold is computed, in this order. Values that are evenly "
               "spaced, or have a constant ratio, need the least work");
+  if (section.given("parameter") && !section.given("to"))
+    throw UserError(section.path("to") + " is missing: give the value of " + parameter + " at which the branch of steady shapes ends.");
+  if (second_parameter == parameter)
+    throw UserError(section.path("second parameter") + " must differ from " + section.path("parameter") + ", but both are " + parameter + ".");
   if (second_parameter.has_value() != second_values.has_value())
     throw UserError(section.path("second parameter") + " and " + section.path("second values") + " belong together: give both or none.");
 }
@@ -175,7 +179,10 @@ std::optional<Branch::Solved> Branch::stepped() {
   for (double first = step_; step_ > least * first; step_ *= 0.5) {
     Place next = predicted(t);
     std::optional<double> asked = end_before(next);
-    if (options_.method == "natural" && !asked) asked = next.q * unit_;
+    if (options_.method == "natural" && !asked) {
+      if ((next.q - now.place.q) * heading_ <= 0) continue;  // the prediction lies beyond a fold
+      asked = next.q * unit_;
+    }
     if (!asked) {
       auto solved = on_plane(next, t, steady_.tolerance);
       if (!near(solved)) continue;
@@ -277,8 +284,9 @@ void Branch::advance() {
   step_ = std::min(step_ * change, options_.largest_change * std::numbers::sqrt2);
   auto solved = stepped();
   if (!solved)
-    throw RunFailure(formatted("the branch was lost beyond %s = %.8g: no further steady shape was found", options_.parameter.c_str(),
-                               last_.back().place.q * unit_));
+    throw RunFailure(formatted("the branch was lost beyond %s = %.8g: no further steady shape was found%s", options_.parameter.c_str(),
+                               last_.back().place.q * unit_,
+                               options_.method == "natural" ? "; there may be a fold, which Continuation/method `natural` does not pass" : ""));
   solved->s = last_.back().s + length(solved->place - last_.back().place);
   const double before = std::exchange(heading_, solved->place.q - last_.back().place.q);
   const bool folded = before * heading_ < 0;

@@ -121,7 +121,8 @@ Net ReturnMap::operator()(const Net& x) {
   Net found;
   const double most = 1.5 * options_.period;
   run(dynamics_, time_, nox_, x, most, [&](const State& before, const State& after) {
-    if (after.time < 0.5 * options_.period || !(ahead(before.x) < 0 && ahead(after.x) >= 0)) return false;
+    const double least = 0.5 * options_.period;
+    if (after.time < least || !(ahead(before.x) < 0 && ahead(after.x) >= 0)) return false;
     const DenseOutput within(before, after);
     double early = before.time, late = after.time;
     while (late - early > 1e-14 * late) {
@@ -129,6 +130,7 @@ Net ReturnMap::operator()(const Net& x) {
       if (middle <= early || middle >= late) break;
       (ahead(within.shape(middle)) < 0 ? early : late) = middle;
     }
+    if (late < least) return false;
     found = arrived(late, x, within.shape(late));
     return true;
   });

@@ -42,6 +42,7 @@ void SpectrumOptions::declare(deck::Section& section) {
   section.key("difference", difference, deck::between(1e-7, 1e-1), "R_C",
               "step of the finite differences from which the Jacobian of the velocity is computed: largest displacement of a control "
               "point in a perturbed shape, divided by R_C, the radius of the sphere with the particle's volume");
+  if (method == "dense") section.without_effect({"shift", "block"}, "with Spectrum/method `dense`");
 }
 
 const char* name(ModeKind kind) {

@@ -104,8 +104,8 @@ void check_needs(const ParticleScene& scene) {
 
 /// Throws UserError if the final time or the expected period is missing, or if it is not a multiple of the period of the flow.
 void check_times(const ParticleScene& scene) {
-  const bool moves = scene.in_system() || scene.particle.motion != Motion::prescribed;
-  if (std::isnan(scene.time.final_time) && scene.runs_in_time() && !scene.only_solids && moves)
+  const bool in_time = scene.runs_in_time() && !scene.continuation.present && !scene.only_solids;
+  if (std::isnan(scene.time.final_time) && in_time && scene.particle.motion != Motion::prescribed)
     throw UserError("Time/final time is missing: give the time at which the run ends, in the deck's unit of time.");
   if (scene.periodic.present && std::isnan(scene.periodic.period))
     throw UserError("Periodic/period is missing: give the expected period, in the deck's unit of time.");

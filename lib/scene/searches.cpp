@@ -53,7 +53,7 @@ void reject_searches(const ParticleScene& scene, Rejections& to) {
   const std::string& unstressed = scene.membrane.stress_free == "resting" ? scene.particle.shape.shape : scene.membrane.stress_free;
   to.pair(steady && scene.periodic.present, "Steady", "Periodic", "a steady shape has no period; give one of them");
   to.add(scene.continuation.present && !steady, "Continuation needs a section Steady, because it continues steady shapes.");
-  to.pair(search && scene.flow.history && !scene.periodic.present, scene.sought(), "Flow/history",
+  to.pair(search && scene.flow.history && !scene.periodic.present, {scene.sought().here, "Steady or Spectrum"}, "Flow/history",
           "no shape is steady in a flow that changes in time");
   to.pair(scene.time.steady_tolerance && scene.flow.history && scene.flow.history->type == "sine", "Time/steady tolerance",
           "Flow/history/type `sine`", "no shape is steady in a flow that oscillates");
@@ -64,7 +64,7 @@ void reject_searches(const ParticleScene& scene, Rejections& to) {
           "the volume must be conserved exactly, because it distinguishes between steady shapes");
   to.pair(search && drop && scene.interface_motion() == coupling::MeshMotion::material, scene.sought(), "Interface/motion `material`",
           "mesh points that move along the interface with the fluid do not become steady; give `normal` or `relaxed`");
-  to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), scene.sought(), scene.flow_choice(),
+  to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), {scene.sought().here, "Steady"}, scene.flow_choice(),
           "the flow rotates, and a membrane whose unstressed shape is not a sphere swings or tumbles while it tank-treads; use Periodic");
   to.pair(scene.spectrum.near && scene.spectrum.method == "krylov", "Spectrum/near", "Spectrum/method `krylov`",
           "that method finds the modes nearest to Spectrum/shift; give that key, or `dense`");

@@ -212,6 +212,8 @@ def mistakes_are_reported_in_one_sentence():
                           ({"set": 3}, "set must be a section of keys"), ({"laws": {"one": 3}}, "the law one must be"), ({"next": {"A/b": 3}}, "a list of values"),
                           ({"experiments": {"a": {"data": [datum | {"value": "much"}]}}}, "much is not a number"),
                           ({"unknown": {"Membrane/capillary numbr": 0.3}}, "capillary number meant"),
+                          ({"unknown": {"Membrane/capillary number": {"start": 0.3, "too": 1}}}, "too is not known"),
+                          ({"unknown": {"Membrane/capillary number": {"start": 0.3, "spacing": "linaer"}}}, "not linaer"),
                           ({"set": {"Time/minimum step": 0.9, "Time/initial step": 0.95, "Membrane/capillary number": 1e-3}, "unknown": {"Particle/radius": 1.0}},
                            "all runs fail")):
         one = {"deck": "deck.yaml", "unknown": {"Membrane/capillary number": 0.3}, "experiments": {"a": {"data": [datum]}}} | change

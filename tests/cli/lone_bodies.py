@@ -80,6 +80,21 @@ def errors_in_a_channel_at_rest_do_not_depend_on_the_unit_of_time():
         check(abs(other - one) < 1e-3 * abs(one), f"{column} is {one}, and {other} in another unit of time")
 
 
+def prescribed_bodies_need_no_final_time():
+    """The run ends with its first row. By symmetry, drags of two spheres that move side by side are equal."""
+    run(deck("""
+Tanktread:
+  Flow: {type: uniform, velocity: [1, 0, 0]}
+  Particles:
+    one: {motion: prescribed, Surface: {elements per side: 3}}
+    two: {motion: prescribed, center: [0, 3, 0], Surface: {elements per side: 3}}
+"""), "--output", "both", "--quiet")
+    check(list(series("both", "time")) == [0], series("both", "time"))
+    one, two = (series("both", f"{name}/drag_x1")[-1] for name in ("one", "two"))
+    check(0 < one < 6 * numpy.pi, one)
+    close(two, one, 1e-10 * one)
+
+
 def a_run_ends_when_a_body_no_longer_turns():
     text = SPHEROID % ("uniaxial extension", 60, "Time: {final time: 20, steady tolerance: 1.0e-3}\n  Output: {interval: 20}")
     for settings in [], ["--set", "Output/power balance=true", "--set", "Solvers/rigid bodies=second kind"]:

@@ -101,6 +101,7 @@ def a_drop_in_pulsating_shear_has_a_periodic_motion():
         run(deck(text % (", final time: 8", "Output: {interval: 8.0}")), "--output", "run", "--quiet", "--overwrite")
         for name in names:
             close(series("found", name)[-1], series("run", name)[-1], 1e-3, name)  # the mesh points are at other places of the interface
+        check(abs(series("found", "volume_error")[-1]) < 1e-12, "the volume is not that of the deck")
     slow = PULSATING % ("simple shear", "1.0e-3", "Particle: {shape: sphere}", "5.0", "", 4, "1.0e-6", "", "Spectrum: {number: 3}\n  %s")
     run(deck(slow % "Periodic: {period: 1.0, tolerance: 1.0e-5}"), "--output", "slow", "--quiet")
     run(deck((slow % "Steady: {}").replace(", history: {type: sine, frequency: 1.0, amplitude: 1.0e-3, mean: 1.0}", "")), "--output", "steady",

@@ -107,6 +107,17 @@ def a_branch_that_turns_back_ends_where_it_began():
     check((numpy.diff(d) > 0).all() and d[-1] > d[fold.argmax()] + 0.02, d)
 
 
+def natural_continuation_stops_at_the_fold():
+    deck(LONG, "long.yaml")
+    said = run(deck(DECK), "long.yaml", "--set", "Surface/elements per side=4", "--set", "Membrane/capillary number=0.117", "--set",
+               "Particle/initial shape/stretch=[1.15, 1.15, 0.756]", "--set", "Continuation/parameter=Membrane/capillary number", "--set",
+               "Continuation/to=0.14", "--set", "Continuation/step=0.002", "--set", "Continuation/method=natural", "--output", "natural",
+               "--quiet", code=3).stderr
+    parameter = series("natural", "parameter")
+    check("does not pass" in said and (numpy.diff(parameter) > 0).all(), said, parameter)
+    close(parameter[-1], series("back", "parameter")[series("back", "fold").argmax()], 1e-4)  # the fold that arclength continuation locates
+
+
 def a_fold_continued_in_a_second_parameter_agrees_with_a_separate_branch():
     coarse = ["--set", "Surface/elements per side=4", "--quiet", "--no-expect"]
     second = ["--set", "Continuation/second parameter=Particle/viscosity ratio", "--set", "Continuation/second values=[1.4, 2]"]
@@ -351,6 +362,11 @@ def the_end_of_a_branch_must_be_allowed_before_its_first_point_is_computed():
     for way, key in (["--set", "Continuation/to=0"], "Membrane/capillary number"), (fold, "Particle/viscosity ratio"):
         said = run(deck(DECK), *branch, *way, code=2).stderr
         check(len(said.splitlines()) == 1 and key in said and not list(pathlib.Path("none").glob("snapshot_*")), said)
+    same = ["--set", "Continuation/to=0.1", "--set", "Continuation/second parameter=Membrane/capillary number", "--set",
+            "Continuation/second values=[0.1, 0.2]"]
+    for way, words in ([], "Continuation/to is missing"), (same, "must differ from Continuation/parameter"):
+        said = run(deck(DECK), *branch, *way, code=2).stderr
+        check(len(said.splitlines()) == 1 and words in said, said)
 
 
 def a_parameter_must_be_a_number_of_the_deck():

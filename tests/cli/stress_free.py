@@ -62,6 +62,7 @@ def contradictory_decks_are_rejected():
         (["Membrane/stress-free shape=cube"], "stress-free shape"),
         (["Membrane/spontaneous curvature=1"], "bending modulus"),
         (["Membrane/spontaneous curvature=1", "Membrane/bending modulus=1", "Membrane/bending reference=unstressed"], "contradict"),
+        (["Membrane/law=surface tension", "Membrane/bending modulus=1", "Membrane/bending reference=unstressed"], "has no unstressed shape"),
     ):
         told = run(deck(DECK), *(word for one in settings for word in ("--set", one)), "--check", code=2).stderr
         check(sentence in told, settings, told)

@@ -389,6 +389,11 @@ def mistakes_are_reported_in_one_sentence():
                         ("deck: deck.yaml\nrecord: [a]\ngrid: [A/b]", "grid must be a section of keys"), ("deck: deck.yaml\nrecord: D", "record must be"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: x, to: 2, number: 3}}", "x is not a number"),
                         ("deck: deck.yaml\nrecord: [a]\nrandom: {number: -1, keys: {A/b: [1]}}", "a whole number above 0"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1, to: 2, number: 2, spaceing: linear}}", "A/b: spaceing is not known"),
+                        ("deck: deck.yaml\nrecord: [a]\nrandom: {number: 2, sede: 5, keys: {A/b: [1]}}", "random: sede is not known"),
+                        ("deck: deck.yaml\nrecord: [a]\nrandom: {number: 2, keys: {A/b: {from: 1, to: 2, number: 2}}}", "A/b: number is not known"),
+                        ("deck: deck.yaml\nrecord: {A/b: a}\ngrid: {A/b: [1, 2]}", "A/b is already a column"),
+                        ("deck: deck.yaml\nrecord: {status: a}\ngrid: {A/b: [1, 2]}", "status is already a column"),
                         ("deck: deck.yaml\nrecord: [a]\nranks: 0", "a whole number above 0"), ("deck: deck.yaml\nrecord: [a]\nlimit: x", "limit: x is not")):
         deck(text, "study.yaml")
         said = _sweep("study.yaml", code=2)

@@ -1,9 +1,7 @@
 #include "system/solids/wall_factors.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "spline/point_search.hpp"
@@ -122,8 +120,8 @@ void WallFactors::add_product(const Net& a, const Net& b) {
 
 void WallFactors::factor(const Ranks& ranks) {
   for (Block& block : blocks_) {
-    ranks.add(std::span<double>(block.matrix.data(), static_cast<std::size_t>(block.matrix.size())));
-    block.factors = DenseFactors(std::exchange(block.matrix, {}));
+    const Eigen::Index n = block.matrix.rows();
+    block.factors = DenseFactors(ranks.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& sum) { sum = std::exchange(block.matrix, {}); }));
   }
 }
 

@@ -11,19 +11,19 @@
 
 namespace tanktread::coupling {
 
-/// Returns the group of reflections of the axes that map a wall onto itself, as permutations of its collocation points `sites`. On a periodic wall,
-/// the image of a point may be a whole period away. A reflection is accepted if it moves every collocation point to a collocation point and every
-/// midpoint of an element to one, and the control points of an open wall to control points, up to 1e-10 tube radii.
+/// Returns the group of reflections of the axes that map a wall onto itself, as permutations of its collocation points `sites`. On a periodic
+/// wall, the image of a point may be a whole period away. A reflection is accepted if it moves collocation points to collocation points, midpoints
+/// of elements to midpoints, and the control points of an open wall to control points, up to 1e-10 tube radii.
 surface::Symmetry reflections(const surface::TubeWall& wall, const Net& sites);
 
-/// LU factors of an operator A on a wall. A commutes with the reflections of the wall, whatever the fields are: it maps fields of one parity to fields
-/// of the same parity. In the basis of one parity, A is a matrix A^c for the components at fundamental points that the parity does not make zero:
+/// LU factors of an operator A on a wall. A commutes with the reflections of the wall: it maps fields of one parity (surface::Parity) to fields of
+/// the same parity. For the fields of one parity c, A is a matrix A^c for the components at fundamental points that the parity does not make zero:
 ///
 ///   A^c = (rows of A at fundamental points) E_c,   A^-1 = sum_c E_c (A^c)^-1 D^-1 E_c^T                                            (4.37)
 ///
 /// Here E_c completes a field of parity c from its components at fundamental points, and D is the diagonal matrix of the numbers of points in the
-/// orbits of these points. With g reflections, the identity included, there are g matrices, 1/g as large as A: factoring takes 1/g^2 of the operations, and the
-/// factors take 1/g of the memory.
+/// orbits of these points. With g reflections, the identity included, there are g matrices with about 1/g of the rows: factoring takes 1/g^2 of the
+/// operations, and the factors take 1/g of the memory.
 ///
 /// If all fields have a symmetry, only the parities that this symmetry allows are needed.
 class WallFactors {

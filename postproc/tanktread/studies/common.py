@@ -90,14 +90,19 @@ def keys_of(given, name):
     return given or {}
 
 
+def only(given, known, name):
+    """Raises Mistake if a section has other keys than those known."""
+    for key in given:
+        expect(key in known, f"{name}: {key} is not known; there are: {', '.join(known)}")
+
+
 def study_of(path, sections, others):
     """Returns the content of a study file. Raises Mistake if it has other keys than `deck`, `sections` and `others`.
     Absent sections are {}. `deck` is a list of paths; decks are searched for next to the file, in the current
     directory, and in the directories of shared()."""
     text, known = content_of(path), sorted({"deck"} | sections | others)
     expect(isinstance(text, dict), f"{path} must be a section of keys: {', '.join(known)}")
-    for key in text:
-        expect(key in known, f"{path}: {key} is not known; there are: {', '.join(known)}")
+    only(text, known, path)
     expect(text.get("deck"), f"{path} names no deck")
     decks = []
     for name in text["deck"] if isinstance(text["deck"], list) else [text["deck"]]:
@@ -116,6 +121,7 @@ def values_of(key, given):
     if not isinstance(given, dict):
         return [given]
     expect({"from", "to", "number"} <= set(given), f"{key}: a range has from, to and number")
+    only(given, ("from", "to", "number", "spacing"), key)
     return spaced(key, given, numpy.linspace(0, 1, whole(given["number"], f"{key}: number")))
 
 

@@ -6,7 +6,7 @@ from ..files import table
 from ..interpolation import interpolated
 from ..mistakes import expect
 from . import silhouette
-from .common import keys_of, number, optional, positive
+from .common import keys_of, number, only, optional, positive
 
 # distance of the default bounds of an unknown from its start: a factor of 1000 or, with linear spacing, log(1000) times
 # the start value
@@ -21,9 +21,12 @@ class Unknown:
     def __init__(self, key, given, owner=None):
         given = given if isinstance(given, dict) else {"start": given}
         self.key, self.owner, self.name = key, owner, key if owner is None else f"{owner}: {key}"
+        only(given, ("start", "known", "error", "from", "to", "spacing"), self.name)
         expect(("known" in given) == ("error" in given), f"{self.name}: `known` and `error` go together")
+        spacing = given.get("spacing", "logarithmic")
+        expect(spacing in ("linear", "logarithmic"), f"{self.name}: the spacing is linear or logarithmic, not {spacing}")
         self.start_value = number(given.get("start", given.get("known")), f"{self.name}: start")
-        self.logarithmic = given.get("spacing") != "linear"
+        self.logarithmic = spacing == "logarithmic"
         expect(not self.logarithmic or self.start_value > 0,
                f"{self.name} starts from a positive number, or has `spacing: linear`")
         self.unit = 1.0 if self.logarithmic else abs(self.start_value) or 1.0

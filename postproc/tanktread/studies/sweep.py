@@ -45,8 +45,9 @@ from ..files import Named, opened
 from ..interpolation import interpolated, mean
 from ..mistakes import Mistake, command_line, expect, log, progress
 from ..runs import Study, text_of
-from .common import keys_of, number, optional, positive, spaced, study_of, values_of, whole
+from .common import keys_of, number, only, optional, positive, spaced, study_of, values_of, whole
 
+RUN = ["status", "processor_seconds", "directory", "message"]  # the last columns of every table
 TAKES = {"last": lambda time, values: values[-1], "smallest": lambda time, values: values.min(),
          "largest": lambda time, values: values.max(), "mean": mean, "all": None}
 
@@ -54,6 +55,7 @@ TAKES = {"last": lambda time, values: values[-1], "smallest": lambda time, value
 def drawn(text):
     """Returns a list of settings {key: value}, drawn at random as the section `random` requests."""
     expect("number" in text and keys_of(text.get("keys"), "random: keys"), "random needs a number and keys")
+    only(text, ("number", "seed", "keys"), "random")
     size, seed = whole(text["number"], "random: number"), text.get("seed", 1)
     expect(isinstance(seed, int) and seed >= 0, f"random: seed must be a whole number, 0 or above, but is {seed}")
     generator = numpy.random.default_rng(seed)
@@ -65,6 +67,7 @@ def drawn(text):
         else:
             expect(isinstance(given, dict) and {"from", "to"} <= set(given),
                    f"{key}: random values have from and to, or are a list to draw from")
+            only(given, ("from", "to", "spacing"), key)
             columns[key] = spaced(key, given, generator.random(size))
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
@@ -159,6 +162,8 @@ class Sweep:
         self.study.limit = optional(positive, text, "limit", path)
         self.keys = [key for key in dict.fromkeys(key for row in self.rows for key in row)
                      if len({str(row.get(key)) for row in self.rows}) > 1]
+        for name in self.columns:
+            expect(name not in (*self.keys, *RUN), f"{path}: record: {name} is already a column of the table")
 
     def make(self):
         """Makes the runs and prints the progress on standard error."""
@@ -194,7 +199,7 @@ class Sweep:
         messages = [own.get("message", "") if one.done else one.message for one, own in zip(self.outcomes, found)]
         with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
-            out.writerow([*self.keys, *single, "status", "processor_seconds", "directory", "message"])
+            out.writerow([*self.keys, *single, *RUN])
             for one, message, *values in zip(self.outcomes, messages, *shown.values(), *columns.values()):
                 out.writerow([*values, one.status, f"{one.processor_seconds:.3g}", one.directory.name, message])
         for name in [*whole, "time"] if whole else []:
