@@ -32,8 +32,7 @@ void TimeOptions::declare(deck::Section& section) {
               "stores no matrix of the boundary integrals. `crank-nicolson`: the scheme of Maestre et al. 2017 (4.1)");
   std::optional<double> end;
   section.key("final time", end, deck::positive(), "time",
-              "time at which the run ends; required for a time-dependent run. If Particle/motion is `prescribed` for all particles, it may be "
-              "left out: the run then ends with its first row, the resistances");
+              "time at which the run ends; may be left out if all motions are `prescribed`: the run then ends with its first row, the resistances");
   final_time = end.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("tolerance", tolerance, deck::between(1e-13, 1.0), "1",
               "largest allowed error of a time step: root mean square displacement of the control points divided by R_C, the radius of the "

@@ -24,7 +24,8 @@ class Unknown:
         only(given, ("start", "known", "error", "from", "to", "spacing"), self.name)
         expect(("known" in given) == ("error" in given), f"{self.name}: `known` and `error` go together")
         spacing = given.get("spacing", "logarithmic")
-        expect(spacing in ("linear", "logarithmic"), f"{self.name}: the spacing is linear or logarithmic, not {spacing}")
+        expect(spacing in ("linear", "logarithmic"),
+               f"{self.name}: the spacing is linear or logarithmic, not {spacing}")
         self.start_value = number(given.get("start", given.get("known")), f"{self.name}: start")
         self.logarithmic = spacing == "logarithmic"
         expect(not self.logarithmic or self.start_value > 0,
