@@ -12,7 +12,7 @@ void InterfaceOptions::declare(deck::Section& section) {
   section.key("relaxation", relaxation, deck::not_negative(), "1",
               "dimensionless speed at which the mesh of a drop slides along the interface to keep its elements well shaped, with "
               "Interface/motion `relaxed`: it slides like an elastic membrane of capillary number 1/relaxation. Increase it if elements "
-              "become distorted");
+              "become distorted. With 0.1, drops that an unbounded flow stretches err less (see the manual's page Mesh of a drop)");
   if (motion && *motion != MeshMotion::relaxed)
     section.without_effect({"relaxation"}, "with Interface/motion `" + deck::word(mesh_motions, *motion) + "`");
 }
