@@ -63,7 +63,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     stage.time = state.time + dt;
     stage.y = predicted;
     dynamics.improve_start(stage.y, state.x, scheme.shift);
-    dynamics.at(stage.time, state.time);
+    dynamics.set_time(stage.time, state.time);
     solve(dynamics, options_, rhs, scheme.shift, secants, stage);
     attempts.report.iterations += stage.iterations;
 

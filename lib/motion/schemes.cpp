@@ -58,13 +58,13 @@ StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit
     const double dt = attempts.next();
     const Net& k1 = state.history.front();
     const auto slope = [&](double part, const Net& x) {
-      dynamics.at(state.time + part * dt, state.time);
+      dynamics.set_time(state.time + part * dt, state.time);
       return dynamics.velocity(x);
     };
     const Net k2 = slope(0.5, state.x + dt / 2 * k1);
     const Net k3 = slope(0.75, state.x + 3 * dt / 4 * k2);
     Net y = state.x + dt * (2. / 9 * k1 + 1. / 3 * k2 + 4. / 9 * k3);
-    dynamics.restore_volume(y);
+    dynamics.restore_constraints(y);
     const Net k4 = slope(1, y);
     attempts.report.iterations += 3;
 

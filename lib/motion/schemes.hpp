@@ -117,7 +117,7 @@ template <class Memory>
 int measure_stiffness(coupling::Dynamics& dynamics, State& state, Memory& memory) {
   const auto points = static_cast<double>(state.x.rows());
   const int iterations = memory.points == points ? 3 : 8;
-  dynamics.at(state.time, state.time);
+  dynamics.set_time(state.time, state.time);
   const double found = stiffness(dynamics, state.x, state.history.front(), state.direction, iterations);
   if (std::isfinite(found)) memory.stiffness = found;
   memory.age = 0, memory.points = points;

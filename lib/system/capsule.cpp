@@ -11,8 +11,8 @@
 namespace tanktread::coupling {
 
 /// Sets the time. Cached results are kept unless the flow or the cell changes.
-void Capsule::at(double time, double start) {
-  const bool other_flow = surroundings_.flow.at(time, start), other_cell = parameters_.cell && deform_cell(time);
+void Capsule::set_time(double time, double start) {
+  const bool other_flow = surroundings_.flow.set_time(time, start), other_cell = parameters_.cell && deform_cell(time);
   if (other_flow || other_cell) latest_.reset();
 }
 
@@ -277,7 +277,7 @@ void Capsule::forget_recycled() const {
   if (bodies_.tractions) bodies_.tractions->forget_recycled();
 }
 
-void Capsule::restore_volume(Net& x) {
+void Capsule::restore_constraints(Net& x) {
   bodies_.rigid.fit_to(x);
   if (parameters_.volume.constraint != VolumeConservation::exact) return;
   const auto clock = phases_.time("volume");

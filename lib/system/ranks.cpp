@@ -194,8 +194,8 @@ std::vector<int> Ranks::share(int n) const {
 
 bool Ranks::any(bool mine) const {
   const auto clock = impl_->time();
-  int said = mine, together = 0;
-  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_MAX, said, Teuchos::outArg(together));
+  int local = mine, together = 0;
+  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_MAX, local, Teuchos::outArg(together));
   return together != 0;
 }
 

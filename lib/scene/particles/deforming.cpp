@@ -76,7 +76,7 @@ class Deforming : public ParticleSystem {
   bool hold_apart(motion::State& state, double step) override {
     if (!scene_.contact.limiter) return true;
     const auto clock = phases_.time("contact");
-    capsule_->at(state.time, state.time - step);
+    capsule_->set_time(state.time, state.time - step);
     const double least = scene_.least_radius();
     Limiter limiter(members_, *capsule_, ranks_, scene_.contact.limit * least, scene_.flow.viscosity * scene_.rate() * least * least,
                     scene_.rate(), [&] { fields_->set_state(state.x); });
@@ -129,7 +129,7 @@ class Deforming : public ParticleSystem {
     if (replaced_.empty()) return false;
     const std::unique_ptr<SurfaceFields> fields = std::move(fields_);
     rebuild(own.x);
-    capsule_->restore_volume(own.x);
+    capsule_->restore_constraints(own.x);
     if (!own.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
     apply_contacts();
     std::vector<const Body*> bodies(members_.size(), nullptr);
