@@ -63,7 +63,7 @@ membrane::Materials materials(std::span<const Particle> particles);
 stokes::Measure measure(std::span<const Particle> particles);
 
 /// Returns, for each element, whether its load is per current area rather than per unstressed area.
-std::vector<bool> measured_on_present(std::span<const Particle> particles);
+std::vector<bool> loads_per_current_area(std::span<const Particle> particles);
 
 /// Returns the net of the surface to whose area the loads (force per area) refer: for each particle, its rows of `x` if its loads are per current
 /// area, otherwise its rows of `unstressed`.

@@ -190,9 +190,9 @@ Eigen::VectorXd ShapeCoordinates::coordinates(const Net& field) const {
   Eigen::VectorXd y(size());
   y.head(shape_size()) = coordinates_of_shape(own);
   if (!motion_) return y;
-  Net rest = -motion_->slid(state_, own - across(y));
-  rest.topRows(field.rows()) += field;
-  y.tail(fields_.cols()) = fields_.transpose() * Eigen::Map<const Eigen::VectorXd>(rest.data() + own.size(), fields_.rows());
+  Net remainder = -motion_->slid(state_, own - normal_displacement(y));
+  remainder.topRows(field.rows()) += field;
+  y.tail(fields_.cols()) = fields_.transpose() * Eigen::Map<const Eigen::VectorXd>(remainder.data() + own.size(), fields_.rows());
   return y;
 }
 

@@ -33,7 +33,7 @@ Vec3 velocity_integral(const SolidScene& scene, const Solids::Flow& flow) {
 SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow)
     : scene_(scene),
       flow_(flow),
-      particles_(space, scene.solids->viscosity(), scene.quadrature, &scene.solids->cell(), {.across = scene.solids->across()}) {}
+      particles_(space, scene.solids->viscosity(), scene.quadrature, &scene.solids->cell(), {.target_range = scene.solids->range()}) {}
 
 void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> own) {
   Solids& solids = *scene_.solids;

@@ -93,7 +93,7 @@ class Wall {
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }
 
   /// Returns the lowest and highest coordinates of the wall in the axes of the cell.
-  std::array<Vec3, 2> across() const { return cell_->range(surface_.net); }
+  std::array<Vec3, 2> range() const { return cell_->range(surface_.net); }
 
   /// Converts the control values of a traction f, one row per collocation site of the wall, to control values on the space of layer(). Changes f only
   /// if the wall is periodic, because f is then a periodic spline, whereas this space is not periodic. from_space() multiplies by the transpose of
