@@ -201,7 +201,7 @@ class Capsule : public Dynamics {
   void push_bodies(const Net& x);
   Net work_of_loads(const Net& x, std::vector<Net>& sums);
   Net membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume = nullptr);
-  Net explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer);
+  Net explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer);
   Net defect_here(const Net& x, const Net& u);
   // Cells of lattices, tubes, plates and posts (capsule_cell.cpp).
   bool deform_cell(double time);
@@ -210,7 +210,7 @@ class Capsule : public Dynamics {
   void set_tube_shape(const Net& x);
   void make_solid_response();
   void set_solid_shape(const Net& x);
-  void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
+  void add_solids(const Net& x, const Net& f, const Net& particle_velocity, bool with_empty, Net& u);
   Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
   // Linear systems (capsule_unknowns.cpp).
   Net velocity_load(const Net& x, const Net& v);

@@ -107,13 +107,13 @@ Net CapsuleJacobian::without_pressure(Net work, const Net& db) const {
 ///   B J dx = P (grad v_inf dx - (1/mu) R^{-1} A M0^{-1} H dx)                                                                      (4.3)
 ///
 /// P is the volume projection (2.8), v_inf the ambient velocity, R the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the
-/// membrane tangent. `work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies, B is the identity
-/// and B J dx is 0. The layers and the tube are applied once, to the sum of all loads.
-Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& work) {
-  const bool moves = v.size() > 0 && has_system(), displaced = dx.size() > 0;
-  if (!moves && !displaced) return v;
+/// membrane tangent. `added_work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies, B is the
+/// identity and B J dx is 0. The layers and the tube are applied once, to the sum of all loads.
+Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& added_work) {
+  const bool has_velocity = v.size() > 0 && has_system(), displaced = dx.size() > 0;
+  if (!has_velocity && !displaced) return v;
   Net moving, work_change;
-  if (moves) {
+  if (has_velocity) {
     moving = without_flux(v);
     clear_rigid(parameters_.particles, moving);
     if (membranes_.viscous()) work_change = membranes_.viscous_work_change(moving);
@@ -125,7 +125,7 @@ Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Ne
   }
   const Net load = work_change.size() > 0 ? membranes_.solved(std::move(work_change)) : Net();
   Net u = Net::Zero(std::max(v.rows(), dx.rows()), 3);
-  if (moves && frozen_.has_double()) u = frozen_.double_layer(moving);
+  if (has_velocity && frozen_.has_double()) u = frozen_.double_layer(moving);
   if (load.size() > 0) u -= frozen_.single_layer(load) / parameters_.viscosity;
   if (tube_) u += tube_->frozen_response(load, moving);
   if (displaced && flow_at_sites_) {

@@ -163,8 +163,8 @@ void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std:
 Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z) {
   Eigen::VectorXd work = z.transpose() * weighted_residual_;
   if (!walls_.tube || !walls_.tube->fixed() || !all_rigid()) return work;
-  const Tube::Leak leak = walls_.tube->leak(load(y));
-  for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(leak, walls_.tube->respond(load(as_net(z.col(k)))));
+  const Tube::WallResidual residual = walls_.tube->wall_residual(load(y));
+  for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(residual, walls_.tube->respond(load(as_net(z.col(k)))));
   return work;
 }
 

@@ -114,9 +114,9 @@ class Test : public NOX::StatusTest::Generic {
   Test(const FixedPoint::Norm& norm, double unit, double tolerance, int most) : norm_(norm), unit_(unit), tolerance_(tolerance), most_(most) {}
   NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const NOX::Abstract::Group& group = solver.getSolutionGroup();
-    const double rest = group.isF() ? norm_(net(group.getF(), unit_)) : std::numeric_limits<double>::quiet_NaN();
-    if (rest <= tolerance_) return status_ = NOX::StatusTest::Converged;
-    return status_ = !std::isfinite(rest) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
+    const double residual = group.isF() ? norm_(net(group.getF(), unit_)) : std::numeric_limits<double>::quiet_NaN();
+    if (residual <= tolerance_) return status_ = NOX::StatusTest::Converged;
+    return status_ = !std::isfinite(residual) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
   }
   NOX::StatusTest::StatusType getStatus() const override { return status_; }
   std::ostream& print(std::ostream& stream, int) const override { return stream; }
