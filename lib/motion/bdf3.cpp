@@ -33,7 +33,7 @@ struct Differentiation {
 
 /// Makes a starting step by TR-BDF2, and stores the position before this step for later BDF3 steps.
 StepReport Bdf3::start(coupling::Dynamics& dynamics, State& state, double limit) {
-  Place before{state.time, state.x};
+  PastPosition before{state.time, state.x};
   const StepReport report = starter_.advance(dynamics, state, limit);
   state.places.insert(state.places.begin(), std::move(before));
   if (state.places.size() == places) {

@@ -50,7 +50,7 @@ Adapted transferred(const Subject& of, std::unique_ptr<Body> target, const Move&
   };
   exchange(result.state.x);
   for (Net& slope : result.state.history) exchange(slope);
-  for (motion::Place& place : result.state.places) exchange(place.x);
+  for (motion::PastPosition& place : result.state.places) exchange(place.x);
   exchange(result.state.direction);
   std::vector<Net> pairs = of.state.secants.pairs();
   for (Net& net : pairs) exchange(net);
