@@ -129,7 +129,7 @@ class Run {
       particle_->undo_adapt(state_.x);
       results_.remesh(particle_->body(), particle_->bezier());
     });
-    particle_->hold_by(totals_.contacts);
+    particle_->set_contacts(totals_.contacts);
     if (!error.empty()) fail(error);
     if (!undone.empty()) fail(undone);
     return by_signal;
@@ -198,7 +198,7 @@ class Run {
     for (int rejected = 0;; ++rejected) {
       report_ = scheme_->advance(motion, state_, limit);
       report_.rejected += rejected;
-      if (particle_->hold_apart(state_, report_.step)) return;
+      if (particle_->enforce_gaps(state_, report_.step)) return;
       if (scene_.time.fixed_step)
         throw RunFailure(
             "after a step of fixed length particles are too close for Contact/limiter to hold them apart: set a smaller Time/fixed step");

@@ -79,7 +79,7 @@ StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limi
     attempts.report.iterations += stages;
 
     const double error = dynamics.norm(0.8 * (state.x - y) + 0.4 * dt * (v + slope)) / (options_.tolerance * step_share(options_.tolerance, 2));
-    const bool accepted = attempts.holds(error, "stabilised");
+    const bool accepted = attempts.accepts(error, "stabilised");
     const double factor = std::isfinite(error) ? step_factor(error, accepted ? memory.error : 0, 3) : 0.3;
     if (accepted) {
       memory.age += 1;

@@ -67,9 +67,9 @@ class RigidTractions;
 /// Plates and posts: the velocity (2.47) that they cause is added to the right-hand side and to B in the same way.
 class Capsule : public Dynamics {
  public:
-  /// `unstressed` and `rest`: control nets of the unstressed and of the resting surfaces, of shape (N, 3) on `space`. The motion conserves
-  /// `kept_volume` of each particle if it is set, and otherwise the volume of the particle in `rest`.
-  Capsule(const spline::Space& space, const Net& unstressed, const Net& rest, const stokes::AmbientFlow& flow,
+  /// `unstressed` and `resting`: control nets of the unstressed and of the resting surfaces, of shape (N, 3) on `space`. The motion conserves
+  /// `kept_volume` of each particle if it is set, and otherwise the volume of the particle in `resting`.
+  Capsule(const spline::Space& space, const Net& unstressed, const Net& resting, const stokes::AmbientFlow& flow,
           const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;
 
@@ -226,7 +226,7 @@ class Capsule : public Dynamics {
   void record_solve(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
 
   const spline::Space& space_;
-  Net rest_;
+  Net resting_;
   Surroundings surroundings_;
   CapsuleParameters parameters_;
   Phases& phases_;

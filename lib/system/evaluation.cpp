@@ -96,8 +96,8 @@ Evaluation::SolidFlow Evaluation::solid_flow() {
   SolidResponse& solids = *system_->solids();
   SolidFlow found{.flow = {}, .caused = solids.respond(load_, unknowns_)};
   found.flow = found.caused + solids.empty();
-  found.caused_integral = solids.velocity_integral(found.caused, load_, unknowns_);
-  found.velocity_integral = found.caused_integral + velocity_integral(solids.scene(), solids.empty());
+  found.caused_integral = solids.flow_integral(found.caused, load_, unknowns_);
+  found.velocity_integral = found.caused_integral + solids_flow_integral(solids.scene(), solids.empty());
   return found;
 }
 

@@ -9,7 +9,7 @@ namespace tanktread::coupling {
 /// positions, normals and velocities. Rows: points or sites of this drop.
 struct DropSamples {
   Net x, b, v;
-  Net places, normals, velocities;
+  Net sites, normals, velocities;
 };
 
 /// Motion W (4.14) of a shape: W(x) = velocity + gradient (x - centre).

@@ -134,7 +134,7 @@ double PowerBalance::residual_power(const Net& load, const Net& residual_velocit
 Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
   Net all = v;
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p)
-    if (rigid.holds(p) && rigid.density(p).size() > 0) capsule_.particles()[p].block.rows(all) = rigid.density(p);
+    if (rigid.is_rigid(p) && rigid.density(p).size() > 0) capsule_.particles()[p].block.rows(all) = rigid.density(p);
   return all;
 }
 

@@ -243,7 +243,7 @@ Adapted adapted(const ParticleScene& scene, const Body& body, const spline::Bloc
   return coarser;
 }
 
-void refine_alone(const ParticleScene& scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
+void refine_isolated_body(const ParticleScene& scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
   if (!scene.adaptation.enabled) return;
   constexpr int most = 10;
   for (int k = 0; k < most; ++k) {

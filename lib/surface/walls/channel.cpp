@@ -201,8 +201,8 @@ Channel::Section Channel::section_of(const SectionParameters& at) const {
   const double begin = own_.bend_start;
   if (!own_.bend_radius || at.s <= begin) return {Vec3(at.s, 0, 0), Vec3::UnitX(), Vec3::UnitY(), at.factor};
   const double r = *own_.bend_radius, all = own_.bend_angle * pi / 180, angle = std::min((at.s - begin) / r, all), rest = at.s - begin - r * angle;
-  const Vec3 along(std::cos(angle), std::sin(angle), 0), across(-along[1], along[0], 0);
-  return {Vec3(begin, r, 0) - r * across + rest * along, along, across, at.factor};
+  const Vec3 along(std::cos(angle), std::sin(angle), 0), normal(-along[1], along[0], 0);
+  return {Vec3(begin, r, 0) - r * normal + rest * along, along, normal, at.factor};
 }
 
 Channel::Section Channel::at(double u) const { return section_of(in_period(u)); }
@@ -223,7 +223,7 @@ Vec3 Channel::coordinates(const Vec3& x) const {
       s = begin + r * angle;
     } else {
       const Section after = section(begin + r * all);
-      y = (x - after.centre).dot(after.across);
+      y = (x - after.centre).dot(after.normal);
       s = begin + r * all + (x - after.centre).dot(after.along);
     }
   }

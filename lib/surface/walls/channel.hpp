@@ -24,7 +24,7 @@ class Channel {
   explicit Channel(const TubeOptions& options);
 
   struct Section {
-    Vec3 centre, along, across;  ///< C, dC/ds and N
+    Vec3 centre, along, normal;  ///< C, dC/ds and N
     Vec2 factor;
   };
   Section section(double s) const;

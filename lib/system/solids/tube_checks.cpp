@@ -40,7 +40,7 @@ std::vector<Vec3> points_of_caps(const surface::TubeWall& wall) {
       continue;
     }
     const surface::Channel::Section at = wall.channel->section(s);
-    const auto place = [&](const surface::Vec2& p) -> Vec3 { return at.centre + p[0] * at.across + p[1] * Vec3::UnitZ(); };
+    const auto place = [&](const surface::Vec2& p) -> Vec3 { return at.centre + p[0] * at.normal + p[1] * Vec3::UnitZ(); };
     add_points_of_cap(wall.channel->outline(s), place, points);
   }
   return points;
