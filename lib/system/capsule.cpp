@@ -120,7 +120,6 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
   Net v = explicit_velocity(x, f, {}, &e.response_);
   if (!bodies_.tractions) bodies_.rigid.add_load_correction(v), bodies_.rigid.subtract_prescribed(v);
   volumes_.constrain(v, volume);
-  membranes_.set_viscous_shape(x);
   if (bodies_.tractions) v = solve_tractions(e, x, volume, symmetric(v));
   else if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, e.error_);
   e.unknowns_ = v;
@@ -205,13 +204,11 @@ Net Capsule::defect_here(const Net& x, const Net& u) {
   Evaluation e(*this, x);
   Net f = membrane_load(e, x, &volume);
   volumes_.constrain(inside, volume);
-  membranes_.set_viscous_shape(x);
   if (viscous()) f += membranes_.viscous_load(x, inside);
   Net residual = explicit_velocity(x, f, layers_.has_double() ? inside : Net(), nullptr) - inside;
   if (layers_.has_double()) {
     const auto clock = phases_.time("velocity system");
-    layers_.set_double_shape(x);
-    residual += targets_.control_values(layers_.apply_double(inside));
+    residual += targets_.control_values(layers_.apply_double(x, inside));
   }
   volumes_.constrain(residual, volume);
   return symmetric(residual - (u - inside));

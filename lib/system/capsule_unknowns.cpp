@@ -123,7 +123,6 @@ Net Capsule::traction_product(const Net& x, const VolumeConstraint& volume, cons
   const Net v = deformable_velocity(volume, y), load = traction_load(x, y, v);
   Net other = viscous() || caused.size() == 0 ? load : Net();  // load whose induced velocity is not contained in `caused`
   if (viscous() && caused.size() > 0) clear_rigid(particles(), other);
-  layers_.set_double_shape(x);
   Net u = layers_.apply(x, v, other);
   if (caused.size() > 0) u += caused;
   if (duct_.tube) u += duct_.tube->respond(load, v).velocity;

@@ -107,10 +107,7 @@ Tube::Checks Evaluation::checks() {
 }
 
 const Net& Evaluation::viscous_work() {
-  if (viscous_work_.size() == 0) {
-    system_->membranes_.set_viscous_shape(x_);
-    viscous_work_ = system_->membranes_.viscous_work(solved_fluid_velocity());
-  }
+  if (viscous_work_.size() == 0) viscous_work_ = system_->membranes_.viscous_work(x_, solved_fluid_velocity());
   return viscous_work_;
 }
 
