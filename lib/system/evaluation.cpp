@@ -131,7 +131,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
     system.geometry().volume_gradient(x_, indices(particle.block.n_elements, particle.block.first_element), flux);
     moment -= 2 * contrast * system.parameters_.viscosity * v.transpose() * own(flux);
   }
-  return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
+  return coupling::stresslet(moment);
 }
 
 double Evaluation::membrane_dissipation(std::size_t p) {
