@@ -70,7 +70,7 @@ int resist(const Scene& whole, const RunRequest& request) {
   StationaryRun run(whole, request, "Particle/motion `prescribed`");
   const ParticleScene scene = whole.first();
   Body body = tanktread::body(scene);
-  refine_alone(scene, body, [&](const Body& on) {
+  refine_isolated_body(scene, body, [&](const Body& on) {
     const std::unique_ptr<coupling::Tube> wall = tube(scene, on, run.phases);
     coupling::RigidTractions there = tractions_of(scene, on, run.ranks, wall.get());
     return rigid_solution(scene, on, there, run.phases).density;

@@ -238,8 +238,8 @@ RunRequest run_request(const Arguments& arguments, const std::string& deck, cons
 int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, const Registry& registry, bool speaks) {
   const RunRequest whole = run_request(arguments, deck.effective(), registry);
   if (!arguments.check) check_vacant(whole);
-  accuracy::Task task{scene.accuracy, scene.expect, deck.values(), deck.effective(), whole.output, whole.resume, whole.overwrite, whole.quiet,
-                      scene.has_time()};
+  accuracy::LadderRequest task{scene.accuracy, scene.expect, deck.values(), deck.effective(), whole.output, whole.resume, whole.overwrite,
+                               whole.quiet, scene.has_time()};
   accuracy::check_levels(task.values);
   std::string base = accuracy::without_section(accuracy::without_section(task.deck, "Accuracy"), "Expect");
   arguments.accuracy.clear();

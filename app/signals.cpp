@@ -31,13 +31,13 @@ void catch_signals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-bool told_to_stop() { return signalled != 0; }
+bool stop_requested() { return signalled != 0; }
 
 void stop_where_told(bool too_late) {
-  if (coupling::any_told_to_stop(told_to_stop() || too_late)) throw motion::Stopped();
+  if (coupling::any_stop_requested(stop_requested() || too_late)) throw motion::Stopped();
 }
 
-std::string reason_of_stop() { return coupling::any_told_to_stop(told_to_stop()) ? by_signal : by_clock; }
+std::string reason_of_stop() { return coupling::any_stop_requested(stop_requested()) ? by_signal : by_clock; }
 
 std::string spoken(std::string status) {
   std::erase(status, ':');

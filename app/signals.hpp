@@ -11,7 +11,7 @@ namespace tanktread {
 void catch_signals();
 
 /// Returns whether this process has received a stop signal.
-bool told_to_stop();
+bool stop_requested();
 
 /// Throws motion::Stopped on every rank if any rank has received a stop signal or passes `too_late` = true (wall-clock limit exceeded). Collective.
 void stop_where_told(bool too_late = false);

@@ -82,7 +82,7 @@ class Run {
     for (const Warning& warning : first_warnings(scene_)) warn(warning);
     state_.x = particle_->start();
     prepare();
-    motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
+    motion::GuardedDynamics motion(particle_->dynamics(), stop_requested);
     motion::begin(motion, state_);
     if (!motion.failure().empty()) throw RunFailure("the evaluation of the velocity of the initial shape failed: " + motion.failure());
     state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(motion, state_, scene_.time);
@@ -129,7 +129,7 @@ class Run {
       particle_->undo_adapt(state_.x);
       results_.remesh(particle_->body(), particle_->bezier());
     });
-    particle_->hold_by(totals_.contacts);
+    particle_->set_contacts(totals_.contacts);
     if (!error.empty()) fail(error);
     if (!undone.empty()) fail(undone);
     return by_signal;
@@ -158,7 +158,7 @@ class Run {
     if (!lands && snapshot_due_ && state_.time > snapshot) interpolate_within(before);
     if (within_step_ && scene_.adapts()) {
       within_step_->sampled = sample();
-      particle_->dynamics().at(state_.time, began_);
+      particle_->dynamics().set_time(state_.time, began_);
     }
     adapting_ = true;
     adapt();
@@ -171,7 +171,7 @@ class Run {
   void adapt() {
     if (!particle_->adapt(state_, totals_)) return;
     results_.remesh(particle_->body(), particle_->bezier());
-    motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
+    motion::GuardedDynamics motion(particle_->dynamics(), stop_requested);
     state_.history.clear();
     motion::begin(motion, state_);
   }
@@ -179,7 +179,7 @@ class Run {
   /// Makes a step of the time scheme that ends at the time `limit` or earlier. If the motion is not smooth at the start of the step (a kink), the
   /// scheme restarts there, and `before` becomes the state after the kink.
   void integrate(double limit, motion::State& before) {
-    motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
+    motion::GuardedDynamics motion(particle_->dynamics(), stop_requested);
     try {
       if (motion::cross_kink(motion, state_)) before = state_;
       if (!state_.history.front().allFinite()) throw RunFailure("the evaluation of the velocity failed at the start of a step");
@@ -198,7 +198,7 @@ class Run {
     for (int rejected = 0;; ++rejected) {
       report_ = scheme_->advance(motion, state_, limit);
       report_.rejected += rejected;
-      if (particle_->hold_apart(state_, report_.step)) return;
+      if (particle_->enforce_gaps(state_, report_.step)) return;
       if (scene_.time.fixed_step)
         throw RunFailure(
             "after a step of fixed length particles are too close for Contact/limiter to hold them apart: set a smaller Time/fixed step");
@@ -251,7 +251,7 @@ class Run {
 
   void record() {
     const auto clock = phases_.time("diagnostics");
-    particle_->dynamics().at(state_.time, began_);
+    particle_->dynamics().set_time(state_.time, began_);
     row_ = particle_->row(state_, {.step = report_, .wall_seconds = earlier_wall_seconds_ + seconds_here()});
     {
       const auto output = phases_.time("output");
@@ -290,7 +290,7 @@ class Run {
   /// Evaluates and returns the snapshot that is due, at the end of the last step or at a time within the step.
   Results::Sampled sample() {
     const motion::State& shown = within_step_ ? within_step_->state : state_;
-    particle_->dynamics().at(shown.time, began_);
+    particle_->dynamics().set_time(shown.time, began_);
     return results_.sample(particle_->snapshot(shown), shown.time);
   }
 
@@ -322,7 +322,7 @@ class Run {
     if (const std::string coarse = coarse_wall(scene_, particle_->body(), row_); !coarse.empty()) warn({"coarse wall", coarse});
     if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
     if (scene_.has_gaps()) end_at_contact();
-    if (coupling::any_told_to_stop(told_to_stop())) return by_signal;
+    if (coupling::any_stop_requested(stop_requested())) return by_signal;
     if (scene_.output.too_late(ranks_.seconds_since(start_))) return by_clock;
     const auto tolerance = scene_.time.steady_tolerance;
     const bool flow_changes = scene_.flow.history && scene_.flow.history->lasts(state_.time);

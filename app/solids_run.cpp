@@ -16,7 +16,7 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   run.end_set_up();
   const stokes::AmbientFlow ambient(scene.flow);
   const coupling::Solids::Flow flow = coupling::without_particles(around, ambient);
-  const Vec3 velocity_integral = coupling::velocity_integral(around, flow);
+  const Vec3 velocity_integral = coupling::solids_flow_integral(around, flow);
   Columns row;
   ProgressRow{.wall_seconds = run.seconds()}.add_columns(scene, row);
   solids_row(scene, around, ambient, flow, Vec3::Zero(), velocity_integral).add_columns(scene, row);

@@ -169,7 +169,7 @@ class SteadyRun {
 
   const Clock::time_point start_ = Clock::now();
   // Function that returns whether this rank has received a stop signal or has passed the wall-clock limit.
-  const std::function<bool()> told_ = [this] { return told_to_stop() || scene_.output.too_late(seconds()); };
+  const std::function<bool()> told_ = [this] { return stop_requested() || scene_.output.too_late(seconds()); };
   Phases phases_ = started();
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};
   int earlier_coarsenings_ = 0;  // coarsenings up to the last recorded shape
@@ -195,7 +195,7 @@ class InitialShape : public SteadyRun {
   using SteadyRun::SteadyRun;
 
   void search() override {
-    do system_->motion->restore_volume(state_.x);
+    do system_->motion->restore_constraints(state_.x);
     while (adapt());
     write();
   }

@@ -35,7 +35,7 @@ class Temporary {
 
 /// Returns the lowest level from 2 to `levels` - 1 at which the predicted error times `margin` is at most answer.allowed, or `levels` if there is
 /// none. `difference`: difference of the result between levels 0 and 1, from which the error is extrapolated.
-int needed(const Answer& answer, double difference, int levels) {
+int needed(const RequestResult& answer, double difference, int levels) {
   const double factor = difference / (expected_error({}) - expected_error({1, 1, 1}));
   int level = 2;
   while (level < levels && margin * factor * expected_error({level, level, level}) > answer.allowed) ++level;
@@ -44,7 +44,7 @@ int needed(const Answer& answer, double difference, int levels) {
 
 }  // namespace
 
-std::vector<std::string> forecast(const Task& task, const Program& program) {
+std::vector<std::string> forecast(const LadderRequest& task, const Program& program) {
   const Temporary directory;
   std::vector<std::string> lines;
   std::vector<Outcome> outcomes;
@@ -63,7 +63,7 @@ std::vector<std::string> forecast(const Task& task, const Program& program) {
   coupling::decided([&] {
     int most = 2;
     for (const Request& request : task.options.requests) {
-      const Answer one = answer(request, outcomes);
+      const RequestResult one = answer(request, outcomes);
       if (std::isnan(one.estimate.error)) {
         lines.push_back("  accuracy    " + request.text() + ": no level can be predicted, because " + one.estimate.untrusted);
         continue;

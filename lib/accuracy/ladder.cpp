@@ -37,7 +37,7 @@ constexpr const char* before_reason = "\n--- failed: ";
 
 class Ladder {
  public:
-  Ladder(const Task& task, const Program& program) : task_(task), program_(program) {}
+  Ladder(const LadderRequest& task, const Program& program) : task_(task), program_(program) {}
 
   int climb() {
     serially([this] { prepare(); });
@@ -127,14 +127,14 @@ class Ladder {
   bool within_reach(int k) const {
     return decided([&] {
       const double gain = levels_.empty() ? 1 : expected_error(level_at(k)) / expected_error(levels_.back().level);
-      return std::ranges::all_of(answers_, [&](const Answer& one) { return margin * gain * one.estimate.error <= one.allowed; });
+      return std::ranges::all_of(answers_, [&](const RequestResult& one) { return margin * gain * one.estimate.error <= one.allowed; });
     }) != 0;
   }
 
   /// Measures which shares of the error are due to time integration and to quadrature, and stores them in shares_. For this, runs level 2 again with
   /// a looser time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all series for which the user requests
-  /// an accuracy that is not met yet, without series that are zero up to their error (Answer::vanishes). Returns `stopped` if a run was interrupted
-  /// and can be resumed, otherwise 0.
+  /// an accuracy that is not met yet, without series that are zero up to their error (RequestResult::vanishes). Returns `stopped` if a run was
+  /// interrupted and can be resumed, otherwise 0.
   int balance() {
     balanced_ = true;
     std::optional<Outcome> quadrature;
@@ -142,7 +142,7 @@ class Ladder {
     const auto found = coupling::decided([&] {
       std::vector<double> most;
       for (const Request& request : task_.options.requests) {
-        const Answer finest = answer(request, levels_);
+        const RequestResult finest = answer(request, levels_);
         const double whole = finest.estimate.error;
         if (finest.met || finest.vanishes || !(whole > 0) || !looser_ || !quadrature) continue;
         const double of_time = part_error(request, levels_[2], *looser_, time_ratio) / whole;
@@ -257,22 +257,22 @@ class Ladder {
   bool judge(int k) {
     const bool all_met = decided([&] {
       answer_all();
-      return std::ranges::all_of(answers_, &Answer::met);
+      return std::ranges::all_of(answers_, &RequestResult::met);
     }) != 0;
     say(formatted("  level %-5d %d elements per side, tolerance %.2g, %.3g s", k, elements_per_side(k),
                   tolerance(level_at(k).time), levels_.empty() ? 0 : levels_.back().seconds));
-    for (const Answer& one : answers_) say("              " + sentence(one));
+    for (const RequestResult& one : answers_) say("              " + sentence(one));
     return all_met;
   }
 
   /// Returns whether finer levels are not expected to help. This is so if `obstacle` reports, for each of the two finest levels, a reason why no
-  /// error can be estimated, or if every request that is not met is for a series that vanishes (Answer::vanishes).
+  /// error can be estimated, or if every request that is not met is for a series that vanishes (RequestResult::vanishes).
   bool hopeless() const {
     return decided([&] {
       if (levels_.size() < 4) return false;
       const std::vector<Outcome> before(levels_.begin(), levels_.end() - 1);
       return (!obstacle(levels_).empty() && !obstacle(before).empty()) ||
-             std::ranges::all_of(answers_, [](const Answer& one) { return one.met || one.vanishes; });
+             std::ranges::all_of(answers_, [](const RequestResult& one) { return one.met || one.vanishes; });
     }) != 0;
   }
 
@@ -297,21 +297,21 @@ class Ladder {
   void report(Code code, const std::string& why, const std::string& missed_expectations) const {
     std::string line = code == met ? "" : "the requested accuracy is not reached: " + why;
     if (code == stopped) line += "; --resume " + task_.directory.string() + " continues the run";
-    for (const Answer& one : answers_)
+    for (const RequestResult& one : answers_)
       if (code != met && !one.met) line += "; " + sentence(one);
     if (!missed_expectations.empty()) line += (line.empty() ? "" : "; ") + missed_expectations;
     if (!line.empty()) std::fprintf(stderr, "tanktread: %s\n", line.c_str());
     if (!task_.quiet) std::printf("  results     %s\n", task_.directory.c_str());
   }
 
-  const Task& task_;
+  const LadderRequest& task_;
   const Program& program_;
   const Clock::time_point start_ = Clock::now();
   coupling::Ranks ranks_;
   std::unique_ptr<output::Occupation> occupation_;  // lock of the results directory, on the first rank
   std::vector<Outcome> levels_;                     // finished levels, on the first rank
   std::optional<Outcome> looser_;                   // result of level 2 with a looser time tolerance, on the first rank
-  std::vector<Answer> answers_;                     // estimated errors for the requests, on the first rank
+  std::vector<RequestResult> answers_;                     // estimated errors for the requests, on the first rank
   int count_ = 0;                                   // number of finished levels
   // wall seconds of all runs, on the first rank. Finished runs include the time before they were resumed
   double seconds_ = 0;
@@ -337,6 +337,6 @@ std::optional<std::string> ladder_deck(const fs::path& directory) {
   return text_of_file(directory / ladder_file, (directory / ladder_file).string(), 10'000'000);
 }
 
-int climb(const Task& task, const Program& program) { return Ladder(task, program).climb(); }
+int climb(const LadderRequest& task, const Program& program) { return Ladder(task, program).climb(); }
 
 }  // namespace tanktread::accuracy

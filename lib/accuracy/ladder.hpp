@@ -28,7 +28,7 @@ struct Program {
 };
 
 /// A deck with requests.
-struct Task {
+struct LadderRequest {
   Options options;
   deck::Expectations expect;
   Values values;        ///< values of all keys of the deck
@@ -53,11 +53,11 @@ std::optional<std::string> ladder_deck(const std::filesystem::path& directory);
 /// section `accuracy` in `summary.yaml`. If the task resumes, finished levels are kept and an unfinished level is resumed. Returns a Code. Throws
 /// UserError if the directory already contains results and the task neither resumes nor overwrites them. Throws RunFailure if no level is completed.
 /// Collective.
-int climb(const Task& task, const Program& program);
+int climb(const LadderRequest& task, const Program& program);
 
 /// Runs the levels 0 and 1 in a temporary directory. Returns lines of text: for each request, the lowest level that is predicted to meet it, and in
 /// the last line the predicted seconds of all levels. All ranks return the lines of the first rank. Collective.
-std::vector<std::string> forecast(const Task& task, const Program& program);
+std::vector<std::string> forecast(const LadderRequest& task, const Program& program);
 
 /// Returns the predicted wall seconds of the next level. `seconds`: wall seconds of all previous levels, coarse to fine. The last value is multiplied
 /// by a growth factor: the ratio of the last two values, limited to 1.5 ... 5, or 2.5 if there is only one value.

@@ -175,8 +175,8 @@ double cancelled(const Request& request, const std::vector<Outcome>& levels, dou
 
 }  // namespace
 
-Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
-  Answer found;
+RequestResult answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
+  RequestResult found;
   found.request = request;
   const Curve whole = curve(levels.back().record, request.series), of_part = part(whole, request.of);
   found.value = request.of == Of::run ? magnitude(whole) : of_part.values.back();
@@ -202,7 +202,7 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
   return found;
 }
 
-std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser, const std::vector<Answer>& answers) {
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser, const std::vector<RequestResult>& answers) {
   const std::string why = obstacle(levels);
   std::vector<SeriesError> all;
   const output::RunRecord& finest = levels.back().record;
@@ -216,7 +216,7 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     const std::vector<double> sizes = norms(pairs);
     Estimate whole_run = estimated(sizes, scale, expected_errors(levels, of_run, scale, looser));
     if (!sizes.empty()) whole_run.error = std::max(whole_run.error, cancelled(of_run, levels, sizes.back(), looser));
-    for (bool requested = false; const Answer& answer : answers) {
+    for (bool requested = false; const RequestResult& answer : answers) {
       if (answer.request.series != series.name || answer.request.of != Of::run || (requested && !answer.estimate.trusted())) continue;
       whole_run = answer.estimate, requested = true;
     }

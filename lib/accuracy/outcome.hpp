@@ -38,7 +38,7 @@ bool is_branch(const output::RunRecord& record);
 Curve curve(const output::RunRecord& record, const std::string& series);
 
 /// The estimate for one request.
-struct Answer {
+struct RequestResult {
   Request request;
   Estimate estimate;
   double value = 0;      ///< value to which the error belongs: the largest magnitude over the run, the last value, or the average
@@ -51,7 +51,7 @@ struct Answer {
 
 /// Returns the estimated error for a request, and whether it meets the request, from the levels finished so far, coarse to fine. `looser`: result of
 /// level 2 with a looser time tolerance, if it was computed; it shows which share of the error is due to the time integration.
-Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
+RequestResult answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
 /// Returns the part of the error of `level` that is due to one part of the discretisation (time integration or quadrature), for a request. `looser`:
 /// a run in which only this part of the discretisation is one level looser. `ratio`: factor by which one level reduces this part of the error.
@@ -74,6 +74,6 @@ struct SeriesError {
 /// level 2 with a looser time tolerance, if it was computed. `answers`: estimates for the requests. If a request limits the largest error of a series
 /// over the run, its estimate is used for this series; of several such requests, the last one whose estimate can be trusted.
 std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {},
-                                const std::vector<Answer>& answers = {});
+                                const std::vector<RequestResult>& answers = {});
 
 }  // namespace tanktread::accuracy

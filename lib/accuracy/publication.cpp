@@ -58,12 +58,12 @@ std::vector<double> estimates(const deck::Expectations& expect, const std::vecto
 
 std::string word(Of of) { return of == Of::run ? "run" : of == Of::end ? "end" : "mean"; }
 
-std::string accuracy_text(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::string& why,
-                          double seconds) {
-  std::string text = "accuracy:\n  met: " + std::string(std::ranges::all_of(answers, &Answer::met) ? "true" : "false") + "\n";
+std::string accuracy_text(const LadderRequest& task, const std::vector<Outcome>& levels, const std::vector<RequestResult>& answers,
+                          const std::string& why, double seconds) {
+  std::string text = "accuracy:\n  met: " + std::string(std::ranges::all_of(answers, &RequestResult::met) ? "true" : "false") + "\n";
   if (!why.empty()) text += "  stopped: " + in_quotes(why) + "\n";
   text += "  seconds: " + real_text(seconds) + "\n  requests:\n";
-  for (const Answer& one : answers) {
+  for (const RequestResult& one : answers) {
     text += "    - request: " + in_quotes(one.request.text()) + "\n      series: " + in_quotes(one.request.series) + "\n      of: " +
             word(one.request.of) + "\n      value: " + real_text(one.value) + "\n      allowed: " + real_text(one.allowed) +
             "\n      estimated error: " + real_text(one.estimate.trusted() ? one.estimate.error : NAN) +
@@ -109,7 +109,7 @@ std::string with_expect(const std::string& summary, const std::string& section) 
 
 }  // namespace
 
-std::string sentence(const Answer& one) {
+std::string sentence(const RequestResult& one) {
   const std::string name = one.request.text();
   if (!one.estimate.trusted()) return name + ": the error cannot be estimated, because " + one.estimate.untrusted;
   const std::string found = name + formatted(": estimated error %.2g, allowed %.2g", one.estimate.error, one.allowed);
@@ -117,8 +117,8 @@ std::string sentence(const Answer& one) {
   return found + formatted(" (a request is met if it allows %g times the estimated error)", margin);
 }
 
-std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,
-                    const End& end, double seconds) {
+std::string publish(const LadderRequest& task, const std::vector<Outcome>& levels, const std::vector<RequestResult>& answers,
+                    const std::vector<SeriesError>& errors, const LadderEnd& end, double seconds) {
   const Outcome& finest = levels.back();
   output::start_results(task.directory);
   link_files(finest.directory, task.directory);
@@ -145,7 +145,7 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
   text += "error:\n";
   for (const SeriesError& one : errors)
     text += "  " + (deck::is_plain(one.name) ? one.name : in_quotes(one.name)) + ": " + real_text(one.values.back()) + "\n";
-  text += accuracy_text(task, levels, answers, end.why, seconds);
+  text += accuracy_text(task, levels, answers, end.reason, seconds);
   output::write_whole(task.directory / "summary.yaml", text, output::Durable::yes);
   return deck::missed(verdicts, print_warning);
 }

@@ -9,7 +9,7 @@ constexpr int most_lanes = 8;
 /// Storage for one register of the largest width. An array of packs stores its registers without gaps. If the registers are narrower than a pack, the
 /// end of the array is not used.
 struct alignas(sizeof(double) * most_lanes) Pack {
-  double room[most_lanes];
+  double lanes[most_lanes];
 };
 
 /// Returns the number of doubles in a register of the instruction set in use.

@@ -14,6 +14,9 @@ using Net = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// Returns the inner product sum_ij a_ij b_ij. Returns 0 if a or b is empty: fields that a scene does not have are empty nets.
 inline double dot(const Net& a, const Net& b) { return a.size() == 0 || b.size() == 0 ? 0 : a.cwiseProduct(b).sum(); }
 
+/// Returns the cross product a_1 b_2 - a_2 b_1 of two vectors in a plane.
+inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a[0] * b[1] - a[1] * b[0]; }
+
 /// Returns whether two nets have equal numbers of rows and equal entries.
 inline bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
 

@@ -24,11 +24,6 @@ double area_modulus(const Law& law) {
   return std::visit([](const auto& l) { return l.area_modulus(); }, law);
 }
 
-double energy(const Law& law, double stretch1, double stretch2) {
-  return std::visit([&](const auto& l) { return l.energy(first_invariant(stretch1, stretch2), second_invariant(stretch1, stretch2)); },
-                    law);
-}
-
 std::array<double, 2> principal_tensions(const Law& law, double stretch1, double stretch2) {
   const auto r =
       std::visit([&](const auto& l) { return l.response(first_invariant(stretch1, stretch2), second_invariant(stretch1, stretch2)); }, law);

@@ -234,9 +234,6 @@ double modulus(const Law& law);
 /// Returns the area modulus K_s = dT/d(ln A) of an unstressed membrane (T: tension, A: area), 0 for an interface. Force per length.
 double area_modulus(const Law& law);
 
-/// Returns the strain energy Psi per unstressed area at the principal stretches l1 and l2.
-double energy(const Law& law, double stretch1, double stretch2);
-
 /// Returns the principal tensions (force per current length) at the principal stretches l1 and l2, with the derivatives Psi_k = dPsi/dI_k:
 ///
 ///   T_i = (2/J_s) Psi_1 l_i^2 + 2 J_s Psi_2,   J_s = l1 l2                            from (3.2)

@@ -113,7 +113,7 @@ double MaxwellElement::energy() const {
   each_batch(x_, [&](const Group& group, const Batch& batch, std::size_t first, const Pack* a) {
     Pack stored;
     membrane::energy(spring_, group.n_gauss(), &relaxed_[first], a, &stored);
-    for (int l = 0; l < batch.used; ++l) sum += stored.room[l];
+    for (int l = 0; l < batch.used; ++l) sum += stored.lanes[l];
   });
   return sum;
 }

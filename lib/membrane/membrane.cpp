@@ -77,7 +77,7 @@ Part::Part(const spline::Space& space, const Net& unstressed, std::span<const in
     const Bending& bending = materials[group.material].bending;
     std::vector<ReferencePoint>& points = reference.emplace_back(n * group.batches.size());
     std::vector<Pack>& curvature = relaxed_curvature.emplace_back(bending.modulus > 0 ? points.size() : 0, Pack{});
-    for (Pack& c0 : curvature) std::ranges::fill(c0.room, bending.spontaneous_curvature);
+    for (Pack& c0 : curvature) std::ranges::fill(c0.lanes, bending.spontaneous_curvature);
     for (std::size_t k = 0; k < group.batches.size(); ++k) {
       const Batch& batch = group.batches[k];
       ReferencePoint* first = &points[k * n];
@@ -142,7 +142,7 @@ std::vector<double> Membrane::element_energies(const Net& x, std::span<const int
       jets(at.group, at.batch, x, a);
       bending_energy(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, a, &bending);
     }
-    for (int l = 0; l < at.batch.used; ++l) sum[at.batch.elements[l]] += stretching.room[l] + bending.room[l];
+    for (int l = 0; l < at.batch.used; ++l) sum[at.batch.elements[l]] += stretching.lanes[l] + bending.lanes[l];
   });
   return sum;
 }

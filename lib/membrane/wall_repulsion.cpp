@@ -24,11 +24,11 @@ WallRepulsion::WallRepulsion(const spline::Space& space, const Net& unstressed, 
 }
 
 /// Returns the Gauss points whose repulsion energy is not negligible.
-std::vector<WallRepulsion::Place> WallRepulsion::places(const Net& x, std::span<const int> elements) const {
+std::vector<WallRepulsion::RepulsionPoint> WallRepulsion::places(const Net& x, std::span<const int> elements) const {
   // Repulsion at gaps larger than `far` times the range is neglected. The slope of the wall is a central difference quotient of its radius, with the
   // increment `step` times the radius.
   constexpr double far = 40, step = 1e-4;
-  std::vector<Place> found;
+  std::vector<RepulsionPoint> found;
   for (const int e : elements) {
     const Net at = value_[static_cast<std::size_t>(e)] * Net(x(space_.elements[static_cast<std::size_t>(e)].points, Eigen::all));
     for (int q = 0; q < at.rows(); ++q) {
@@ -45,12 +45,12 @@ std::vector<WallRepulsion::Place> WallRepulsion::places(const Net& x, std::span<
 
 double WallRepulsion::potential(const Net& x, std::span<const int> elements) const {
   double sum = 0;
-  for (const Place& at : places(x, elements)) sum += at.energy;
+  for (const RepulsionPoint& at : places(x, elements)) sum += at.energy;
   return sum;
 }
 
 void WallRepulsion::add_work(const Net& x, std::span<const int> elements, Net& d, std::span<Net> /*sums*/) const {
-  for (const Place& at : places(x, elements)) {
+  for (const RepulsionPoint& at : places(x, elements)) {
     const std::vector<int>& points = space_.elements[static_cast<std::size_t>(at.element)].points;
     for (std::size_t a = 0; a < points.size(); ++a)
       d.row(points[a]) -= row(at)[static_cast<Eigen::Index>(a)] * at.energy / repulsion_.range * at.gradient.transpose();
@@ -60,7 +60,7 @@ void WallRepulsion::add_work(const Net& x, std::span<const int> elements, Net& d
 void WallRepulsion::linearise(const Net& x, std::span<const int> elements, std::span<const Net> /*sums*/) { latest_ = places(x, elements); }
 
 void WallRepulsion::add_tangent(const Net& u, Net& hu) const {
-  for (const Place& at : latest_) {
+  for (const RepulsionPoint& at : latest_) {
     const std::vector<int>& points = space_.elements[static_cast<std::size_t>(at.element)].points;
     double along = 0;
     for (std::size_t a = 0; a < points.size(); ++a) along += row(at)[static_cast<Eigen::Index>(a)] * u.row(points[a]).dot(at.gradient);

@@ -36,20 +36,20 @@ class WallRepulsion : public Load {
   bool depends_on_labels() const override { return false; }
 
  private:
-  struct Place {
+  struct RepulsionPoint {
     int element, point;
     double energy;
     Vec3 gradient;  ///< gradient of g
   };
-  std::vector<Place> places(const Net& x, std::span<const int> elements) const;
-  auto row(const Place& at) const { return value_[static_cast<std::size_t>(at.element)].row(at.point); }
+  std::vector<RepulsionPoint> places(const Net& x, std::span<const int> elements) const;
+  auto row(const RepulsionPoint& at) const { return value_[static_cast<std::size_t>(at.element)].row(at.point); }
 
   const spline::Space& space_;
   Repulsion repulsion_;
   // per element: values of its basis functions, one row per Gauss point
   std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;
   std::vector<Eigen::VectorXd> area_;  // per element: unstressed area that each Gauss point represents
-  std::vector<Place> latest_;                                                                  // points at the linearisation
+  std::vector<RepulsionPoint> latest_;                                                                  // points at the linearisation
 };
 
 }  // namespace tanktread::membrane

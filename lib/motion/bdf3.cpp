@@ -33,7 +33,7 @@ struct Differentiation {
 
 /// Makes a starting step by TR-BDF2, and stores the position before this step for later BDF3 steps.
 StepReport Bdf3::start(coupling::Dynamics& dynamics, State& state, double limit) {
-  Place before{state.time, state.x};
+  PastPosition before{state.time, state.x};
   const StepReport report = starter_.advance(dynamics, state, limit);
   state.places.insert(state.places.begin(), std::move(before));
   if (state.places.size() == places) {
@@ -63,7 +63,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     stage.time = state.time + dt;
     stage.y = predicted;
     dynamics.improve_start(stage.y, state.x, scheme.shift);
-    dynamics.at(stage.time, state.time);
+    dynamics.set_time(stage.time, state.time);
     solve(dynamics, options_, rhs, scheme.shift, secants, stage);
     attempts.report.iterations += stage.iterations;
 

@@ -20,7 +20,7 @@ CrankNicolson::CrankNicolson(const TimeOptions& options, const std::shared_ptr<T
 }
 
 CrankNicolson::Iteration CrankNicolson::iterate(coupling::Dynamics& dynamics, const State& state, double dt, const Net& start) const {
-  dynamics.at(state.time + dt, state.time);
+  dynamics.set_time(state.time + dt, state.time);
   Iteration iteration{start};
   const Net known = state.x + dt / 2 * state.history.front();
   const auto map = [&](const Net& y) -> Net {
@@ -62,7 +62,7 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
     const double error = known ? dynamics.norm(y - explicitly) / (3 * (1 + 1 / r)) / (options_.tolerance * step_share(options_.tolerance, 2)) : 0;
     Net slope;
     if (converged && (error <= 1 || options_.fixed_step)) {
-      dynamics.restore_volume(y);
+      dynamics.restore_constraints(y);
       slope = dynamics.velocity(y);
       converged = slope.allFinite();
       if (!converged && options_.fixed_step)

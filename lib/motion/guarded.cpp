@@ -10,14 +10,14 @@ namespace tanktread::motion {
 namespace {
 
 // outcomes of a call on one rank, from best to worst; the worst outcome of all ranks is the common outcome
-enum Outcome { fine, told_to_stop, failed, exhausted };
+enum Outcome { fine, stop_requested, failed, exhausted };
 
 }  // namespace
 
-/// Calls `act` and returns whether it succeeded on all ranks. `act` returns true if its result is finite. `told`: true if this rank received a stop
+/// Calls `act` and returns whether it succeeded on all ranks. `act` returns true if its result is finite. `stop`: true if this rank received a stop
 /// signal.
-bool GuardedDynamics::done(bool told, const std::function<bool()>& act) {
-  int mine = told ? told_to_stop : fine;
+bool GuardedDynamics::done(bool stop, const std::function<bool()>& act) {
+  int mine = stop ? stop_requested : fine;
   std::string reason;
   try {
     if (!act()) mine = failed, reason = "it is not a number";
@@ -27,20 +27,20 @@ bool GuardedDynamics::done(bool told, const std::function<bool()>& act) {
     mine = failed, reason = error.what();
   }
   const auto [worst, why] = coupling::worst_of_all(mine, reason);
-  if (worst == told_to_stop) throw Stopped();
+  if (worst == stop_requested) throw Stopped();
   if (worst >= failed) failure_ = why;
   if (worst == exhausted) throw RunFailure(failure_);
   return worst == fine;
 }
 
-Net GuardedDynamics::tried(const Net& like, const std::function<Net()>& evaluate, bool told) {
+Net GuardedDynamics::tried(const Net& like, const std::function<Net()>& evaluate, bool stop) {
   Net result;
-  const bool had = coupling::finite(like) && done(told, [&] { return (result = evaluate()).allFinite(); });
+  const bool had = coupling::finite(like) && done(stop, [&] { return (result = evaluate()).allFinite(); });
   return had ? result : coupling::not_a_number(like);
 }
 
 Net GuardedDynamics::velocity(const Net& x) {
-  return tried(x, [&] { return motion_.velocity(x); }, told_());
+  return tried(x, [&] { return motion_.velocity(x); }, stop_requested_());
 }
 
 void GuardedDynamics::freeze(const Net& x) {
@@ -64,7 +64,7 @@ Net GuardedDynamics::solve(double shift, const Net& r, double tolerance, const c
 }
 
 Net GuardedDynamics::defect(const Net& x, const Net& u) {
-  return tried(x, [&] { return motion_.defect(x, u); }, told_());
+  return tried(x, [&] { return motion_.defect(x, u); }, stop_requested_());
 }
 
 Net GuardedDynamics::correction(double shift, const Net& defect, double tolerance, const coupling::Secants& secants) {
@@ -80,10 +80,10 @@ Net GuardedDynamics::derivative(const Net& x, const Net& v, const Net& delta) {
   return tried(delta, [&] { return motion_.derivative(x, v, delta); });
 }
 
-void GuardedDynamics::restore_volume(Net& x) {
+void GuardedDynamics::restore_constraints(Net& x) {
   x = tried(x, [&] {
     Net restored = x;
-    motion_.restore_volume(restored);
+    motion_.restore_constraints(restored);
     return restored;
   });
 }

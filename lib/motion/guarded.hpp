@@ -17,11 +17,11 @@ struct Stopped {};
 /// Collective, like the motion.
 class GuardedDynamics : public coupling::Dynamics {
  public:
-  /// `told`: function that returns whether this rank is to stop, because of a signal or a limit. If so, the next velocity evaluation throws Stopped
-  /// on every rank.
-  GuardedDynamics(coupling::Dynamics& motion, std::function<bool()> told) : motion_(motion), told_(std::move(told)) {}
+  /// `stop_requested`: function that returns whether this rank is to stop, because of a signal or a limit. If so, the next velocity evaluation throws
+  /// Stopped on every rank.
+  GuardedDynamics(coupling::Dynamics& motion, std::function<bool()> stop_requested) : motion_(motion), stop_requested_(std::move(stop_requested)) {}
 
-  void at(double time, double start) override { motion_.at(time, start); }
+  void set_time(double time, double start) override { motion_.set_time(time, start); }
   double next_kink(double time) const override { return motion_.next_kink(time); }
   Net velocity(const Net& x) override;
   void freeze(const Net& x) override;
@@ -35,7 +35,7 @@ class GuardedDynamics : public coupling::Dynamics {
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   bool defect_spares_system() const override { return motion_.defect_spares_system(); }
   Net mesh_motion(const Net& delta) override { return motion_.mesh_motion(delta); }
-  void restore_volume(Net& x) override;
+  void restore_constraints(Net& x) override;
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override { return motion_.relabellings(x); }
   Net turned(const Net& x, const Mat3& rotation) const override { return motion_.turned(x, rotation); }
@@ -48,11 +48,11 @@ class GuardedDynamics : public coupling::Dynamics {
   const std::string& failure() const { return failure_; }
 
  private:
-  bool done(bool told, const std::function<bool()>& act);
-  Net tried(const Net& like, const std::function<Net()>& evaluate, bool told = false);
+  bool done(bool stop, const std::function<bool()>& act);
+  Net tried(const Net& like, const std::function<Net()>& evaluate, bool stop = false);
 
   coupling::Dynamics& motion_;
-  std::function<bool()> told_;
+  std::function<bool()> stop_requested_;
   std::string failure_;
   bool linearised_ = false;
 };

@@ -57,7 +57,7 @@ bool cross_kink(coupling::Dynamics& dynamics, State& state) {
 
 void begin(coupling::Dynamics& dynamics, State& state) {
   if (!state.history.empty()) return;
-  dynamics.at(state.time, state.time);
+  dynamics.set_time(state.time, state.time);
   state.history = {dynamics.velocity(state.x)};
   state.slope_error = 0;
 }
@@ -70,9 +70,9 @@ void freeze(coupling::Dynamics& dynamics, State& state, double time) {
 void refreeze(coupling::Dynamics& dynamics, const State& state, double time) {
   if (state.frozen.size() == 0) return;
   const bool moves = dynamics.lattice_moves();
-  if (moves) dynamics.at(state.frozen_time, state.frozen_time);
+  if (moves) dynamics.set_time(state.frozen_time, state.frozen_time);
   dynamics.freeze(state.frozen);
-  if (moves) dynamics.at(time, state.time);
+  if (moves) dynamics.set_time(time, state.time);
 }
 
 void forget(State& state) {
@@ -90,7 +90,7 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   if (speed == 0) return std::min(1e-3 * options.final_time, options.maximum_step.value_or(1e300));
   const double longest = std::min(options.final_time, options.maximum_step.value_or(1e300));
   const double trial = std::min(1e-3 / speed, longest);  // `speed` is round-off if the shape does not change
-  dynamics.at(state.time + trial, state.time);
+  dynamics.set_time(state.time + trial, state.time);
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
   const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // std::max ignores `change` if NaN
   return std::min(step, longest);

@@ -15,7 +15,7 @@ class ParameterList;
 namespace tanktread::motion {
 
 /// Position x at an earlier time.
-struct Place {
+struct PastPosition {
   double time = 0;
   Net x;
 };
@@ -27,7 +27,7 @@ struct State {
   double step = 0;              ///< the step that the controller proposes next
   Net x;                        ///< control net
   std::vector<Net> history;     ///< slopes dx/dt that the scheme keeps, latest first; the first is the slope at x
-  std::vector<Place> places;    ///< earlier positions that a multistep scheme keeps, latest first
+  std::vector<PastPosition> places;    ///< earlier positions that a multistep scheme keeps, latest first
   double slope_error = 0;       ///< error bound of the slope at x, history.front(), in the norm of `Time/tolerance` per unit of time
   Net direction;                ///< last direction of the power iteration for the stiffness (4.7); empty if the stiffness was not measured
   std::vector<double> memory;   ///< memory of the step controller; each scheme defines its content

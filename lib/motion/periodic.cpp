@@ -74,7 +74,7 @@ State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shar
           const std::function<bool(const State& before, const State& after)>& done) {
   State state;
   state.x = x;
-  dynamics.restore_volume(state.x);
+  dynamics.restore_constraints(state.x);
   begin(dynamics, state);
   if (!state.x.allFinite() || !state.history.front().allFinite())
     throw RunFailure("the evaluation of the velocity failed in the search for a periodic motion");
@@ -114,7 +114,7 @@ Net ReturnMap::arrived(double period, const Net& start, const Net& end) {
 Net ReturnMap::operator()(const Net& x) {
   if (options_.driven) {
     const State after = run(dynamics_, time_, nox_, x, options_.period, [](const State&, const State&) { return false; });
-    dynamics_.at(0, 0);
+    dynamics_.set_time(0, 0);
     return arrived(options_.period, x, after.x);
   }
   const auto ahead = [&](const Net& y) { return normal_.cwiseProduct(back(y) - origin_).sum(); };

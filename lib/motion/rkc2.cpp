@@ -47,7 +47,7 @@ Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double start,
   for (int j = 2; j <= s; ++j) {
     const double mu = 2 * b[j] * w0 / b[j - 1], nu = -b[j] / b[j - 2], weight = 2 * b[j] * w1 / b[j - 1];
     const double first = -(1 - b[j - 1] * c.t[j - 1]) * weight;
-    dynamics.at(start + c_y * dt, start);
+    dynamics.set_time(start + c_y * dt, start);
     Net next = (1 - mu - nu) * x + mu * y + nu * before + dt * (weight * dynamics.velocity(y) + first * v);
     before = std::move(y);
     y = std::move(next);
@@ -73,13 +73,13 @@ StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limi
     const Net& v = state.history.front();
     const int stages = rkc2_stages(dt, rho);
     Net y = step(dynamics, state.x, v, state.time, dt, stages);
-    dynamics.restore_volume(y);
-    dynamics.at(state.time + dt, state.time);
+    dynamics.restore_constraints(y);
+    dynamics.set_time(state.time + dt, state.time);
     const Net slope = dynamics.velocity(y);
     attempts.report.iterations += stages;
 
     const double error = dynamics.norm(0.8 * (state.x - y) + 0.4 * dt * (v + slope)) / (options_.tolerance * step_share(options_.tolerance, 2));
-    const bool accepted = attempts.holds(error, "stabilised");
+    const bool accepted = attempts.accepts(error, "stabilised");
     const double factor = std::isfinite(error) ? step_factor(error, accepted ? memory.error : 0, 3) : 0.3;
     if (accepted) {
       memory.age += 1;

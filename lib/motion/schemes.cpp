@@ -24,7 +24,7 @@ double Attempts::next(double longest) {
   return size_ = step_towards(state_.time, limit_, proposed_);
 }
 
-bool Attempts::holds(double error, const char* kind) const {
+bool Attempts::accepts(double error, const char* kind) const {
   const bool finite = std::isfinite(error);
   if (!finite && options_.fixed_step)
     throw RunFailure(std::string("the ") + kind + " step of fixed length gave values that are not finite: set a smaller Time/fixed step");
@@ -58,19 +58,19 @@ StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit
     const double dt = attempts.next();
     const Net& k1 = state.history.front();
     const auto slope = [&](double part, const Net& x) {
-      dynamics.at(state.time + part * dt, state.time);
+      dynamics.set_time(state.time + part * dt, state.time);
       return dynamics.velocity(x);
     };
     const Net k2 = slope(0.5, state.x + dt / 2 * k1);
     const Net k3 = slope(0.75, state.x + 3 * dt / 4 * k2);
     Net y = state.x + dt * (2. / 9 * k1 + 1. / 3 * k2 + 4. / 9 * k3);
-    dynamics.restore_volume(y);
+    dynamics.restore_constraints(y);
     const Net k4 = slope(1, y);
     attempts.report.iterations += 3;
 
     const double error = dynamics.norm(dt * (-5. / 72 * k1 + 1. / 12 * k2 + 1. / 9 * k3 - 1. / 8 * k4)) / options_.tolerance;
     const double factor = std::isfinite(error) ? std::clamp(0.9 * std::pow(std::max(error, 1e-6), -1. / 3), 0.3, 2.0) : 0.3;
-    if (attempts.holds(error, "explicit")) {
+    if (attempts.accepts(error, "explicit")) {
       state.history = {k4};
       state.slope_error = 0;
       return attempts.accept(dynamics, std::move(y), error, factor);

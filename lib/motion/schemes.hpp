@@ -50,7 +50,7 @@ class Attempts {
 
   /// Returns whether an attempt with this error, divided by the tolerance, is accepted. Throws RunFailure if a step of fixed size has an error that
   /// is not finite; `kind` names the scheme in the message.
-  bool holds(double error, const char* kind) const;
+  bool accepts(double error, const char* kind) const;
 
   /// Rejects the attempt. The next attempt is `part` times as large. `error`: error of the attempt divided by the tolerance; 0 if unknown. If the
   /// previous attempt was rejected with a larger error, the two errors give the power p of error ~ dt^p, at least 1/2. The size is then also limited
@@ -117,7 +117,7 @@ template <class Memory>
 int measure_stiffness(coupling::Dynamics& dynamics, State& state, Memory& memory) {
   const auto points = static_cast<double>(state.x.rows());
   const int iterations = memory.points == points ? 3 : 8;
-  dynamics.at(state.time, state.time);
+  dynamics.set_time(state.time, state.time);
   const double found = stiffness(dynamics, state.x, state.history.front(), state.direction, iterations);
   if (std::isfinite(found)) memory.stiffness = found;
   memory.age = 0, memory.points = points;

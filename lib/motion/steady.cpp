@@ -55,7 +55,7 @@ std::vector<Net> SteadyEquations::neutral(const Net& x) {
 
 Net SteadyEquations::residual(const Net& x) {
   Net volume = x;
-  dynamics_.restore_volume(volume);
+  dynamics_.restore_constraints(volume);
   const Net v = dynamics_.velocity(x);
   if (!v.allFinite()) return v;  // the neutral directions of such a shape may not exist
   Net r = step_ * v + (volume - x);
@@ -94,7 +94,7 @@ bool approach(SteadyEquations& equations, Net& x) {
     while (!moves_little() && step > 1e-6 * full) step *= 0.5;
     if (step == full || !delta.allFinite()) return k > 0;
     x += delta;
-    equations.dynamics().restore_volume(x);
+    equations.dynamics().restore_constraints(x);
     step = std::min(full, 4 * step);
   }
   return true;
@@ -127,7 +127,7 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), depth);
   const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, error_norm);
   x = std::move(best);
-  dynamics.restore_volume(x);
+  dynamics.restore_constraints(x);
   return {found.iterations, found.converged, rest};
 }
 

@@ -76,7 +76,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
     const Net rhs2 = state.x + shift * k1;
     second.y = rhs2 + shift * prediction.at(2 * d * dt, known.second);
     dynamics.improve_start(second.y, state.x, shift);
-    dynamics.at(state.time + 2 * d * dt, state.time);
+    dynamics.set_time(state.time + 2 * d * dt, state.time);
     solve(dynamics, options_, rhs2, shift, secants, second);
     const Net& k2 = second.slope;
     if (second.solved) {
@@ -86,7 +86,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
       third.rate = second.rate;
       third.y = rhs3 + shift * prediction.at(dt, known.third);
       dynamics.improve_start(third.y, second.y, shift);
-      dynamics.at(third.time, state.time);
+      dynamics.set_time(third.time, state.time);
       solve(dynamics, options_, rhs3, shift, secants, third);
     }
     attempts.report.iterations += second.iterations + third.iterations;

@@ -20,8 +20,6 @@ using Vec2 = Eigen::Vector2d;
 constexpr double step = std::numbers::pi / 12;
 constexpr int max_order = 80;
 
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
-
 /// Rounds a number of Gauss points up to an even number, or above 16 to a multiple of four, so that few different rules are needed.
 int rounded_up(int order) { return order > 16 ? (order + 3) / 4 * 4 : (order + 1) / 2 * 2; }
 

@@ -117,7 +117,7 @@ std::vector<output::Array> channel_arrays(const coupling::ChannelFlow& flow) {
     const surface::Channel::Section at = channel.section(s.back());
     centre.push_back(at.centre);
     factor.insert(factor.end(), {at.factor[0], at.factor[1]});
-    lines[0].push_back(at.centre + low[0] * at.factor[0] * at.across), lines[1].push_back(at.centre + high[0] * at.factor[0] * at.across);
+    lines[0].push_back(at.centre + low[0] * at.factor[0] * at.normal), lines[1].push_back(at.centre + high[0] * at.factor[0] * at.normal);
     lines[2].push_back(at.centre + low[1] * at.factor[1] * Vec3::UnitZ()),
         lines[3].push_back(at.centre + high[1] * at.factor[1] * Vec3::UnitZ());
   }

@@ -30,7 +30,7 @@ Cost measured(const Scene& scene) {
   const auto particles = particle_system(scene, ranks, phases);
   coupling::Dynamics& dynamics = particles->dynamics();
   const Net x = particles->start();
-  dynamics.at(0, 0);
+  dynamics.set_time(0, 0);
   Cost cost{};
   cost.setup = ranks.seconds_since(start);
   const auto evaluations = [&] { return ranks.of_all(particles->kernel_evaluations() + scene.walls->evaluations()).total(); };

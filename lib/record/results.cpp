@@ -230,8 +230,8 @@ void Results::write_files() {
     due_ = now + std::max(50 * (now - begun), std::min<Clock::duration>(now - start_, std::chrono::seconds(1)));
     rows_written_ = record_->rows();
   }
-  for (const auto& [step, bytes] : waiting_) output::write_whole(directory_ / output::snapshot_name(step), bytes, durable());
-  waiting_.clear();
+  for (const auto& [step, bytes] : unwritten_snapshots_) output::write_whole(directory_ / output::snapshot_name(step), bytes, durable());
+  unwritten_snapshots_.clear();
 }
 
 void Results::warn(const std::string& sentence) {
@@ -259,7 +259,7 @@ Results::Sampled Results::sample(const SurfaceSnapshot& snapshot, double time) {
 void Results::save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& snapshot) {
   write([&] {
     complete(checkpoint, state, totals, snapshot.time);
-    waiting_.emplace_back(totals.step, output::snapshot_file(checkpoint, snapshot.mesh, snapshot.fields));
+    unwritten_snapshots_.emplace_back(totals.step, output::snapshot_file(checkpoint, snapshot.mesh, snapshot.fields));
     series_->add(totals.step, snapshot.time);
     if (last_saved_ >= 0 && young() && rows_written_ != record_->rows()) return;
     write_files();
@@ -283,7 +283,7 @@ int Results::close(const Account& account, const Phases& phases) {
   memory_ = peak_memory(ranks_);
   std::string missed;
   write([&] {
-    if (!waiting_.empty()) write_files();
+    if (!unwritten_snapshots_.empty()) write_files();
     missed = finish(account, phases);
   });
   if (!account.whole) missed.clear();

@@ -156,7 +156,7 @@ class Results {
   std::size_t rows_written_ = 0;  // rows that this process has written to `run.h5`
   std::optional<output::SnapshotSeries> series_;
   std::optional<output::Nodes> nodes_;  // nodes of the snapshots
-  std::vector<std::pair<int, std::string>> waiting_;  // snapshots that are not written yet: step number and contents of the file
+  std::vector<std::pair<int, std::string>> unwritten_snapshots_;  // snapshots that are not written yet: step number and contents of the file
   std::vector<std::string> warnings_;
   std::set<std::string> kinds_of_warnings_;  // kinds passed to warn_once()
   output::Entries<long> memory_;  // peak memory, for the summary

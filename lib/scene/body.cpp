@@ -37,7 +37,7 @@ std::string direction(const Vec3& v) {
 
 std::string FlowPlane::description() const {
   const std::string plane = direction(axes.row(0)) + " " + direction(axes.row(2));
-  if (holds_flow) return "in the plane " + plane;
+  if (contains_flow) return "in the plane " + plane;
   return "in the plane of the longest and the shortest axis, because the flow is not planar; tank-treading in the plane " + plane;
 }
 
@@ -81,7 +81,7 @@ FlowPlane flow_plane(const stokes::FlowOptions& flow) {
   }
   const Vec3 vorticity = axial_vector(l);
   FlowPlane plane = vorticity.norm() > 1e-10 * l.norm() ? plane_normal_to(vorticity) : FlowPlane();
-  plane.holds_flow = false;
+  plane.contains_flow = false;
   return plane;
 }
 

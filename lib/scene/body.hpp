@@ -28,7 +28,7 @@ struct FlowPlane {
   /// `linear`; for the type `simple shear`, these directions are the rows of `axes`
   std::optional<Mat3> of_shear;
   /// false if the flow is not planar; the Taylor parameter D is then measured in the plane of the longest and the shortest axis of inertia
-  bool holds_flow = true;
+  bool contains_flow = true;
 
   bool fixed() const { return axes.isIdentity(0); }                     ///< returns true if this is the plane x1 x3
   /// Returns the components of the vector x along the three directions that are the rows of `axes`.

@@ -160,7 +160,7 @@ void DomainRow::add_columns(const SharedOptions& scene, Columns& to) const {
   to.add(pressure_gradient, "x1 x2 x3",
          {"pressure_gradient_", "force/length^3",
           "component # of the uniform pressure gradient that balances the force of the particles on the fluid"});
-  if (!to.when(strains(scene))) return;
+  if (!to.when(has_intrinsic_viscosity(scene))) return;
   to.add(relative_viscosity,
          {"relative_viscosity", "1", "effective viscosity of the suspension divided by the viscosity of the outer fluid (6.10)",
           "the rate of strain of the flow is zero at this time"});

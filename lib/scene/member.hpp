@@ -26,7 +26,7 @@ struct Member {
   std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; this object is shared by members with equal spaces
   std::shared_ptr<const membrane::Membrane> membrane;  ///< membrane; shared if also the materials and the unstressed shapes are equal
   /// parametric point of the material point whose phase angle is recorded. The parametric point does not change if the mesh adapts
-  spline::Place place;
+  spline::ParametricPoint place;
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
   PhaseAngle phase_angle;
 

@@ -136,7 +136,7 @@ void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geome
   const Vec3 off = geometry.measures(state.x).centroid - place, slope_off = gradient * off;
   state.x.rowwise() -= off.transpose();
   for (Net& slope : state.history) slope.rowwise() -= slope_off.transpose();
-  for (motion::Place& earlier : state.places) {
+  for (motion::PastPosition& earlier : state.places) {
     earlier.x.rowwise() -= (exponential(gradient * (earlier.time - state.time)) * off).transpose();
   }
 }

@@ -33,7 +33,7 @@ struct SolidsRow {
 };
 
 /// Returns the data of plates and posts for the flow `flow` around them in the ambient flow `ambient`. `particle_force`: force of the particles on
-/// the fluid. `velocity_integral`: see SolidResponse::velocity_integral; used only
+/// the fluid. `velocity_integral`: see SolidResponse::flow_integral; used only
 /// if there are two plates.
 SolidsRow solids_row(const SharedOptions& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient,
                      const coupling::Solids::Flow& flow, const Vec3& particle_force, const Vec3& velocity_integral);

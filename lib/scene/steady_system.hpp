@@ -27,7 +27,7 @@ struct System {
   /// Sets up the motion and the equations of steady shapes on the current mesh of the particle. `x`: shape on this mesh from which the search starts.
   void begin(const Net& x) {
     motion.emplace(particle->dynamics(), is_to_stop);
-    motion->at(0, 0);
+    motion->set_time(0, 0);
     const Body& body = particle->body();
     equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particle->capsule()->particles()), steady_step(scene), x);
   }

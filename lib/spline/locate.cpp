@@ -5,7 +5,7 @@
 
 namespace tanktread::spline {
 
-Place place(const Lattice& l, int v) {
+ParametricPoint place(const Lattice& l, int v) {
   int slot = l.cell[v][0] < 0 ? 3 : 0;
   for (int s = 1; s < l.valence(v); ++s)
     if (l.cell[v][s] >= 0 && l.cell[v][s] < l.cell[v][slot]) slot = s;
@@ -13,7 +13,7 @@ Place place(const Lattice& l, int v) {
   return {l.face_of(c), double(l.x_of(c) + (k == 1 || k == 2)) / l.units, double(l.height(l.y_of(c) + (k >= 2))) / (l.rows - 2 * l.pad)};
 }
 
-Place place(const Space& space, const Site& site) {
+ParametricPoint place(const Space& space, const Site& site) {
   const Element& e = space.elements[site.element];
   return {e.face, e.origin[0] + site.s * e.size[0], e.origin[1] + site.t * e.size[1]};
 }
@@ -44,7 +44,7 @@ Locator::Locator(const Space& space) : space_(space) {
   }
 }
 
-Site Locator::operator()(const Place& p) const {
+Site Locator::operator()(const ParametricPoint& p) const {
   auto bucket = [&](double x) { return std::clamp(int(x * side_), 0, side_ - 1); };
   Site nearest{-1, 0, 0};
   double least = HUGE_VAL;  // smallest distance from an element, in local coordinates

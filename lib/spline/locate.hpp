@@ -8,14 +8,14 @@ namespace tanktread::spline {
 
 /// A point of the parametric domain: a macro face (face of the cube, or the whole polar domain) and coordinates in [0, 1] along its sides. Face and
 /// coordinates do not depend on the mesh.
-struct Place {
+struct ParametricPoint {
   int face = 0;
   double x = 0, y = 0;
 };
 
 /// Returns the parametric point of a lattice vertex (on the face of lowest index that contains it) or of a site (element and local coordinates).
-Place place(const Lattice& lattice, int vertex);
-Place place(const Space& space, const Site& site);
+ParametricPoint place(const Lattice& lattice, int vertex);
+ParametricPoint place(const Space& space, const Site& site);
 
 /// Returns, for every Bezier element, the index in elements(mesh) of the element of the T-mesh that contains it. A Bezier element is marked for
 /// refinement by marking this T-mesh element.
@@ -26,7 +26,7 @@ std::vector<int> mesh_elements(const TMesh& mesh, const Space& space);
 class Locator {
  public:
   explicit Locator(const Space& space);
-  Site operator()(const Place& p) const;
+  Site operator()(const ParametricPoint& p) const;
 
  private:
   const Space& space_;

@@ -51,8 +51,8 @@ struct Block {
   /// Returns the rows of a net of the stacked space that belong to this space.
   auto rows(Net& net) const { return net.middleRows(first_point, n_points); }
   auto rows(const Net& net) const { return net.middleRows(first_point, n_points); }
-  bool holds(int point) const { return point >= first_point && point < first_point + n_points; }
-  bool holds_element(int element) const { return element >= first_element && element < first_element + n_elements; }
+  bool contains(int point) const { return point >= first_point && point < first_point + n_points; }
+  bool contains_element(int element) const { return element >= first_element && element < first_element + n_elements; }
 };
 
 /// Returns the index ranges of spaces that are stacked in the given order.

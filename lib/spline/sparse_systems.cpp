@@ -18,11 +18,11 @@ constexpr int fill = 2;
 
 /// Assembles the matrix column by column: for each unknown, adds up the columns of this unknown in all element matrices, in a dense vector.
 Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& local) {
-  struct Place {
+  struct Entry {
     std::size_t element;
     Eigen::Index row;
   };
-  std::vector<std::vector<Place>> around(n);
+  std::vector<std::vector<Entry>> around(n);
   for (std::size_t k = 0; k < local.size(); ++k)
     for (std::size_t i = 0; i < local[k].unknowns.size(); ++i) around[local[k].unknowns[i]].push_back({k, Eigen::Index(i)});
 

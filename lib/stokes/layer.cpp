@@ -23,7 +23,9 @@ void Layer::set_symmetry(const surface::Symmetry& symmetry) {
   tree_rows_.clear();
 }
 
-void Layer::set_reference(const Net& unstressed, std::vector<bool> present) { sources_.set_reference(unstressed, std::move(present)); }
+void Layer::set_reference(const Net& unstressed, std::vector<bool> per_current_area) {
+  sources_.set_reference(unstressed, std::move(per_current_area));
+}
 
 void Layer::make_tree() {
   tree_.emplace(tree_tolerance(), sources_.precision());
@@ -63,7 +65,7 @@ void Layer::set_shape(const Net& x, Measure measure) {
   if (!sources_.set_shape(x, measure)) return;
   tree_rows_.clear();
   medium_->set_sources(sources_);
-  if (tree_) tree_->repeat(medium_->far_images());
+  if (tree_) tree_->repeat(medium_->node_shifts());
 }
 
 void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
@@ -105,7 +107,7 @@ void Layer::add_near(const LayerTargets& targets, Net& u) {
   LayerSurface& surface = sources_.surface;
   for (const int i : targets.rows) {
     const Vec3 f0 = targets.f0.row(i);
-    for (const Vec3& image : medium_->near_images()) {
+    for (const Vec3& image : medium_->panel_shifts()) {
       if (i >= targets.first_image_row && image.isZero(0)) continue;
       const Vec3 at = targets.at.row(i).transpose() - image;
       const std::span<SelfPair> self_pairs = targets.sites && image.isZero(0) ? surface.self_pairs(i) : std::span<SelfPair>();
@@ -144,7 +146,7 @@ void Layer::add_far(const LayerTargets& targets, Net& u) {
   }
   const std::vector<Vec3> places = far_targets(targets, targets.far_rows), f0 = rows_of(targets.f0, targets.far_rows);
   Net all = Net::Zero(static_cast<Eigen::Index>(places.size()), 3);
-  for (const Vec3& image : medium_->far_images()) {
+  for (const Vec3& image : medium_->node_shifts()) {
     std::vector<Vec3> at = places;
     for (Vec3& x : at) x -= image;
     all += sources_.direct_sum(medium_->nodes(sources_), at, f0);
@@ -229,7 +231,7 @@ Layer::Near Layer::near(const Net& at, std::span<const int> targets, int first_i
   LayerSurface& surface = sources_.surface;
   Near kept{{0}, {}, {}};
   for (const int i : targets) {
-    for (const Vec3& image : medium_->near_images()) {
+    for (const Vec3& image : medium_->panel_shifts()) {
       if (i >= first_image_row && image.isZero(0)) continue;
       const Vec3 y = at.row(i).transpose() - image;
       for (const int e : surface.near(y, {})) {

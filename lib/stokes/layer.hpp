@@ -50,9 +50,9 @@ class Layer {
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
   /// Sets the unstressed surface, to whose area the densities refer with Measure::reference. The unstressed areas are stored for all far nodes and
-  /// all points of singular rules. `present`: for each element, whether Measure::by_element selects the current area (true) or the unstressed area
-  /// (false).
-  void set_reference(const Net& unstressed, std::vector<bool> present = {});
+  /// all points of singular rules. `per_current_area`: for each element, whether Measure::by_element selects the current area (true) or the
+  /// unstressed area (false).
+  void set_reference(const Net& unstressed, std::vector<bool> per_current_area = {});
 
   /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites (one site of each orbit). If the far sum
   /// of a single layer uses clusters, it is computed as the sum u_F over the fundamental panels only. The sum over all panels then follows from u_F
@@ -121,7 +121,7 @@ class Layer {
   void assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
 
   /// Adds to the assembled rows `a` at `sites` the images of a periodic single layer that are not near (PeriodicSum).
-  void assemble_rest(std::span<const int> sites, Rows<double>& a);
+  void assemble_remainder(std::span<const int> sites, Rows<double>& a);
 
   /// Assembles only the blocks A_iB of near control points of a single layer: entries[6 j + c], c = 11, 12, 13, 22, 23, 33, for near.point[j].
   /// Consecutive targets should be neighbours, because targets are processed in groups of sixteen, and each group evaluates the panels around the

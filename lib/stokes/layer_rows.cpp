@@ -110,8 +110,8 @@ class Layer::RowSums {
     skip_.assign(basis.panels.size(), 0u);
     const LayerMedium& medium = *layer_.medium_;
     const std::vector<Vec3> itself{Vec3::Zero()};
-    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], images() ? medium.near_images() : itself, l);
-    for (const Vec3& image : images() ? medium.far_images() : itself) {
+    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], images() ? medium.panel_shifts() : itself, l);
+    for (const Vec3& image : images() ? medium.node_shifts() : itself) {
       double place[3 * assembly_block];
       for (int l = 0; l < assembly_block; ++l) {
         const Vec3 x0 = place_of(targets[std::min<std::size_t>(l, targets.size() - 1)]);
@@ -238,7 +238,7 @@ void Layer::assemble(std::span<const int> sites, Rows<double>& a) { assemble_row
 void Layer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a) { assemble_rows(targets, &at, a); }
 void Layer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a) { assemble_rows(targets, &at, a); }
 
-void Layer::assemble_rest(std::span<const int> sites, Rows<double>& a) {
+void Layer::assemble_remainder(std::span<const int> sites, Rows<double>& a) {
   assert(single());
   const auto clock = sources_.phases.time("assembly");
   medium_->add_remainder(sources_, sites, a);

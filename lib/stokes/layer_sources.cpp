@@ -26,10 +26,10 @@ LayerSources::LayerSources(LayerKernel kernel, const spline::Space& space, const
       kernel_(kernel),
       factor_(std::move(factor)) {}
 
-void LayerSources::set_reference(const Net& unstressed, std::vector<bool> present) {
+void LayerSources::set_reference(const Net& unstressed, std::vector<bool> per_current_area) {
   surface.panels.bezier(unstressed, reference_.bezier);
   node_weights(surface.panels, reference_.bezier, reference_.weight);
-  reference_.present = std::move(present);
+  reference_.per_current_area = std::move(per_current_area);
   surface.self_field.forget_weights();
   renew_shape();
 }

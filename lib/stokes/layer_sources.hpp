@@ -39,13 +39,13 @@ class LayerSources {
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
   /// Returns whether the density on element e is a force per unstressed area.
   bool on_reference(int e) const {
-    return measure_ == Measure::reference || (measure_ == Measure::by_element && !reference_.present[static_cast<std::size_t>(e)]);
+    return measure_ == Measure::reference || (measure_ == Measure::by_element && !reference_.per_current_area[static_cast<std::size_t>(e)]);
   }
   Precision precision() const { return surface.options.far_in_single() ? Precision::single : Precision::full; }
   bool desingularised() const { return single() && surface.options.rule == quadrature::LayerRule::desingularised; }
 
   /// See Layer::set_reference.
-  void set_reference(const Net& unstressed, std::vector<bool> present);
+  void set_reference(const Net& unstressed, std::vector<bool> per_current_area);
   const std::vector<double>& reference_bezier() const { return reference_.bezier; }  ///< Bezier points of the unstressed surface
 
   /// Sets the shape x and the area to which densities refer. Returns false if both are the current ones and renew_shape() was not called since.
@@ -98,7 +98,7 @@ class LayerSources {
   /// The unstressed surface.
   struct Reference {
     std::vector<double> bezier, weight;  // Bezier points, and quadrature weights at the far nodes, which include the area
-    std::vector<bool> present;           // for Measure::by_element: for each element, true if the density is per current area
+    std::vector<bool> per_current_area;  // for Measure::by_element: for each element, true if the density is per current area
   };
   template <class Values>
   void set_moments_of(const Values& f);

@@ -24,12 +24,13 @@ struct LinePiece {
 
 /// Divides the mid-line of a mesh element at the borders of Bezier elements, and returns its parts. The line begins at `start` and is straight in the
 /// plane of its macro face (face of the cube). `direction`: 0 if the line is parallel to x of this face, 1 if parallel to y.
-std::vector<LinePiece> pieces(const spline::Space& space, const spline::Locator& locate, spline::Place start, int direction, double length) {
+std::vector<LinePiece> pieces(const spline::Space& space, const spline::Locator& locate, spline::ParametricPoint start, int direction,
+                              double length) {
   std::vector<LinePiece> result;
   const double end = (direction == 0 ? start.x : start.y) + length;
   double at = end - length;
   while (at < end - 1e-9 * length) {
-    spline::Place inside = start;
+    spline::ParametricPoint inside = start;
     (direction == 0 ? inside.x : inside.y) = at + 1e-7 * length;  // moves the point just past the border between two Bezier elements
     spline::Site site = locate(inside);
     const spline::Element& element = space.elements[site.element];
@@ -139,7 +140,7 @@ class Samples {
   }
 
   /// Returns the matrix F of (1.5) at a parametric point, which maps the tangents and the normal of the unstressed surface to the current surface.
-  Mat3 gradient(const spline::Place& p) const {
+  Mat3 gradient(const spline::ParametricPoint& p) const {
     const spline::Site site = locate_(p);
     return frame(now_, site) * frame(rest_, site).inverse();
   }

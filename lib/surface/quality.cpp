@@ -4,7 +4,6 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 #include "surface/patch.hpp"
@@ -37,10 +36,6 @@ Worst worst(const Tangents& a1, const Tangents& a2) {
 }
 
 }  // namespace
-
-Quality quality(const BezierMap& map, const Net& net) {
-  return quality(map, net, indices(map.n_elements()));
-}
 
 Quality worse(const Quality& a, const Quality& b) {
   Quality result = a.jacobian_ratio <= b.jacobian_ratio ? a : b;

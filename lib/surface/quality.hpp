@@ -23,9 +23,8 @@ struct Quality {
   int stretched_element = 0;
 };
 
-/// Computes the quality of all elements of a surface, or of the given elements. Throws RunFailure, naming the control point, if a control point is
+/// Computes the quality of the given elements of a surface. Throws RunFailure, naming the control point, if a control point is
 /// not finite.
-Quality quality(const BezierMap& map, const Net& net);
 Quality quality(const BezierMap& map, const Net& net, std::span<const int> elements);
 
 /// Returns the worse value of each of the two ratios in a and b, with its element.

@@ -9,14 +9,14 @@
 
 namespace tanktread::surface {
 
+Vec3 middle(const Net& net) { return (net.colwise().maxCoeff() + net.colwise().minCoeff()).transpose() / 2; }
+
 namespace {
 
 constexpr double exact = 1e-10, close = 1e-9;
 
 constexpr Turn turns[8] = {{false, {false, false}}, {false, {true, false}}, {false, {false, true}}, {false, {true, true}},
                            {true, {false, false}},  {true, {true, false}},  {true, {false, true}},  {true, {true, true}}};
-
-Vec3 middle(const Net& net) { return (net.colwise().maxCoeff() + net.colwise().minCoeff()).transpose() / 2; }
 
 Vec3 reflected(const Vec3& x, const Vec3& centre, const Vec3& signs) { return centre + signs.cwiseProduct(x - centre); }
 

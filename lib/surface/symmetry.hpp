@@ -84,6 +84,9 @@ class Symmetry {
 /// the flow or a wall has the symmetry. The argument of `keeps` has the images of the control points, but not yet the images of the elements.
 Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps);
 
+/// Returns the middle of the bounding box of a net.
+Vec3 middle(const Net& net);
+
 /// One element per orbit of the symmetry group, in ascending order: the element of the orbit with the most fundamental points. The weight of an
 /// element is 1 divided by the number of images, including the identity, that map the element onto itself.
 struct FundamentalElements {

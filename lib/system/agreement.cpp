@@ -113,7 +113,7 @@ std::pair<int, std::string> worst_of_all(int mine, const std::string& reason) {
 
 bool finite(const Net& net) { return of_first(net.allFinite()); }
 
-bool any_told_to_stop(bool told) { return largest(told) > 0; }
+bool any_stop_requested(bool requested) { return largest(requested) > 0; }
 
 std::vector<double> decided(const std::function<std::vector<double>()>& choose) {
   std::vector<double> numbers;

@@ -37,7 +37,7 @@ std::pair<int, std::string> worst_of_all(int mine, const std::string& reason);
 bool finite(const Net& net);
 
 /// Returns whether any rank has received a stop signal, so that all ranks stop together. Collective.
-bool any_told_to_stop(bool told);
+bool any_stop_requested(bool requested);
 
 /// Returns the values that `choose` returns on the first rank. `choose` is not called on other ranks, so that the decision is unique even if the data
 /// of the ranks differ by round-off. If `choose` throws, every rank throws RunFailure. Collective.

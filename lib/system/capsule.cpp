@@ -11,8 +11,8 @@
 namespace tanktread::coupling {
 
 /// Sets the time. Cached results are kept unless the flow or the cell changes.
-void Capsule::at(double time, double start) {
-  const bool other_flow = surroundings_.flow.at(time, start), other_cell = parameters_.cell && deform_cell(time);
+void Capsule::set_time(double time, double start) {
+  const bool other_flow = surroundings_.flow.set_time(time, start), other_cell = parameters_.cell && deform_cell(time);
   if (other_flow || other_cell) latest_.reset();
 }
 
@@ -120,7 +120,6 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
   Net v = explicit_velocity(x, f, {}, &e.response_);
   if (!bodies_.tractions) bodies_.rigid.add_load_correction(v), bodies_.rigid.subtract_prescribed(v);
   volumes_.constrain(v, volume);
-  membranes_.set_viscous_shape(x);
   if (bodies_.tractions) v = solve_tractions(e, x, volume, symmetric(v));
   else if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, e.error_);
   e.unknowns_ = v;
@@ -139,18 +138,18 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
 }
 
 /// Returns v_inf - (1/mu) R^-1 A f of (4.2), with the ambient velocity v_inf, the collocation matrix R and the single layer A. Adds the velocity that
-/// plates and posts cause in response to the load f and, if given, to the velocity `moves` of the particles. In a tube whose wall unknowns are
-/// eliminated, adds the response of the wall in the same way. Stores this response in `answer`, if given, unless a linear system for the velocity
-/// follows, because the solution changes the response.
-Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer) {
+/// plates and posts cause in response to the load f and, if given, to the velocity of the particles. In a tube whose wall
+/// unknowns are eliminated, adds the response of the wall in the same way. Stores this response in `answer`, if given, unless a linear system for the
+/// velocity follows, because the solution changes the response.
+Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer) {
   Net u = layers_.apply_single(x, f);
   if (flow_at_targets()) {
     const bool known = duct_.tube && surroundings_.flow.duct();
     const stokes::AmbientFlow& flow = surroundings_.flow;
     u = (known ? flow.amplitude() * duct_.tube->ambient() : flow.velocities(targets_.values() * x)) - u / parameters_.viscosity;
-    if (solids()) add_solids(x, f, moves, true, u);
+    if (solids()) add_solids(x, f, particle_velocity, true, u);
     if (duct_.tube && eliminates_walls()) {
-      Tube::Response response = duct_.tube->respond(f, moves);
+      Tube::Response response = duct_.tube->respond(f, particle_velocity);
       u += response.velocity;
       if (answer && !has_velocity_system()) *answer = std::move(response);
     }
@@ -205,13 +204,11 @@ Net Capsule::defect_here(const Net& x, const Net& u) {
   Evaluation e(*this, x);
   Net f = membrane_load(e, x, &volume);
   volumes_.constrain(inside, volume);
-  membranes_.set_viscous_shape(x);
   if (viscous()) f += membranes_.viscous_load(x, inside);
   Net residual = explicit_velocity(x, f, layers_.has_double() ? inside : Net(), nullptr) - inside;
   if (layers_.has_double()) {
     const auto clock = phases_.time("velocity system");
-    layers_.set_double_shape(x);
-    residual += targets_.control_values(layers_.apply_double(inside));
+    residual += targets_.control_values(layers_.apply_double(x, inside));
   }
   volumes_.constrain(residual, volume);
   return symmetric(residual - (u - inside));
@@ -277,7 +274,7 @@ void Capsule::forget_recycled() const {
   if (bodies_.tractions) bodies_.tractions->forget_recycled();
 }
 
-void Capsule::restore_volume(Net& x) {
+void Capsule::restore_constraints(Net& x) {
   bodies_.rigid.fit_to(x);
   if (parameters_.volume.constraint != VolumeConservation::exact) return;
   const auto clock = phases_.time("volume");

@@ -26,9 +26,9 @@ class RigidTractions;
 
 /// Computes dx/dt = v(x) for the stacked control nets x of all particles.
 ///
-/// Order of calls: at() sets the time. evaluate() solves for the loads and velocities of a shape and returns them as an Evaluation.
+/// Order of calls: set_time() sets the time. evaluate() solves for the loads and velocities of a shape and returns them as an Evaluation.
 /// evaluate_on_demand() returns an Evaluation that solves only when a quantity is read that needs it. Implicit schemes call freeze() every few steps,
-/// linearise() in each step, and then solve() or correction(). Schemes call restore_volume() after a step. The functions are in capsule.cpp
+/// linearise() in each step, and then solve() or correction(). Schemes call restore_constraints() after a step. The functions are in capsule.cpp
 /// (evaluation; solve_in_cell() lists its stages), capsule_unknowns.cpp (linear systems), capsule_cell.cpp (lattices, tubes, plates and posts) and
 /// capsule_setup.cpp (construction).
 ///
@@ -67,9 +67,9 @@ class RigidTractions;
 /// Plates and posts: the velocity (2.47) that they cause is added to the right-hand side and to B in the same way.
 class Capsule : public Dynamics {
  public:
-  /// `unstressed` and `rest`: control nets of the unstressed and of the resting surfaces, of shape (N, 3) on `space`. The motion conserves
-  /// `kept_volume` of each particle if it is set, and otherwise the volume of the particle in `rest`.
-  Capsule(const spline::Space& space, const Net& unstressed, const Net& rest, const stokes::AmbientFlow& flow,
+  /// `unstressed` and `resting`: control nets of the unstressed and of the resting surfaces, of shape (N, 3) on `space`. The motion conserves
+  /// `kept_volume` of each particle if it is set, and otherwise the volume of the particle in `resting`.
+  Capsule(const spline::Space& space, const Net& unstressed, const Net& resting, const stokes::AmbientFlow& flow,
           const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;
 
@@ -83,7 +83,7 @@ class Capsule : public Dynamics {
   std::shared_ptr<Evaluation> evaluate_on_demand(const Net& x, const Net& velocity, double distance);
 
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
-  void at(double time, double start) override;
+  void set_time(double time, double start) override;
 
   double next_kink(double time) const override { return surroundings_.flow.next_kink(time); }
   void freeze(const Net& x) override;
@@ -97,7 +97,7 @@ class Capsule : public Dynamics {
   Net jacobian_error(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   Net mesh_motion(const Net& delta) override;
-  void restore_volume(Net& x) override;
+  void restore_constraints(Net& x) override;
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override;
   double distance(const Net& from, const Net& to) const override;
@@ -143,8 +143,8 @@ class Capsule : public Dynamics {
   double volume_error(double volume, std::size_t p = 0) const { return volumes_.error(volume, p); }  ///< V/V0 - 1 of particle p
   Tube* tube() { return duct_.tube.get(); }  ///< null if there is no tube
   SolidResponse* solids() { return surroundings_.solids.get(); }  ///< null if there are no plates or posts
-  const stokes::AmbientFlow& flow() const { return surroundings_.flow; }  ///< flow at the time set by `at`
-  const std::optional<stokes::PeriodicCell>& cell() const { return surroundings_.cell; }  ///< cell at the time set by `at`
+  const stokes::AmbientFlow& flow() const { return surroundings_.flow; }  ///< flow at the time set by `set_time`
+  const std::optional<stokes::PeriodicCell>& cell() const { return surroundings_.cell; }  ///< cell at the time set by `set_time`
 
   /// Replaces every particle in the net x by its image whose mean control point is in the cell, and converts the velocity v of the control points, if
   /// given, to the velocity of the image. Returns what was subtracted for each particle. Without a lattice, does nothing and returns an empty vector.
@@ -165,7 +165,7 @@ class Capsule : public Dynamics {
  private:
   friend class Evaluation;
 
-  /// Ambient flow, cell, plates and posts at the time set by `at`. `cell` and `solids` are unset without a lattice.
+  /// Ambient flow, cell, plates and posts at the time set by `set_time`. `cell` and `solids` are unset without a lattice.
   struct Surroundings {
     stokes::AmbientFlow flow;
     std::optional<stokes::PeriodicCell> cell;
@@ -201,7 +201,7 @@ class Capsule : public Dynamics {
   void push_bodies(const Net& x);
   Net work_of_loads(const Net& x, std::vector<Net>& sums);
   Net membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume = nullptr);
-  Net explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer);
+  Net explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer);
   Net defect_here(const Net& x, const Net& u);
   // Cells of lattices, tubes, plates and posts (capsule_cell.cpp).
   bool deform_cell(double time);
@@ -210,7 +210,7 @@ class Capsule : public Dynamics {
   void set_tube_shape(const Net& x);
   void make_solid_response();
   void set_solid_shape(const Net& x);
-  void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
+  void add_solids(const Net& x, const Net& f, const Net& particle_velocity, bool with_empty, Net& u);
   Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
   // Linear systems (capsule_unknowns.cpp).
   Net velocity_load(const Net& x, const Net& v);
@@ -226,7 +226,7 @@ class Capsule : public Dynamics {
   void record_solve(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
 
   const spline::Space& space_;
-  Net rest_;
+  Net resting_;
   Surroundings surroundings_;
   CapsuleParameters parameters_;
   Phases& phases_;

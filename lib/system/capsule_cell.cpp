@@ -53,12 +53,12 @@ Vec3 Capsule::cell_origin(const Net& x) const {
   return x.col(0).mean() * Vec3::UnitX();
 }
 
-/// Adds to the rank-owned rows of u the velocity (2.47) that the solids cause at the targets in response to the load f and the velocity `moves` of
+/// Adds to the rank-owned rows of u the velocity (2.47) that the solids cause at the targets in response to the load f and the velocity of
 /// the particles. If `with_empty`, also adds the velocity that the solids cause without particles.
-void Capsule::add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u) {
+void Capsule::add_solids(const Net& x, const Net& f, const Net& particle_velocity, bool with_empty, Net& u) {
   const auto clock = phases_.time("wall");
   set_solid_shape(x);
-  Solids::Flow flow = surroundings_.solids->respond(f, moves);
+  Solids::Flow flow = surroundings_.solids->respond(f, particle_velocity);
   if (with_empty) flow = flow + surroundings_.solids->empty();
   Net part = targets_.zero();
   surroundings_.solids->velocities(flow, part);

@@ -45,7 +45,7 @@ CapsuleJacobian::CapsuleJacobian(const CapsuleParameters& parameters, const stok
   if (area_->empty()) area_.reset();
 }
 
-void CapsuleJacobian::linearise(const Net& x, const Net& work, const std::vector<Net>& sums) {
+void CapsuleJacobian::linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums) {
   membranes_.linearise(x, sums);
   frozen_.turn_to(x);
   if (area_) area_->set_shape(x);
@@ -58,7 +58,7 @@ void CapsuleJacobian::linearise(const Net& x, const Net& work, const std::vector
   pressures_.clear(), x_ = x;
   for (const Particle& one : parameters_.particles) {
     const Net y = one.block.rows(x).rowwise() - one.block.rows(x).colwise().mean();
-    if (one.slides()) pressures_.push_back({one.block, dot(Net(one.block.rows(work)), y) / dot(Net(one.block.rows(gradient)), y)});
+    if (one.slides()) pressures_.push_back({one.block, dot(Net(one.block.rows(energy_gradient)), y) / dot(Net(one.block.rows(gradient)), y)});
   }
 }
 
@@ -107,25 +107,25 @@ Net CapsuleJacobian::without_pressure(Net work, const Net& db) const {
 ///   B J dx = P (grad v_inf dx - (1/mu) R^{-1} A M0^{-1} H dx)                                                                      (4.3)
 ///
 /// P is the volume projection (2.8), v_inf the ambient velocity, R the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the
-/// membrane tangent. `work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies, B is the identity
-/// and B J dx is 0. The layers and the tube are applied once, to the sum of all loads.
-Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& work) {
-  const bool moves = v.size() > 0 && has_system(), displaced = dx.size() > 0;
-  if (!moves && !displaced) return v;
+/// membrane tangent. `added_work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies, B is the
+/// identity and B J dx is 0. The layers and the tube are applied once, to the sum of all loads.
+Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& added_work) {
+  const bool has_velocity = v.size() > 0 && has_system(), displaced = dx.size() > 0;
+  if (!has_velocity && !displaced) return v;
   Net moving, work_change;
-  if (moves) {
+  if (has_velocity) {
     moving = without_flux(v);
     clear_rigid(parameters_.particles, moving);
     if (membranes_.viscous()) work_change = membranes_.viscous_work_change(moving);
   }
   if (displaced) {
     Net h = shift * membranes_.work_change(dx);
-    if (work.size() > 0) h += shift * work;
+    if (added_work.size() > 0) h += shift * added_work;
     work_change = work_change.size() > 0 ? Net(work_change + h) : std::move(h);
   }
   const Net load = work_change.size() > 0 ? membranes_.solved(std::move(work_change)) : Net();
   Net u = Net::Zero(std::max(v.rows(), dx.rows()), 3);
-  if (moves && frozen_.has_double()) u = frozen_.double_layer(moving);
+  if (has_velocity && frozen_.has_double()) u = frozen_.double_layer(moving);
   if (load.size() > 0) u -= frozen_.single_layer(load) / parameters_.viscosity;
   if (tube_) u += tube_->frozen_response(load, moving);
   if (displaced && flow_at_sites_) {
@@ -141,8 +141,8 @@ Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Ne
 
 /// Returns the change J dx of the fluid velocity due to the displacement dx. Solves B (J dx) = rhs to a smaller tolerance than the system of
 /// an implicit step, because each product with the matrix of that system may require this solve.
-Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& work) {
-  const Net rhs = product({}, dx, -1, work);
+Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& added_work) {
+  const Net rhs = product({}, dx, -1, added_work);
   if (!has_system()) return rhs;
   const LinearSystem system{velocity_blocks(parameters_.particles), on_nets(dx.rows(), [this](const Net& u) { return product(u, {}, 0, {}); }), {}};
   Eigen::VectorXd v = flat(rhs);
@@ -150,17 +150,17 @@ Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& work) {
   return as_net(v);
 }
 
-CapsuleJacobian::RateChange CapsuleJacobian::velocity_change(const Net& dx, const Net& work) {
-  if (!interface_) return {fluid_velocity_change(dx, work), {}};
+CapsuleJacobian::RateChange CapsuleJacobian::velocity_change(const Net& dx, const Net& added_work) {
+  if (!interface_) return {fluid_velocity_change(dx, added_work), {}};
   const Net db = (volumes_.gradient(x_ + dx) - volumes_.gradient(x_ - dx)) / 2;  // d2V/dx2 dx, exact because V is a cubic form
-  const Net dv = fluid_velocity_change(dx, without_pressure(work, db));
+  const Net dv = fluid_velocity_change(dx, without_pressure(added_work, db));
   const Net du = interface_->derivative(dv, dx, db);
   return {du, dv - du};
 }
 
-CapsuleJacobian::RateChange CapsuleJacobian::step_change(const Net& dx, double shift, const Net& work) {
-  if (!interface_) return {product(dx, dx, shift, work), {}};
-  RateChange change = velocity_change(dx, work);
+CapsuleJacobian::RateChange CapsuleJacobian::step_change(const Net& dx, double shift, const Net& added_work) {
+  if (!interface_) return {product(dx, dx, shift, added_work), {}};
+  RateChange change = velocity_change(dx, added_work);
   return {dx - shift * change.rate, std::move(change.slip)};
 }
 
@@ -180,7 +180,7 @@ Net CapsuleJacobian::solve(double shift, const Net& rhs, double tolerance, const
 /// residual of a few percent would be larger than the rotation of a hardly deforming particle. The iteration of a step then converges slowly or not
 /// at all: with lambda = 100, a capsule in shear took 144 steps instead of 12. Above lambda = 2e4, a smaller residual does not help, because the
 /// stored operator (FrozenOperator) is rounded to 2^-9.
-double CapsuleJacobian::weight_of_rotation() const {
+double CapsuleJacobian::tolerance_factor() const {
   constexpr double least = 10, most = 2e4;
   double ratio = 1;
   for (const Particle& particle : parameters_.particles)
@@ -191,7 +191,7 @@ double CapsuleJacobian::weight_of_rotation() const {
 Net CapsuleJacobian::solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance) {
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(rhs.size());
   const LinearSystem system{{{"displacement", rhs.size()}}, product, precondition};
-  const SolveReport report = step_solver_.solve(system, flat(rhs), solution, tolerance * weight_of_rotation());
+  const SolveReport report = step_solver_.solve(system, flat(rhs), solution, tolerance * tolerance_factor());
   ++counts_.solves;
   counts_.solver_iterations += report.iterations;
   return as_net(solution);

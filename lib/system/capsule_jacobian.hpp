@@ -23,31 +23,32 @@ namespace tanktread::coupling {
 /// volumes. Calls are collective.
 class CapsuleJacobian {
  public:
-  /// Changes due to a displacement dx and to additional loads with the virtual work `work`. `rate`: see velocity_change() and step_change(). `slip`:
-  /// change of the fluid velocity minus the velocity of the control points; empty if no control points slide along an interface.
+  /// Changes due to a displacement dx and to additional loads with the virtual work `added_work`. `rate`: see velocity_change() and step_change().
+  /// `slip`: change of the fluid velocity minus the velocity of the control points; empty if no control points slide along an interface.
   struct RateChange {
     Net rate, slip;
   };
 
   /// `flow_at_sites`: true if the ambient velocity is evaluated at the collocation sites, false if its uniform gradient acts on the control points.
-  /// `tube`, `interface`: null if there is no tube or if no control points slide. `work`: counters of operations, which this object increases.
+  /// `tube`, `interface`: null if there is no tube or if no control points slide. `counts`: counters of operations, which this object increases.
   /// References must outlive this object.
   CapsuleJacobian(const CapsuleParameters& parameters, const stokes::AmbientFlow& flow, bool flow_at_sites, const Targets& targets,
                   Membranes& membranes, const Volumes& volumes, FrozenLayers& frozen, Tube* tube, InterfaceMotion* interface,
                   OperationCounts& counts);
 
-  /// Linearises at x. `work`: dE/dx at x, required only if control points slide. `sums`: surface integrals that Membranes::work computed at x.
-  void linearise(const Net& x, const Net& work, const std::vector<Net>& sums);
+  /// Linearises at x. `energy_gradient`: dE/dx at x, required only if control points slide. `sums`: surface integrals that Membranes::work computed
+  /// at x.
+  void linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums);
 
   /// Returns whether all control points move with the fluid and the velocity is the solution of a linear system.
   bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }
 
   /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.
   Net velocity_product(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
-  RateChange velocity_change(const Net& dx, const Net& work);  ///< returns J dx as `rate`
+  RateChange velocity_change(const Net& dx, const Net& added_work);  ///< returns J dx as `rate`
   /// Returns the left-hand side of an implicit step as `rate`: B (dx - shift J dx), or dx - shift J dx if control points slide. `slip` of the result
-  /// is the same as of velocity_change(dx, work). If no control points slide, applies each layer only once.
-  RateChange step_change(const Net& dx, double shift, const Net& work);
+  /// is the same as of velocity_change(dx, added_work). If no control points slide, applies each layer only once.
+  RateChange step_change(const Net& dx, double shift, const Net& added_work);
 
   void prepare_step(double shift);  ///< prepares step_preconditioner() for implicit steps with this shift gamma dt
   Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< applies an approximate inverse of the matrix of `solve`
@@ -76,11 +77,11 @@ class CapsuleJacobian {
  private:
   bool has_system() const { return frozen_.has_double() || membranes_.viscous(); }
   std::vector<Mat3> gradients_at(const Net& x) const;
-  Net product(const Net& v, const Net& dx, double shift, const Net& work);
+  Net product(const Net& v, const Net& dx, double shift, const Net& added_work);
   Net without_pressure(Net work, const Net& db) const;
-  Net fluid_velocity_change(const Net& dx, const Net& work);
+  Net fluid_velocity_change(const Net& dx, const Net& added_work);
   Net without_flux(Net rate) const;
-  double weight_of_rotation() const;
+  double tolerance_factor() const;
 
   const CapsuleParameters& parameters_;
   const stokes::AmbientFlow& flow_;

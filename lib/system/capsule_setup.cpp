@@ -27,24 +27,24 @@ std::unique_ptr<InterfaceMotion> interface_motion(const spline::Space& space, co
 
 }  // namespace
 
-Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& rest, const stokes::AmbientFlow& flow,
+Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& resting, const stokes::AmbientFlow& flow,
                  const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
-    : space_(space), rest_(rest), surroundings_{flow, {}, {}}, parameters_(completed(parameters, space)), phases_(phases),
+    : space_(space), resting_(resting), surroundings_{flow, {}, {}}, parameters_(completed(parameters, space)), phases_(phases),
       layout_(space, parameters_.symmetry, phases),
       targets_(space, unstressed, parameters_, layout_),
       membranes_(space, unstressed, parameters_, layout_, phases),
-      volumes_(space, rest, particles(), layout_, phases),
+      volumes_(space, resting, particles(), layout_, phases),
       layers_(space, unstressed, parameters_, layout_, targets_, phases),
       frozen_(space, membranes_.unstressed(), parameters_, layout_, targets_, membranes_.mass_matrix(), layers_),
       duct_{std::move(tube), {}, {}, {}},
-      bodies_{RigidParticles(particles(), rest, parameters.viscosity, parameters.quadrature), {}, {}},
+      bodies_{RigidParticles(particles(), resting, parameters.viscosity, parameters.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
       jacobian_(parameters_, surroundings_.flow, flow_at_targets(), targets_, membranes_, volumes_, frozen_, duct_.tube.get(), interface_.get(),
                 counts_) {
   if (std::ranges::any_of(particles(), &Particle::by_traction))
     bodies_.tractions =
-        std::make_unique<RigidTractions>(space, membranes_.unstressed(), rest, parameters_, duct_.tube.get(), layout_.points(), ranks);
+        std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, duct_.tube.get(), layout_.points(), ranks);
   if (parameters_.cell) deform_cell(0);
   make_solid_response();
   if (!duct_.tube) return;

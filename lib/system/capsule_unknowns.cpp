@@ -43,7 +43,7 @@ Net Capsule::velocity_product(const Net& x, const Net& v, const Net& load) {
 /// Returns the preconditioner of the velocity system at x, from inverses for isolated rigid bodies and for the thin films between bodies. Empty if no
 /// such inverses are stored. Valid until the bodies move.
 Apply Capsule::velocity_preconditioner(const Net& x) {
-  if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, rest_, parameters_.quadrature);
+  if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, resting_, parameters_.quadrature);
   if (bodies_.isolated->empty()) return {};
   const auto films = std::make_shared<FilmInverses>(particles(), *bodies_.isolated, bodies_.rigid, x,
                                                     [&](std::span<const int> sites) { return layers_.double_rows(sites); });
@@ -123,7 +123,6 @@ Net Capsule::traction_product(const Net& x, const VolumeConstraint& volume, cons
   const Net v = deformable_velocity(volume, y), load = traction_load(x, y, v);
   Net other = viscous() || caused.size() == 0 ? load : Net();  // load whose induced velocity is not contained in `caused`
   if (viscous() && caused.size() > 0) clear_rigid(particles(), other);
-  layers_.set_double_shape(x);
   Net u = layers_.apply(x, v, other);
   if (caused.size() > 0) u += caused;
   if (duct_.tube) u += duct_.tube->respond(load, v).velocity;
@@ -148,13 +147,13 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint
   std::vector<Vec3> centres;
   std::vector<RigidDrive> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
-    if (bodies_.rigid.holds(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
+    if (bodies_.rigid.is_rigid(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
   const bool responds = layers_.repeats() || duct_.tube || solids() || layers_.has_double() || viscous();
   bodies_.tractions->solve(x, centres, driven, surroundings_.flow, RigidTractions::Surroundings{flow, responds, product, load});
   Net v = deformable_velocity(volume, bodies_.tractions->unknowns());
   auto body = bodies_.tractions->bodies().begin();
   for (std::size_t p = 0; p < particles().size(); ++p)
-    if (bodies_.rigid.holds(p)) bodies_.rigid.move(p, body->motion, body->force, body->torque, v), ++body;
+    if (bodies_.rigid.is_rigid(p)) bodies_.rigid.move(p, body->motion, body->force, body->torque, v), ++body;
   e.load_ = load(bodies_.tractions->unknowns());
   for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, flat(v), parameters_.solvers.tolerance);
   if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, bodies_.tractions->pressure_correction());

@@ -42,13 +42,13 @@ Net work(std::span<const Particle> particles, const Contacts& contacts, Eigen::I
 
 namespace {
 
-/// Returns the contact forces f with A f + q = 0 (gap exactly closed) in the rows of the contacts `held`, and f = 0 in all other rows.
-Eigen::VectorXd forces(const Eigen::MatrixXd& a, const Eigen::VectorXd& q, const std::vector<int>& held) {
+/// Returns the contact forces f with A f + q = 0 (gap exactly closed) in the rows of the contacts `active`, and f = 0 in all other rows.
+Eigen::VectorXd forces(const Eigen::MatrixXd& a, const Eigen::VectorXd& q, const std::vector<int>& active) {
   Eigen::VectorXd f = Eigen::VectorXd::Zero(q.size());
-  if (held.empty()) return f;
-  const Eigen::MatrixXd of_held = a(held, held);
-  const Eigen::VectorXd right = -q(held), found = of_held.partialPivLu().solve(right);
-  f(held) = found;
+  if (active.empty()) return f;
+  const Eigen::MatrixXd of_active = a(active, active);
+  const Eigen::VectorXd right = -q(active), found = of_active.partialPivLu().solve(right);
+  f(active) = found;
   return f;
 }
 
@@ -57,19 +57,19 @@ Eigen::VectorXd forces(const Eigen::MatrixXd& a, const Eigen::VectorXd& q, const
 Eigen::VectorXd complementary(const Eigen::MatrixXd& a, const Eigen::VectorXd& q) {
   const Eigen::Index n = q.size();
   const double small = 1e-12 * q.cwiseAbs().maxCoeff();
-  std::vector<int> held;
+  std::vector<int> active;
   const Eigen::Index most = 1000 * n;
   for (Eigen::Index pivot = 0; pivot < most; ++pivot) {
-    const Eigen::VectorXd f = forces(a, q, held), open = a * f + q;
-    const auto wrong = [&](int k) { return std::ranges::binary_search(held, k) ? f[k] < 0 : open[k] < -small; };
+    const Eigen::VectorXd f = forces(a, q, active), open = a * f + q;
+    const auto wrong = [&](int k) { return std::ranges::binary_search(active, k) ? f[k] < 0 : open[k] < -small; };
     int k = 0;
     while (k < n && !wrong(k)) ++k;
     if (k == n) return f;
-    const auto at = std::ranges::lower_bound(held, k);
-    if (at != held.end() && *at == k)
-      held.erase(at);
+    const auto at = std::ranges::lower_bound(active, k);
+    if (at != active.end() && *at == k)
+      active.erase(at);
     else
-      held.insert(at, k);
+      active.insert(at, k);
   }
   return Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
 }

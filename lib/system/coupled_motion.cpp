@@ -212,9 +212,9 @@ Net CoupledMotion::mesh_motion(const Net& delta) {
   return motion.rows() > 0 ? with_shape(Net::Zero(rows_, 3), motion) : Net();
 }
 
-void CoupledMotion::restore_volume(Net& y) {
+void CoupledMotion::restore_constraints(Net& y) {
   Net x = shape(y);
-  capsule_.restore_volume(x);
+  capsule_.restore_constraints(x);
   y.topRows(n_) = x;
 }
 

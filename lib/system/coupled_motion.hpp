@@ -58,7 +58,7 @@ class CoupledMotion : public Dynamics {
   void set_state(const Net& y);
 
   Net velocity(const Net& y) override;
-  void at(double time, double start) override { capsule_.at(time, start); }
+  void set_time(double time, double start) override { capsule_.set_time(time, start); }
   double next_kink(double time) const override { return capsule_.next_kink(time); }
   void freeze(const Net& y) override;
   bool lattice_moves() const override { return capsule_.lattice_moves(); }
@@ -71,7 +71,7 @@ class CoupledMotion : public Dynamics {
   Net jacobian_error(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& y, const Net& v, const Net& delta) override;
   Net mesh_motion(const Net& delta) override;
-  void restore_volume(Net& y) override;
+  void restore_constraints(Net& y) override;
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& y) override;
   Net moved(const Net& y, const RigidMotion& motion) const override;

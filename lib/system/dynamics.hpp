@@ -14,14 +14,14 @@ namespace tanktread::coupling {
 inline Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::numeric_limits<double>::quiet_NaN()); }
 
 /// The system dx/dt = v(x) (4.2) of the control net x. Nets are replicated on all ranks, and every call is collective. If the motion depends on time,
-/// all calls refer to the time passed to at() last.
+/// all calls refer to the time passed to set_time() last.
 class Dynamics {
  public:
   virtual ~Dynamics() = default;
 
   /// Sets the time for all later calls, within a step that began at `start`. If the motion jumps at the time `time`, a step that ends there uses the
   /// limit from earlier times, and a step that starts there uses the limit from later times.
-  virtual void at(double /*time*/, double /*start*/) {}
+  virtual void set_time(double /*time*/, double /*start*/) {}
 
   /// Returns the first time after `time` at which the motion is not smooth in time; no step may cross it.
   virtual double next_kink(double /*time*/) const { return std::numeric_limits<double>::infinity(); }
@@ -32,7 +32,7 @@ class Dynamics {
   /// Assembles the layer operators that the Jacobian keeps frozen (4.3) at x.
   virtual void freeze(const Net& x) = 0;
 
-  /// Returns true if freeze() uses a periodic lattice that changes in time. The time set by at() must then be the time of the shape passed to
+  /// Returns true if freeze() uses a periodic lattice that changes in time. The time set by set_time() must then be the time of the shape passed to
   /// freeze().
   virtual bool lattice_moves() const { return false; }
 
@@ -72,8 +72,9 @@ class Dynamics {
   /// no mesh relaxes.
   virtual Net mesh_motion(const Net& /*delta*/) { return {}; }
 
-  /// Displaces x to restore the prescribed volumes if the constraint is `exact`; otherwise does nothing. If the iteration fails, x becomes NaN.
-  virtual void restore_volume(Net& x) = 0;
+  /// Corrects x so that it satisfies the constraints again that a step satisfies only approximately: rigid bodies keep their shape, quaternions have
+  /// the norm 1, and particles have the prescribed volumes if the volume constraint is `exact`. If the iteration fails, x becomes NaN.
+  virtual void restore_constraints(Net& x) = 0;
 
   /// Improves the initial guess y of a stage with the shift gamma dt: displaces membranes that nearly conserve area, so that their local area is the
   /// same as in the shape `before` the stage.

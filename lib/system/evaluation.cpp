@@ -96,8 +96,8 @@ Evaluation::SolidFlow Evaluation::solid_flow() {
   SolidResponse& solids = *system_->solids();
   SolidFlow found{.flow = {}, .caused = solids.respond(load_, unknowns_)};
   found.flow = found.caused + solids.empty();
-  found.caused_integral = solids.velocity_integral(found.caused, load_, unknowns_);
-  found.velocity_integral = found.caused_integral + velocity_integral(solids.scene(), solids.empty());
+  found.caused_integral = solids.flow_integral(found.caused, load_, unknowns_);
+  found.velocity_integral = found.caused_integral + solids_flow_integral(solids.scene(), solids.empty());
   return found;
 }
 
@@ -107,10 +107,7 @@ Tube::Checks Evaluation::checks() {
 }
 
 const Net& Evaluation::viscous_work() {
-  if (viscous_work_.size() == 0) {
-    system_->membranes_.set_viscous_shape(x_);
-    viscous_work_ = system_->membranes_.viscous_work(solved_fluid_velocity());
-  }
+  if (viscous_work_.size() == 0) viscous_work_ = system_->membranes_.viscous_work(x_, solved_fluid_velocity());
   return viscous_work_;
 }
 
@@ -134,7 +131,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
     system.geometry().volume_gradient(x_, indices(particle.block.n_elements, particle.block.first_element), flux);
     moment -= 2 * contrast * system.parameters_.viscosity * v.transpose() * own(flux);
   }
-  return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
+  return coupling::stresslet(moment);
 }
 
 double Evaluation::membrane_dissipation(std::size_t p) {

@@ -30,14 +30,14 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
     radius_ = std::min(radius_, particle.radius);
     drops_.push_back({block, relaxed, shared, particle.interface_speed, {}, {}, {}});
     Drop& drop = drops_.back();
-    const auto holds = [&](int e) { return block.holds_element(e); };
-    std::ranges::copy_if(layout.points(), std::back_inserter(drop.points), [&](int i) { return block.holds(i); });
+    const auto contains = [&](int e) { return block.contains_element(e); };
+    std::ranges::copy_if(layout.points(), std::back_inserter(drop.points), [&](int i) { return block.contains(i); });
     if (projection_)
       for (int i = 0; i < static_cast<int>(projection_->sites().size()); ++i)
-        if (holds(projection_->sites()[static_cast<size_t>(i)].front().element)) drop.places.push_back(i);
+        if (contains(projection_->sites()[static_cast<size_t>(i)].front().element)) drop.sites.push_back(i);
     if (!drop.relaxed) continue;
     relaxed_ = true;
-    std::ranges::copy_if(layout.touching(), std::back_inserter(own_elements_), holds);
+    std::ranges::copy_if(layout.touching(), std::back_inserter(own_elements_), contains);
     std::vector<int> own;
     for (const int i : drop.points) own.push_back(i - block.first_point);
     stokes::Layer layer(stokes::Layer::Kernel::single_layer, *particle.space, particle.space->collocation, parameters.quadrature);
@@ -111,17 +111,19 @@ std::vector<MotionOfShape> InterfaceMotion::motions(const Net& x, const Net& b, 
 }
 
 /// Returns the control values of the mesh velocity (4.6), W + n n.(v - W) + (1 - n n).w, at the shape x. Here b = dV/dx, W is the motion of the shape
-/// (4.14), and w is the relaxation velocity, computed by slide() from f; if f is empty, w = 0. Sets `rest` to v - W - w at the collocation sites.
-Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const {
+/// (4.14), and w is the relaxation velocity, computed by slide() from f; if f is empty, w = 0. Sets `slip_residual` to v - W - w at the collocation
+/// sites.
+Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& slip_residual) const {
   Net u = sites_ * v;
   const Net places = sites_ * x;
   const std::vector<MotionOfShape> shapes = motions(x, b, normals, v);
-  // Replaces `velocities` v at the points `at` with the normals n by W + `along` + n n.(v - W - `along`), and adds v - W - `along` to `rest`.
+  // Replaces `velocities` v at the points `at` with the normals n by W + `along` + n n.(v - W - `along`), and adds v - W - `along` to
+  // `slip_residual`.
   const auto combine = [&](const Net& at, const Net& n, const Net& along, std::vector<int> Drop::* rows, Net& velocities) {
     for (size_t d = 0; d < drops_.size(); ++d) {
       for (const int i : drops_[d].*rows) {
         const Eigen::RowVector3d with = shapes[d].at(at.row(i).transpose()).transpose() + along.row(i);
-        rest.row(i) += velocities.row(i) - with;
+        slip_residual.row(i) += velocities.row(i) - with;
         velocities.row(i) = with + n.row(i).dot(velocities.row(i) - with) * n.row(i);
       }
     }
@@ -132,13 +134,13 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
     u = values * v;
     const Net n = projection_->normals(x);
     const Net free = values * collocation_.solve(w), along = along_interface(n, free);
-    rest = -free;
+    slip_residual = -free;
     const Net slid = projection_->control_values(along);
-    combine(values * x, n, Net::Zero(n.rows(), 3), &Drop::places, u);
+    combine(values * x, n, Net::Zero(n.rows(), 3), &Drop::sites, u);
     const Eigen::VectorXd leak = values * projection_->scalar_values((values * slid).cwiseProduct(n).rowwise().sum());
     return projection_->control_values(u - leak.asDiagonal() * n) + slid;
   }
-  rest = Net::Zero(u.rows(), 3);
+  slip_residual = Net::Zero(u.rows(), 3);
   Net w = Net::Zero(x.rows(), 3);
   slide(x, f, w);
   return collocation_.solve(ranks_.filled(x.rows(), [&](Net& own) {
@@ -156,7 +158,7 @@ std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> a
     const Vec3 middle = drop.block.rows(x).colwise().mean().transpose();
     for (const int k : axes) {
       const auto rotate = [&](Net& field) {
-        for (const int i : projection_ ? drop.places : drop.points) {
+        for (const int i : projection_ ? drop.sites : drop.points) {
           const Vec3 turn = Vec3::Unit(k).cross(Vec3(places.row(i).transpose()) - middle), n = normals.row(i).transpose();
           field.row(i) = (turn - n.dot(turn) * n).transpose();
         }
@@ -172,9 +174,9 @@ std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> a
 Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v, const Net& given) {
   latest_.x = given, latest_.v = v;
   const Net normals = normals_at(x);
-  if (!relaxed_) return combined(x, b, normals, v, {}, latest_.rest);
+  if (!relaxed_) return combined(x, b, normals, v, {}, latest_.slip_residual);
   latest_.density = sites_ * mass_.solve(ranks_.filled(x.rows(), [&](Net& d) { mesh_.load(x, own_elements_, d); }));
-  return combined(x, b, normals, v, collocation_.solve(along_interface(normals, latest_.density)), latest_.rest);
+  return combined(x, b, normals, v, collocation_.solve(along_interface(normals, latest_.density)), latest_.slip_residual);
 }
 
 void InterfaceMotion::linearise(const Net& x, const Net& b) {
@@ -200,7 +202,7 @@ Net InterfaceMotion::derivative(const Net& dv, const Net& delta, const Net& db) 
   const double most = delta.cwiseAbs().maxCoeff();
   const bool turns = known_.x.size() > 0 && most > 0;
   const double aside = turns ? 1e-6 * radius_ / most : 0;
-  Net change, density, rest;
+  Net change, density, slip_residual;
   Displaced to;
   if (db.rows() > 0) to.b = flux_ + aside * db;
   if (turns) to.x = x_ + aside * delta, to.normals = normals_at(to.x), change = (to.normals - normals_) / aside;
@@ -209,16 +211,16 @@ Net InterfaceMotion::derivative(const Net& dv, const Net& delta, const Net& db) 
     if (turns) density -= normal_part_change(normals_, change, known_.density);
     density = collocation_.solve(density);
   }
-  const Net kept = combined(x_, flux_, normals_, dv, density, rest);
+  const Net kept = combined(x_, flux_, normals_, dv, density, slip_residual);
   if (!turns) return kept;
   if (projection_) {
     const Net n = projection_->normals(x_), at = projection_->values() * x_;
-    Net turned = normal_part_change(n, (projection_->normals(to.x) - n) / aside, known_.rest);
-    if (db.rows() > 0) turned += change_of_motion(to, at, projection_->values() * to.x, n, aside, &Drop::places);
+    Net turned = normal_part_change(n, (projection_->normals(to.x) - n) / aside, known_.slip_residual);
+    if (db.rows() > 0) turned += change_of_motion(to, at, projection_->values() * to.x, n, aside, &Drop::sites);
     return kept + projection_->control_values(turned);
   }
   return kept + collocation_.solve(ranks_.filled(x_.rows(), [&](Net& u) {
-    u = normal_part_change(normals_, change, known_.rest);
+    u = normal_part_change(normals_, change, known_.slip_residual);
     if (db.rows() > 0) u += change_of_motion(to, sites_ * x_, sites_ * to.x, normals_, aside, &Drop::points);
   }));
 }

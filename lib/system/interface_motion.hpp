@@ -64,7 +64,7 @@ class InterfaceMotion {
     SharedMotion shared;  // of the mesh with the shape of the drop
     double speed;
     std::vector<int> points;      // rank-owned control points
-    std::vector<int> places;      // indices of this drop's sites among the sites of VelocityProjection
+    std::vector<int> sites;       // indices of this drop's sites among the sites of VelocityProjection
     stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`, in double precision so that units and axes do not matter
   };
   struct Displaced {  // shape, dV/dx and normals of a displaced shape
@@ -73,7 +73,7 @@ class InterfaceMotion {
   void slide(const Net& x, const Net& f, Net& w) const;
   std::vector<MotionOfShape> motions(const Net& x, const Net& b, const Net& normals, const Net& v) const;
   Net change_of_motion(const Displaced& to, const Net& at, const Net& there, const Net& normals, double aside, std::vector<int> Drop::* rows) const;
-  Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const;
+  Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& slip_residual) const;
   Net normals_at(const Net& x) const;  ///< normals at the collocation sites of all drops, zeros at other sites. Collective
 
   const spline::Space& space_;
@@ -88,9 +88,9 @@ class InterfaceMotion {
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
   struct Latest {
-    Net x, v;              // shape, fluid velocity
-    Net rest, density;     // rest: fluid velocity minus motions of shape and relaxation, v - W - w of (4.6), at the sites where u is evaluated;
-                           // density: force density M0^{-1} dE1/dx at the collocation sites, with the mesh energy E1 of (4.6)
+    Net x, v;                    // shape, fluid velocity
+    Net slip_residual, density;  // slip_residual: fluid velocity minus motions of shape and relaxation, v - W - w of (4.6), at the sites where u is
+                                 // evaluated; density: force density M0^{-1} dE1/dx at the collocation sites, with the mesh energy E1 of (4.6)
   };
   Latest latest_, known_;  // latest_: data of the last call of velocity(). known_: copy of latest_ made by linearise(x); empty if the last call of
                            // velocity() was at a shape other than x

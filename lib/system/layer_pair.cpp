@@ -7,7 +7,7 @@ namespace tanktread::coupling {
 LayerPair::LayerPair(const spline::Space& space, const stokes::Sites& points, const Net& unstressed, std::span<const Particle> particles,
                      const quadrature::Options& quadrature, const stokes::Medium* medium)
     : single_layer(stokes::Layer::Kernel::single_layer, space, points, quadrature), measure(coupling::measure(particles)) {
-  single_layer.set_reference(unstressed, measured_on_present(particles));
+  single_layer.set_reference(unstressed, loads_per_current_area(particles));
   if (std::vector<double> contrasts = viscosity_contrasts(particles); !contrasts.empty())
     double_layer.emplace(stokes::Layer::Kernel::double_layer, space, points, quadrature, std::move(contrasts));
   if (!medium) return;

@@ -47,10 +47,6 @@ Net Membranes::strong_load(const Net& x) const {
   return t;
 }
 
-void Membranes::set_viscous_shape(const Net& x) {
-  if (viscous_) viscous_->update(x, layout_.elements());
-}
-
 Net Membranes::work_of(const membrane::ViscousLoad& c, const Net& v) const {
   const auto clock = phases_.time("membrane");
   Net work;
@@ -59,7 +55,11 @@ Net Membranes::work_of(const membrane::ViscousLoad& c, const Net& v) const {
   return work;
 }
 
-Net Membranes::viscous_work(const Net& v) const { return work_of(*viscous_, v); }
+Net Membranes::viscous_work(const Net& x, const Net& v) {
+  if (!same(x, viscous_shape_)) viscous_->update(x, layout_.elements()), viscous_shape_ = x;
+  return work_of(*viscous_, v);
+}
+
 Net Membranes::viscous_work_change(const Net& v) const { return work_of(*linearised_viscous_, v); }
 
 void Membranes::linearise(const Net& x, const std::vector<Net>& sums) {

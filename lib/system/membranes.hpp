@@ -45,10 +45,9 @@ class Membranes {
   Net strong_load(const Net& x) const;                                            ///< strong form -div_s tau of the load at the collocation sites
   Net solved(Net work) const { return layout_.solved(mass(), std::move(work)); }  ///< M0^-1 times a net
 
-  bool viscous() const { return viscous_.has_value(); }  ///< true if a membrane or interface is viscous
-  void set_viscous_shape(const Net& x);                      ///< sets the surface of viscous_work() and viscous_load()
-  Net viscous_work(const Net& v) const;                  ///< virtual work C v of the viscous stresses (3.10) on the surface of set_viscous_shape()
-  Net viscous_load(const Net& x, const Net& v) { return load(x, viscous_work(v)); }
+  bool viscous() const { return viscous_.has_value(); }     ///< true if a membrane or interface is viscous
+  Net viscous_work(const Net& x, const Net& v);             ///< virtual work C v of the viscous stresses (3.10) on the surface x
+  Net viscous_load(const Net& x, const Net& v) { return load(x, viscous_work(x, v)); }
 
   /// Sets the shape x for work_change() and viscous_work_change(). `sums`: surface integrals that work() computed at x.
   void linearise(const Net& x, const std::vector<Net>& sums);
@@ -66,8 +65,9 @@ class Membranes {
   membrane::Membrane membrane_;
   Loads loads_;
   membrane::Tangent tangent_;
-  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // ViscousLoad C at the shapes of set_viscous_shape() and linearise(); set
-                                                                       // only if a membrane or interface is viscous
+  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // ViscousLoad C at viscous_shape_ and at the shape of linearise(); set only
+                                                                       // if a membrane or interface is viscous
+  Net viscous_shape_;                                                  // shape passed to viscous_work() last
 };
 
 }  // namespace tanktread::coupling

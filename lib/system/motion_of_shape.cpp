@@ -81,9 +81,9 @@ Mat3 stretch_of_shape(const Net& y, const Net& normals, const Net& b, const Net&
 
 }  // namespace
 
-MotionOfShape motion_of_shape(const Moving& drop, SharedMotion shared) {
+MotionOfShape motion_of_shape(const DropSamples& drop, SharedMotion shared) {
   const Eigen::RowVector3d centre = approximate_centroid(drop.x, drop.b);
-  const Net from_centre = drop.x.rowwise() - centre, y = drop.places.rowwise() - centre;
+  const Net from_centre = drop.x.rowwise() - centre, y = drop.sites.rowwise() - centre;
   const Vec3 of_fluid = mean_rotation(from_centre, drop.b, drop.v);
   const Eigen::RowVector3d mean = mean_motion(from_centre, drop.b, drop.v - rotated(of_fluid, from_centre));
   MotionOfShape shape{centre.transpose(), mean.transpose(), Mat3::Zero()};

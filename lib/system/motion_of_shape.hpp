@@ -7,9 +7,9 @@ namespace tanktread::coupling {
 
 /// State of a drop: at its control points the positions x, the volume gradient b = dV/dx and the fluid velocity v; at its collocation sites the
 /// positions, normals and velocities. Rows: points or sites of this drop.
-struct Moving {
+struct DropSamples {
   Net x, b, v;
-  Net places, normals, velocities;
+  Net sites, normals, velocities;
 };
 
 /// Motion W (4.14) of a shape: W(x) = velocity + gradient (x - centre).
@@ -25,6 +25,6 @@ enum class SharedMotion { translation, rigid, stretching };
 
 /// Returns the motion W (4.14) of the shape of a drop, which is linear in v: the mean velocity of its fluid, and depending on `shared` the rotation
 /// of its shape and the rate of stretch E (4.36) without volume change. On a sphere the rotation is 0, on a steady shape also E.
-MotionOfShape motion_of_shape(const Moving& drop, SharedMotion shared);
+MotionOfShape motion_of_shape(const DropSamples& drop, SharedMotion shared);
 
 }  // namespace tanktread::coupling

@@ -31,7 +31,7 @@ stokes::Measure measure(std::span<const Particle> particles) {
   return std::ranges::all_of(particles, [&](const Particle& particle) { return particle.measure == first; }) ? first : stokes::Measure::by_element;
 }
 
-std::vector<bool> measured_on_present(std::span<const Particle> particles) {
+std::vector<bool> loads_per_current_area(std::span<const Particle> particles) {
   std::vector<bool> result;
   for (const Particle& particle : particles) result.insert(result.end(), particle.block.n_elements, particle.measure == stokes::Measure::current);
   return result;

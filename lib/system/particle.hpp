@@ -63,7 +63,7 @@ membrane::Materials materials(std::span<const Particle> particles);
 stokes::Measure measure(std::span<const Particle> particles);
 
 /// Returns, for each element, whether its load is per current area rather than per unstressed area.
-std::vector<bool> measured_on_present(std::span<const Particle> particles);
+std::vector<bool> loads_per_current_area(std::span<const Particle> particles);
 
 /// Returns the net of the surface to whose area the loads (force per area) refer: for each particle, its rows of `x` if its loads are per current
 /// area, otherwise its rows of `unstressed`.
@@ -91,11 +91,9 @@ void clear_rigid(std::span<const Particle> particles, Net& net);
 /// different particles share a sum net, in which each particle uses its own rows. Uses no MPI.
 class Loads {
  public:
-  Loads() = default;
   /// `elements`: elements that this rank integrates over, ascending.
   Loads(std::span<const Particle> particles, std::span<const int> elements);
 
-  bool empty() const { return all_.empty(); }
   std::size_t n_sums() const { return n_sums_; }
 
   /// Adds the contributions of this rank's elements to dE/dx in `work`. Returns the contributions of these elements to the surface integrals that

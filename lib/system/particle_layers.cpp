@@ -56,12 +56,9 @@ Net ParticleLayers::apply_single(const Net& x, const Net& f) {
   return u;
 }
 
-void ParticleLayers::set_double_shape(const Net& x) {
-  if (pair_.double_layer) pair_.double_layer->set_shape(x);
-}
-
-Net ParticleLayers::apply_double(const Net& v) {
+Net ParticleLayers::apply_double(const Net& x, const Net& v) {
   Net u = targets_.zero();
+  pair_.double_layer->set_shape(x);
   pair_.double_layer->apply(v, targets_.own(), u);
   targets_.gather(pair_.double_layer->shared(), u);
   return u;
@@ -90,7 +87,7 @@ Net ParticleLayers::product(const stokes::Rows<double>& rows, const Net& field) 
 }
 
 Net ParticleLayers::apply(const Net& x, const Net& v, const Net& f) {
-  Net u = !pair_.double_layer ? targets_.zero() : double_rows_.cols() > 0 ? product(double_rows_, v) : apply_double(v);
+  Net u = !pair_.double_layer ? targets_.zero() : double_rows_.cols() > 0 ? product(double_rows_, v) : apply_double(x, v);
   if (f.size() > 0) u -= (single_rows_.cols() > 0 ? product(single_rows_, f) : apply_single(x, f)) / parameters_.viscosity;
   return u;
 }

@@ -71,13 +71,13 @@ class ParticleLayers {
   /// Returns A f on the surface x. Skips the sum if f is zero.
   Net apply_single(const Net& x, const Net& f);
 
-  void set_double_shape(const Net& x);  ///< sets the surface of the double layer, if there is one
-  Net apply_double(const Net& v);   ///< returns D v, with D on the surface that set_double_shape() set
+  Net apply_double(const Net& x, const Net& v);  ///< returns D v on the surface x
 
-  /// Sets the surface x for apply(), and assembles the rows of the layers if the options ask for it. `single`: whether apply() will need A.
+  /// Assembles the rows of the layers on the surface x for apply() if the options ask for it. `single`: whether apply() will need A.
   void assemble(const Net& x, bool single);
 
-  /// Returns D v - (1/mu) A f, with the double layer D and the single layer A on the surface that assemble() set. An empty f is treated as zero.
+  /// Returns D v - (1/mu) A f, with the double layer D and the single layer A on the surface x, which must have been passed to assemble(). An empty f
+  /// is treated as zero.
   Net apply(const Net& x, const Net& v, const Net& f);
 
   /// Returns the rows of D at these collocation sites on every rank, for the surface that assemble() set. The owner of a site computes its rows.

@@ -23,8 +23,6 @@ stokes::Sites gauss_points(const spline::Space& space) {
   return sites;
 }
 
-double product(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
-
 }  // namespace
 
 double turnover(double flow, double forces, double fluids) {
@@ -67,9 +65,9 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
     const Particle& particle = capsule_.particles()[p];
     if (particle.rigid) continue;
     powers.membranes += e->membrane_dissipation(p);
-    powers.storing += product(particle.block.rows(v), particle.block.rows(stored));
+    powers.storing += dot(particle.block.rows(v), particle.block.rows(stored));
   }
-  const double done = product(work, v);  // power that the fluids transfer to all surfaces; the fluids dissipate the power `flow` minus this power
+  const double done = dot(work, v);  // power that the fluids transfer to all surfaces; the fluids dissipate the power `flow` minus this power
   powers.fluids = powers.flow - done;
   powers.forces = powers.storing + powers.membranes - done;
   powers.residual = residual_power(load, residual_velocity(*e, v, rigid, load), x, measured);
@@ -103,9 +101,9 @@ double PowerBalance::flow_power(Evaluation& e, const Net& work, const Net& insid
     stressed.row(i) = capsule_.parameters().viscosity * stressed.row(i) * (gradient + gradient.transpose() - pressure * Mat3::Identity());
   }
   stressed = targets.collocated(stressed);
-  double power = product(work, targets.collocated(flow.velocities(at)));
+  double power = dot(work, targets.collocated(flow.velocities(at)));
   for (const Particle& particle : capsule_.particles())
-    power -= viscosity_contrast(particle) * product(particle.block.rows(stressed), particle.block.rows(flux));
+    power -= viscosity_contrast(particle) * dot(particle.block.rows(stressed), particle.block.rows(flux));
   return power;
 }
 
@@ -134,7 +132,7 @@ double PowerBalance::residual_power(const Net& load, const Net& residual_velocit
 Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
   Net all = v;
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p)
-    if (rigid.holds(p) && rigid.density(p).size() > 0) capsule_.particles()[p].block.rows(all) = rigid.density(p);
+    if (rigid.is_rigid(p) && rigid.density(p).size() > 0) capsule_.particles()[p].block.rows(all) = rigid.density(p);
   return all;
 }
 

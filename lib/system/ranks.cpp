@@ -96,8 +96,6 @@ int Ranks::rank() const { return impl_->comm->getRank(); }
 int Ranks::size() const { return impl_->comm->getSize(); }
 void Ranks::measure(Phases& phases) { impl_->phases = &phases; }
 
-void Ranks::set_owned_rows(const std::vector<int>& rows, int n) { set_owned_rows(rows, surface::Symmetry(n)); }
-
 void Ranks::set_owned_rows(const std::vector<int>& rows, surface::Symmetry symmetry) {
   impl_->rows = rows;
   impl_->symmetry = std::move(symmetry);
@@ -194,15 +192,9 @@ std::vector<int> Ranks::share(int n) const {
 
 bool Ranks::any(bool mine) const {
   const auto clock = impl_->time();
-  int said = mine, together = 0;
-  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_MAX, said, Teuchos::outArg(together));
+  int local = mine, together = 0;
+  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_MAX, local, Teuchos::outArg(together));
   return together != 0;
-}
-
-double Ranks::first(double mine) const {
-  const auto clock = impl_->time();
-  Teuchos::broadcast(*impl_->comm, 0, &mine);
-  return mine;
 }
 
 void Ranks::first(std::span<std::int64_t> numbers) const {

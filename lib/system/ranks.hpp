@@ -13,6 +13,7 @@
 #include "spline/space.hpp"
 #include "stokes/kernels/kernels.hpp"
 #include "surface/symmetry.hpp"
+#include "system/agreement.hpp"
 
 namespace tanktread::coupling {
 
@@ -46,9 +47,6 @@ class Ranks {
   /// Records the time of all later exchanges, including the time spent waiting for other ranks, in the phase `exchange` of `phases`, which must
   /// outlive this object.
   void measure(Phases& phases);
-
-  /// Sets the rows that this rank computes in nets of n rows. Each row has one owner. Collective.
-  void set_owned_rows(const std::vector<int>& rows, int n);
 
   /// Sets the rows that this rank computes, if only the rows of fundamental control points have owners and the other rows are their symmetry images.
   /// Collective.
@@ -123,13 +121,12 @@ class Ranks {
   /// Returns true if `mine` (for example a stop signal) is true on any rank. Collective.
   bool any(bool mine) const;
 
-  /// Returns the value of rank 0 on every rank, for example a position in a file. Collective.
-  double first(double mine) const;
+  /// Replaces the numbers on every rank by the numbers of rank 0, for example a position in a file. Collective.
   void first(std::span<std::int64_t> numbers) const;
 
   /// Returns the seconds since `start` by the clock of rank 0. Collective.
   double seconds_since(std::chrono::steady_clock::time_point start) const {
-    return first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    return of_first(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
 
  private:

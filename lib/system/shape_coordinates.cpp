@@ -19,8 +19,8 @@ ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const P
       projection_(projection) {
   collocation_.factor(sites_);
   for (const int i : symmetry.fundamental()) {
-    const auto holds = [i](const Particle& particle) { return particle.block.holds(i); };
-    const Particle& particle = *std::ranges::find_if(particles, holds);
+    const auto contains = [i](const Particle& particle) { return particle.block.contains(i); };
+    const Particle& particle = *std::ranges::find_if(particles, contains);
     if (particle.rigid) continue;
     if (particle.slides()) {
       const Vec3 normal = site_normal(space, x, space.collocation[static_cast<std::size_t>(i)]);
@@ -35,8 +35,8 @@ ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const P
     normals_ = projection_->normals(x);
     for (std::size_t i = 0; i < projection_->sites().size(); ++i) {
       const int e = projection_->sites()[i].front().element;
-      const auto holds = [e](const Particle& one) { return one.block.holds_element(e); };
-      if (!std::ranges::find_if(particles, holds)->slides()) normals_.row(static_cast<Eigen::Index>(i)).setZero();
+      const auto contains = [e](const Particle& one) { return one.block.contains_element(e); };
+      if (!std::ranges::find_if(particles, contains)->slides()) normals_.row(static_cast<Eigen::Index>(i)).setZero();
     }
   }
   for (const Particle& particle : particles)
@@ -108,7 +108,7 @@ void ShapeCoordinates::carry_whole(const spline::Block& block) {
     const double size = y.norm();
     translations_.push_back({y / size, field / size, {}});
   }
-  for (Translation& one : translations_) one.rest = one.field - across(one.coordinates);
+  for (Translation& one : translations_) one.tangential = one.field - normal_displacement(one.coordinates);
 }
 
 void ShapeCoordinates::add_fields(CoupledMotion& motion, const Net& y) {
@@ -128,22 +128,22 @@ void ShapeCoordinates::add_fields(CoupledMotion& motion, const Net& y) {
 Net ShapeCoordinates::displacement(const Eigen::VectorXd& y) const {
   const Net d = of_shape(y.head(shape_size()));
   if (!motion_) return d;
-  Net change = motion_->slid(state_, d - across(y));
+  Net change = motion_->slid(state_, d - normal_displacement(y));
   change.topRows(n_points()) = d;
   Eigen::Map<Eigen::VectorXd>(change.data() + 3 * n_points(), fields_.rows()) += fields_ * y.tail(fields_.cols());
   return change;
 }
 
 Net ShapeCoordinates::of_shape(const Eigen::VectorXd& y) const {
-  Net d = across(y);
-  for (const Translation& one : translations_) d += one.coordinates.dot(y) * one.rest;
+  Net d = normal_displacement(y);
+  for (const Translation& one : translations_) d += one.coordinates.dot(y) * one.tangential;
   if (following_.size() > 0) d += along(following_ * y);
   return d;
 }
 
 /// Returns the control values of the displacement with the coordinates y, but without two tangential displacements that belong to y: the motion of
 /// relaxing meshes (4.26), and the tangential part of translations of drops.
-Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
+Net ShapeCoordinates::normal_displacement(const Eigen::VectorXd& y) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   Eigen::VectorXd outward = Eigen::VectorXd::Zero(sites_.rows());
   for (std::size_t k = 0; k < all_.size(); ++k)
@@ -167,7 +167,7 @@ Net ShapeCoordinates::along(const Eigen::VectorXd& t) const {
   for (std::size_t k = 0; k < along_.size(); ++k) at_sites.row(along_[k].site) += t[static_cast<Eigen::Index>(k)] * along_[k].direction.transpose();
   parity_.complete(at_sites);
   const Net field = collocation_.solve(at_sites);
-  return projection_ ? field - across(coordinates_of_shape(field)) : field;
+  return projection_ ? field - normal_displacement(coordinates_of_shape(field)) : field;
 }
 
 Eigen::VectorXd ShapeCoordinates::coordinates_along(const Net& field) const {
@@ -190,9 +190,9 @@ Eigen::VectorXd ShapeCoordinates::coordinates(const Net& field) const {
   Eigen::VectorXd y(size());
   y.head(shape_size()) = coordinates_of_shape(own);
   if (!motion_) return y;
-  Net rest = -motion_->slid(state_, own - across(y));
-  rest.topRows(field.rows()) += field;
-  y.tail(fields_.cols()) = fields_.transpose() * Eigen::Map<const Eigen::VectorXd>(rest.data() + own.size(), fields_.rows());
+  Net remainder = -motion_->slid(state_, own - normal_displacement(y));
+  remainder.topRows(field.rows()) += field;
+  y.tail(fields_.cols()) = fields_.transpose() * Eigen::Map<const Eigen::VectorXd>(remainder.data() + own.size(), fields_.rows());
   return y;
 }
 

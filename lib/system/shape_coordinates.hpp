@@ -72,15 +72,15 @@ class ShapeCoordinates {
   static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
   struct Translation {
     Eigen::VectorXd coordinates;  // orthonormal
-    Net field, rest;              // field: control values of a rigid translation of a drop. rest: field - across(coordinates), the tangential part of
-                                  // this translation, which across() omits
+    Net field, tangential;        // field: control values of a rigid translation of a drop. tangential: field - normal_displacement(coordinates),
+                                  // the tangential part of this translation, which normal_displacement() omits
   };
   Eigen::Index shape_size() const { return static_cast<Eigen::Index>(all_.size() + rigid_.size()); }
   Net of_shape(const Eigen::VectorXd& y) const;
   Eigen::VectorXd coordinates_of_shape(const Net& field) const;
   void carry_whole(const spline::Block& block);
   void add_rigid(const spline::Block& block, const Net& x);
-  Net across(const Eigen::VectorXd& y) const;
+  Net normal_displacement(const Eigen::VectorXd& y) const;
   Net along(const Eigen::VectorXd& t) const;
   Eigen::VectorXd coordinates_along(const Net& field) const;
   void add_along(int site, const Vec3& normal);

@@ -57,15 +57,13 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
   });
 }
 
-static Vec3 middle(const Net& net) { return (net.colwise().maxCoeff() + net.colwise().minCoeff()).transpose() / 2; }
-
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
                            const surface::TubeWall& wall, const LoadList& loads) {
   if (options.use == "none") return surface::Symmetry(space.n_points);
   const Net* around[] = {&wall.net};
   return surface::symmetry(space, nets, [&](const surface::Image& image) {
     const auto keeps_middle = [&](const Net* net) {
-      const Vec3 apart = middle(*net) - middle(wall.net);
+      const Vec3 apart = surface::middle(*net) - surface::middle(wall.net);
       return (image.signs.cwiseProduct(apart) - apart).norm() <= 1e-9 * wall.radius();
     };
     return image.signs[0] > 0 && admit(loads, image) &&

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
+#include "base/indices.hpp"
 #include "surface/bezier_points.hpp"
 #include "surface/quality.hpp"
 #include "tests/evolution.hpp"
@@ -20,7 +21,7 @@ surface::Quality mesh_at(const std::string& motion, double time) {
     run.to(time);
   } catch (const RunFailure&) {
   }
-  return surface::quality(map, run.state.x);
+  return surface::quality(map, run.state.x, indices(map.n_elements()));
 }
 
 TEST(MeshOfADrop, ConvectedWithTheFluidIsDistortedAndOtherMeshesAreNot) {

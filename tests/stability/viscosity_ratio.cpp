@@ -40,7 +40,7 @@ TEST(ViscosityRatio, OfAHundredNeedsNoMoreImplicitStepsThanOne) {
     run.to(1.5);
     return run.capsule->counts().evaluations;
   };
-  // Measured: about 35. Without the factor of the relative residual (CapsuleJacobian::weight_of_rotation): 252.
+  // Measured: about 35. Without the factor of the relative residual (CapsuleJacobian::tolerance_factor): 252.
   EXPECT_LT(evaluations("100"), 2 * evaluations("1"));
   EXPECT_LT(evaluations("1000"), 2 * evaluations("1"));
 }

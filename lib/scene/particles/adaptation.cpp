@@ -50,7 +50,7 @@ Adapted transferred(const Subject& of, std::unique_ptr<Body> target, const Move&
   };
   exchange(result.state.x);
   for (Net& slope : result.state.history) exchange(slope);
-  for (motion::Place& place : result.state.places) exchange(place.x);
+  for (motion::PastPosition& place : result.state.places) exchange(place.x);
   exchange(result.state.direction);
   std::vector<Net> pairs = of.state.secants.pairs();
   for (Net& net : pairs) exchange(net);
@@ -243,7 +243,7 @@ Adapted adapted(const ParticleScene& scene, const Body& body, const spline::Bloc
   return coarser;
 }
 
-void refine_alone(const ParticleScene& scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
+void refine_isolated_body(const ParticleScene& scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
   if (!scene.adaptation.enabled) return;
   constexpr int most = 10;
   for (int k = 0; k < most; ++k) {

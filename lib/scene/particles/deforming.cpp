@@ -66,17 +66,17 @@ class Deforming : public ParticleSystem {
     motion::refreeze(dynamics(), resumed.state, resumed.state.time);
     capsule_->counts() = resumed.totals.counts;
     for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle[p];
-    hold_by(resumed.totals.contacts);
+    set_contacts(resumed.totals.contacts);
     return another_mesh;
   }
 
   void store(output::Checkpoint& checkpoint) const override { tanktread::store(members_, checkpoint); }
   void forget_recycled() override { capsule_->forget_recycled(); }
 
-  bool hold_apart(motion::State& state, double step) override {
+  bool enforce_gaps(motion::State& state, double step) override {
     if (!scene_.contact.limiter) return true;
     const auto clock = phases_.time("contact");
-    capsule_->at(state.time, state.time - step);
+    capsule_->set_time(state.time, state.time - step);
     const double least = scene_.least_radius();
     Limiter limiter(members_, *capsule_, ranks_, scene_.contact.limit * least, scene_.flow.viscosity * scene_.rate() * least * least,
                     scene_.rate(), [&] { fields_->set_state(state.x); });
@@ -103,7 +103,7 @@ class Deforming : public ParticleSystem {
 
   coupling::Contacts contacts() const override { return contacts_; }
 
-  void hold_by(const coupling::Contacts& contacts) override { contacts_ = contacts, apply_contacts(); }
+  void set_contacts(const coupling::Contacts& contacts) override { contacts_ = contacts, apply_contacts(); }
 
   /// Moves the centroid back to its initial position if `Particle/drift` is `held`. Then refines or coarsens the meshes for which an adaptation is
   /// due at this step.
@@ -129,7 +129,7 @@ class Deforming : public ParticleSystem {
     if (replaced_.empty()) return false;
     const std::unique_ptr<SurfaceFields> fields = std::move(fields_);
     rebuild(own.x);
-    capsule_->restore_volume(own.x);
+    capsule_->restore_constraints(own.x);
     if (!own.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
     apply_contacts();
     std::vector<const Body*> bodies(members_.size(), nullptr);
@@ -265,7 +265,7 @@ class Deforming : public ParticleSystem {
     replaced_.emplace_back(p, std::exchange(member.body, std::move(change.body)));
     state = std::move(change.state);
     member.block.n_points += more;
-    if (rigid_before_ && rigid_before_->holds(p)) fit_again(p, state.x);
+    if (rigid_before_ && rigid_before_->is_rigid(p)) fit_again(p, state.x);
     for (std::size_t after = p + 1; after < members_.size(); ++after) members_[after].block.first_point += more;
     (change.finer ? totals.refinements : totals.coarsenings) += 1;
   }

@@ -85,7 +85,7 @@ class Free : public ParticleSystem {
  private:
   static Body refined(const ParticleScene& scene, coupling::Ranks& ranks, Phases& phases) {
     Body body = tanktread::body(scene);
-    refine_alone(scene, body, [&](const Body& on) {
+    refine_isolated_body(scene, body, [&](const Body& on) {
       const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
       coupling::RigidTractions tractions = tractions_of(scene, on, ranks, wall.get());
       const auto free = driven(scene, on, tractions);

@@ -141,7 +141,7 @@ Net Limiter::moved(const Net& start) {
     one.force = forces[k];
     x += (one.force - one.before) * one.response;
   }
-  if (x.allFinite()) capsule_.restore_volume(x);
+  if (x.allFinite()) capsule_.restore_constraints(x);
   return x;
 }
 

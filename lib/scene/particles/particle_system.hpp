@@ -51,9 +51,9 @@ class ParticleSystem {
   virtual void forget_recycled() {}
   /// Moves particles apart after a step of this size if their gap is below the limit and the deck requests `Contact/limiter`. Returns false if that
   /// fails.
-  virtual bool hold_apart(motion::State&, double /*step*/) { return true; }
+  virtual bool enforce_gaps(motion::State&, double /*step*/) { return true; }
   virtual coupling::Contacts contacts() const { return {}; }                      ///< returns the current contacts
-  virtual void hold_by(const coupling::Contacts&) {}  ///< sets the contact forces that act from now on; they refer to the current mesh
+  virtual void set_contacts(const coupling::Contacts&) {}  ///< sets the contact forces that act from now on; they refer to the current mesh
   /// Adapts meshes after a step; returns true if this has changed the mesh of body().
   virtual bool adapt(motion::State& state, RunTotals& totals) = 0;
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot

@@ -152,7 +152,7 @@ std::string Warnings::fold(const StepFindings& signs) const {
   const std::string cure = scene_.membrane.load == "strong" && scene_.elastic()           ? "set Membrane/load to weak"
                            : scene_.interface_motion() == coupling::MeshMotion::material && !scene_.elastic() ? "set Interface/motion to relaxed"
                                                                                          : finer_mesh(scene_);
-  const bool drawn = !scene_.elastic() && strains(scene_);
+  const bool drawn = !scene_.elastic() && has_intrinsic_viscosity(scene_);
   return formatted("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure +
          (drawn ? "; or there is no steady shape: above a critical capillary number the flow stretches the drop until it breaks" : "");
 }

@@ -105,7 +105,7 @@ void ParticleRow::add_moving(const ParticleScene& one, Columns& to) const {
                                                              "surface"});
   add_points(n_points, to);
   add_velocity(velocity, to);
-  if (to.when(strains(one)))
+  if (to.when(has_intrinsic_viscosity(one)))
     to.add(intrinsic_viscosity, {"intrinsic_viscosity", "1",
                                  "intrinsic viscosity S:E/(2 mu V E:E), with the stresslet S (6.7), the particle's volume V, the outer "
                                  "viscosity mu and the rate of strain E of the flow at this time; 5/2 for a rigid sphere",
@@ -236,7 +236,7 @@ Eigen::Vector<double, 6> components(const Mat3& tensor) {
   return Eigen::Vector<double, 6>{{tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1), tensor(0, 2), tensor(1, 2)}};
 }
 
-bool strains(const SharedOptions& scene) {
+bool has_intrinsic_viscosity(const SharedOptions& scene) {
   if (scene.tube.present) return false;
   const stokes::AmbientFlow flow(scene.flow);
   const Mat3 gradient = flow.gradient(Vec3::Zero());
@@ -295,7 +295,7 @@ surface::Deformation deformation(const surface::Geometry& geometry, const FlowPl
                                  const coupling::Ranks& ranks) {
   FlowPlane plane = of_flow;
   bool plane_defined = true;
-  if (!plane.holds_flow) {
+  if (!plane.contains_flow) {
     const surface::PrincipalAxes axes = surface::principal_axes(measures);
     plane = plane_normal_to(axes.directions.col(1));
     plane_defined = axes.longest_defined && axes.shortest_defined;

@@ -66,7 +66,7 @@ void add_gap(double to_wall, Columns& to);
 Eigen::Vector<double, 6> components(const Mat3& tensor);
 
 /// Returns true if the flow is unbounded and affine with a nonzero rate of strain, so that `intrinsic_viscosity` is defined.
-bool strains(const SharedOptions& scene);
+bool has_intrinsic_viscosity(const SharedOptions& scene);
 
 /// Computes the row data of a capsule or drop that follow from its shape x and velocity `slope`. Other data, such as the stresslet, are not set.
 /// Collective.

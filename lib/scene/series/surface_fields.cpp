@@ -45,7 +45,7 @@ motion::State SurfaceFields::of_shape(const motion::State& state) const {
   shapes.time = state.time, shapes.step = state.step, shapes.slope_error = state.slope_error;
   shapes.x = shape(state.x), shapes.frozen = shape(state.frozen), shapes.frozen_time = state.frozen_time;
   for (const Net& slope : state.history) shapes.history.push_back(shape(slope));
-  for (const motion::Place& place : state.places) shapes.places.push_back({place.time, shape(place.x)});
+  for (const motion::PastPosition& place : state.places) shapes.places.push_back({place.time, shape(place.x)});
   return shapes;
 }
 

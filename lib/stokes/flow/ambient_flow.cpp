@@ -73,7 +73,7 @@ AmbientFlow::AmbientFlow(const FlowOptions& options, std::shared_ptr<const DuctF
     throw std::invalid_argument("the flow of type `duct`, and no other, needs a duct");
 }
 
-bool AmbientFlow::at(double time, double start) {
+bool AmbientFlow::set_time(double time, double start) {
   if (!history_) return false;
   const FlowHistory::Moment moment = history_->at(time, start);
   if (moment.amplitude == moment_.amplitude && moment.turn == moment_.turn) return false;

@@ -35,7 +35,7 @@ class AmbientFlow {
 
   /// Sets the time for all later calls, within a step that began at `start` (FlowHistory::at). Returns whether the flow has changed. Before the first
   /// call the flow has the amplitude 1 and is not rotated.
-  bool at(double time, double start);
+  bool set_time(double time, double start);
   double next_kink(double time) const;  ///< returns the first time after `time` at which the flow is not smooth in time, or infinity
 
   /// Returns this flow. If its direction changes in time, returns copies of it rotated to several directions instead. A symmetry of all these copies

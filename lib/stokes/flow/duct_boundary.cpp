@@ -157,8 +157,6 @@ using std::numbers::pi;
 using surface::PlaneJet;
 using surface::Vec2;
 
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
-
 /// Returns the values of the four basis functions of an element.
 Eigen::Vector4d functions(const OutlineElement& e, double t) {
   Eigen::Vector4d b;

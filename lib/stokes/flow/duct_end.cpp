@@ -19,7 +19,7 @@ constexpr double far = 1.2, smallest = 1e-5;  // far: distance from the plane of
 
 Mat3 axes(const surface::Channel::Section& place) {
   Mat3 axes;
-  axes << place.along, place.across, Vec3::UnitZ();
+  axes << place.along, place.normal, Vec3::UnitZ();
   return axes;
 }
 

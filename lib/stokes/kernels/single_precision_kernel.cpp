@@ -10,16 +10,17 @@ namespace {
 
 constexpr int wide = RegisterOf<float>::lanes;
 
-/// Coordinates of points relative to an origin, scaled by a power of two and split into a single-precision part (`place`) and the remainder (`rest`).
+/// Coordinates of points relative to an origin, scaled by a power of two and split into a single-precision part (`place`) and the remainder
+/// (`remainder`).
 template <int size>
 struct Split {
-  alignas(register_bytes) float place[3][size], rest[3][size];
+  alignas(register_bytes) float place[3][size], remainder[3][size];
 
   void take(int c, int n, const double* x, double origin, double scale) {
     for (int k = 0; k < n; ++k) {
       const double from = scale * (x[k] - origin);
       place[c][k] = static_cast<float>(from);
-      rest[c][k] = static_cast<float>(from - static_cast<double>(place[c][k]));
+      remainder[c][k] = static_cast<float>(from - static_cast<double>(place[c][k]));
     }
   }
 };
@@ -52,7 +53,7 @@ struct Sight {
   void difference(int first, int k, FloatRegister (&r)[3]) const {
     for (int c = 0; c < 3; ++c) {
       const FloatRegister place = as_it_stands(nodes.place[c][k] - load(&targets.place[c][first]));
-      r[c] = place + (nodes.rest[c][k] - load(&targets.rest[c][first]));
+      r[c] = place + (nodes.remainder[c][k] - load(&targets.remainder[c][first]));
     }
   }
 };

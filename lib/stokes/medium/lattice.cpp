@@ -8,13 +8,13 @@ namespace {
 
 /// Tolerance for the sum over the images that are not near, divided by the tolerance of the layer. The ratio is below 1 because the loads are in
 /// equilibrium, so that velocities are small compared with the sum of the magnitudes of their terms (as in TreeSum).
-constexpr double share_of_rest = 0.1;
+constexpr double share_of_remainder = 0.1;
 
 }  // namespace
 
 void Lattice::set_sources(const LayerSources& sources) {
   const LayerSurface& surface = sources.surface;
-  std::array<Vec3, 2> extent = how_.across;
+  std::array<Vec3, 2> extent = how_.target_range;
   for (int e = 0; e < surface.panels.size(); ++e) {
     const int n = surface.panels[e].table->n_bernstein;
     const double* x = &surface.bezier[surface.panels[e].first_bezier];
@@ -25,9 +25,9 @@ void Lattice::set_sources(const LayerSources& sources) {
   }
   if (!sum_ || !sum_->suits(extent)) {
     const auto kind = sources.single() ? PeriodicKernel::Kind::stokeslet : PeriodicKernel::Kind::stresslet;
-    sum_.emplace(kind, cell_, share_of_rest * surface.options.tolerance, extent);
+    sum_.emplace(kind, cell_, share_of_remainder * surface.options.tolerance, extent);
   }
-  rest_at_.clear();
+  remainder_at_.clear();
   for (auto& component : node_) component.resize(static_cast<std::size_t>(sources.n_nodes()));
   for (std::size_t k = 0; k < node_[0].size(); ++k) {
     const Vec3 x = sum_->wrapped({surface.node[0][k], surface.node[1][k], surface.node[2][k]});
@@ -37,7 +37,7 @@ void Lattice::set_sources(const LayerSources& sources) {
 
 void Lattice::add(LayerSources& sources, const LayerTargets& targets, Net& u) {
   subtract_surfaces(sources, targets, u);
-  add_rest(sources, targets, u);
+  add_remainder(sources, targets, u);
 }
 
 /// Subtracts the contribution of the surfaces from the far sum at targets to which only images contribute. The far sum cannot omit the surfaces,
@@ -52,39 +52,39 @@ void Lattice::subtract_surfaces(LayerSources& sources, const LayerTargets& targe
 }
 
 /// Adds the contribution of the images that are not near (PeriodicSum), and for a double layer with three periods the pressure of (2.28).
-void Lattice::add_rest(LayerSources& sources, const LayerTargets& targets, Net& u) {
+void Lattice::add_remainder(LayerSources& sources, const LayerTargets& targets, Net& u) {
   const auto clock = sources.phases.time("rest of the lattice");
   std::vector<Vec3> at = rows_of(targets.at, targets.rows);
   for (Vec3& x : at) x = wrapped(x);
   Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
   if (sources.single()) {
-    sum_->add_rest(charges(node_, sources.density), at, sums.data());
+    sum_->add_remainder(charges(node_, sources.density), at, sums.data());
   } else {
     const Vec3 mean = sources.mean_density();
-    if (at != rest_at_) place_rest(sources, at);
+    if (at != remainder_at_) set_remainder_targets(sources, at);
     sources.set_moments(mean);
-    sum_->add_rest(charges(node_, sources.moment), at, sums.data());
+    sum_->add_remainder(charges(node_, sources.moment), at, sums.data());
     if (cell_.n() == 3) sums.rowwise() += pressure_along(sources).transpose();
     for (std::size_t k = 0; k < at.size(); ++k) {
       const Vec3 value = targets.f0.row(targets.rows[k]).transpose();
-      sums.row(static_cast<Eigen::Index>(k)) -= (rest_stress_[k] * (value - mean)).transpose();
+      sums.row(static_cast<Eigen::Index>(k)) -= (remainder_stress_[k] * (value - mean)).transpose();
     }
   }
   for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.rows[k]) += sums.row(static_cast<Eigen::Index>(k));
 }
 
-/// Computes rest_stress_ at the targets `at`: the double layer of a constant unit density on all images that are not near, one column per component
-/// of the density. Each node is wrapped into the cell separately, so that the near images can contain a part of a surface only. Therefore neither the
-/// double layer of the near images nor that of the other images vanishes for a constant density.
-void Lattice::place_rest(LayerSources& sources, const std::vector<Vec3>& at) {
-  rest_at_ = at;
-  rest_stress_.assign(at.size(), Mat3::Zero());
+/// Computes remainder_stress_ at the targets `at`: the double layer of a constant unit density on all images that are not near, one column per
+/// component of the density. Each node is wrapped into the cell separately, so that the near images can contain a part of a surface only. Therefore
+/// neither the double layer of the near images nor that of the other images vanishes for a constant density.
+void Lattice::set_remainder_targets(LayerSources& sources, const std::vector<Vec3>& at) {
+  remainder_at_ = at;
+  remainder_stress_.assign(at.size(), Mat3::Zero());
   for (int c = 0; c < 3; ++c) {
     sources.set_moments_of_constant(c);
     Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
-    sum_->add_rest(charges(node_, sources.moment), at, sums.data());
+    sum_->add_remainder(charges(node_, sources.moment), at, sums.data());
     if (cell_.n() == 3) sums.rowwise() += pressure_along(sources).transpose();
-    for (std::size_t k = 0; k < at.size(); ++k) rest_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
+    for (std::size_t k = 0; k < at.size(); ++k) remainder_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
   }
 }
 

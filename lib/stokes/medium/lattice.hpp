@@ -12,10 +12,10 @@ namespace tanktread::stokes {
 
 /// Options for the periodic images of the surfaces on a lattice.
 struct Repetition {
-  bool assembled = false;  ///< true: assembled rows include the near images, and Layer::assemble_rest() adds all other images (PeriodicSum). false:
-                           ///< assembled rows include no images
-  std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off the
-                                                                              ///< surfaces
+  bool assembled = false;  ///< true: assembled rows include the near images, and Layer::assemble_remainder() adds all other images (PeriodicSum).
+                           ///< false: assembled rows include no images
+  std::array<Vec3, 2> target_range{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off
+                                                                                    ///< the surfaces
 
   bool operator==(const Repetition& other) const = default;
 };
@@ -30,8 +30,8 @@ class Lattice : public LayerMedium {
   bool is(const PeriodicCell& cell, const Repetition& how) const { return cell_ == cell && how_ == how; }
 
   void set_sources(const LayerSources& sources) override;
-  const std::vector<Vec3>& far_images() const override { return sum_->images(); }
-  const std::vector<Vec3>& near_images() const override { return near_; }
+  const std::vector<Vec3>& node_shifts() const override { return sum_->images(); }
+  const std::vector<Vec3>& panel_shifts() const override { return near_; }
   bool wraps() const override { return true; }
   Vec3 wrapped(const Vec3& x) const override { return sum_->wrapped(x); }
   const NodeVectors& nodes(const LayerSources& /*sources*/) const override { return node_; }
@@ -41,17 +41,18 @@ class Lattice : public LayerMedium {
 
  private:
   void subtract_surfaces(LayerSources& sources, const LayerTargets& targets, Net& u) const;
-  void add_rest(LayerSources& sources, const LayerTargets& targets, Net& u);
-  void place_rest(LayerSources& sources, const std::vector<Vec3>& at);
+  void add_remainder(LayerSources& sources, const LayerTargets& targets, Net& u);
+  void set_remainder_targets(LayerSources& sources, const std::vector<Vec3>& at);
   Vec3 pressure_along(const LayerSources& sources) const;
 
   PeriodicCell cell_;
   Repetition how_;
   std::optional<PeriodicSum> sum_;
-  NodeVectors node_;           // far nodes, wrapped into the cell
-  std::vector<Vec3> near_;     // lattice vectors of images whose panels may be close to a target
-  std::vector<Vec3> rest_at_;  // targets at which rest_stress_ was computed, wrapped into the cell
-  std::vector<Mat3> rest_stress_;  // at the targets rest_at_: double layer of all images except the near ones; column c for the constant density e_c
+  NodeVectors node_;                    // far nodes, wrapped into the cell
+  std::vector<Vec3> near_;              // lattice vectors of images whose panels may be close to a target
+  std::vector<Vec3> remainder_at_;      // targets at which remainder_stress_ was computed, wrapped into the cell
+  std::vector<Mat3> remainder_stress_;  // at the targets remainder_at_: double layer of all images except the near ones; column c for the constant
+                                        // density e_c
 };
 
 }  // namespace tanktread::stokes

@@ -35,7 +35,7 @@ struct LayerTargets {
 /// adds the difference between its kernels and those of free space, in up to three ways:
 ///
 ///   displaced images   copies of the surfaces by lattice vectors, with the kernel of free space, which the layer sums and integrates like the
-///                      surfaces themselves: far_images(), near_images(), nodes(), wrapped()
+///                      surfaces themselves: node_shifts(), panel_shifts(), nodes(), wrapped()
 ///   other terms        anything that the derived class sums or integrates itself: add(), add_row()
 ///   smooth remainder   of assembled rows that contain displaced images: add_remainder()
 ///
@@ -51,9 +51,9 @@ class LayerMedium {
   virtual void share(int part, int parts);
 
   /// Displacements of the nodes() that are included in far sums. In far sums each node and each target is first moved by wrapped().
-  virtual const std::vector<Vec3>& far_images() const { return itself_; }
+  virtual const std::vector<Vec3>& node_shifts() const { return itself_; }
   /// Displacements of the surfaces for which panels may be close to a target.
-  virtual const std::vector<Vec3>& near_images() const { return itself_; }
+  virtual const std::vector<Vec3>& panel_shifts() const { return itself_; }
   /// Returns true if wrapped() shifts each position into the unit cell of a lattice. Nodes of one panel may then be far apart, and the symmetry of
   /// the surfaces is lost.
   virtual bool wraps() const { return false; }

@@ -230,7 +230,7 @@ Eigen::MatrixXd PeriodicSum::between_nodes(int component) const {
   return all;
 }
 
-void PeriodicSum::add_rest(const Charges& sources, std::span<const Vec3> targets, double* u) {
+void PeriodicSum::add_remainder(const Charges& sources, std::span<const Vec3> targets, double* u) {
   const int in = kind_ == PeriodicKernel::Kind::stokeslet ? 3 : 6, n_nodes = box_.n_nodes();
   std::vector<double> at[3], q[6];
   for (int k = 0; k < sources.n; ++k) {

@@ -148,17 +148,17 @@ double Channel::in_period_along(double s) const {
 }
 
 /// Returns the arc length and the scale factors at the longitudinal parameter u, which may be beyond the modelled period of a periodic channel.
-Channel::Place Channel::in_period(double u) const {
+Channel::SectionParameters Channel::in_period(double u) const {
   if (options_.period == 0) return place(u);
   const double low = parameter(start_), whole = parameter(end_) - low, periods = std::floor((u - low) / whole);
-  Place at = place(u - periods * whole);
+  SectionParameters at = place(u - periods * whole);
   at.s += periods * options_.period;
   return at;
 }
 
 /// Returns the centre line's arc length and the scale factors at arc length u of the wall contour of the profile `step`. From its middle u = 0, the
 /// contour has a straight part, a rounded edge, a straight part across the channel, an edge rounded in the opposite direction, and a straight part.
-Channel::Place Channel::step(double u) const {
+Channel::SectionParameters Channel::step(double u) const {
   const double w = *own_.half_length, edge = *own_.corner_radius, depth = *own_.depth;
   const double inner = height_ * (1 - depth), up = depth > 0 ? 1 : -1, across = std::abs(depth) * height_ - 2 * edge, arc = pi / 2 * edge;
   double a = std::abs(u) - (w - edge), s = std::abs(u), h = inner;
@@ -174,8 +174,8 @@ Channel::Place Channel::step(double u) const {
   return {std::copysign(s, u), Vec2::Constant(h / height_)};
 }
 
-Channel::Place Channel::place(double u) const {
-  Place at{u, Vec2::Ones()};
+Channel::SectionParameters Channel::place(double u) const {
+  SectionParameters at{u, Vec2::Ones()};
   if (factors_) {
     const double inside = std::clamp(u, factors_->breaks.front(), factors_->breaks.back());
     at.factor = jet(*factors_, inside).x;
@@ -197,18 +197,18 @@ double Channel::parameter(double s) const {
   return (low + high) / 2;
 }
 
-Channel::Section Channel::section_of(const Place& at) const {
+Channel::Section Channel::section_of(const SectionParameters& at) const {
   const double begin = own_.bend_start;
   if (!own_.bend_radius || at.s <= begin) return {Vec3(at.s, 0, 0), Vec3::UnitX(), Vec3::UnitY(), at.factor};
   const double r = *own_.bend_radius, all = own_.bend_angle * pi / 180, angle = std::min((at.s - begin) / r, all), rest = at.s - begin - r * angle;
-  const Vec3 along(std::cos(angle), std::sin(angle), 0), across(-along[1], along[0], 0);
-  return {Vec3(begin, r, 0) - r * across + rest * along, along, across, at.factor};
+  const Vec3 along(std::cos(angle), std::sin(angle), 0), normal(-along[1], along[0], 0);
+  return {Vec3(begin, r, 0) - r * normal + rest * along, along, normal, at.factor};
 }
 
 Channel::Section Channel::at(double u) const { return section_of(in_period(u)); }
 
 Channel::Section Channel::section(double s) const {
-  Place at = place(parameter(in_period_along(s)));
+  SectionParameters at = place(parameter(in_period_along(s)));
   if (options_.period > 0) at.s = s;
   return section_of(at);
 }
@@ -223,7 +223,7 @@ Vec3 Channel::coordinates(const Vec3& x) const {
       s = begin + r * angle;
     } else {
       const Section after = section(begin + r * all);
-      y = (x - after.centre).dot(after.across);
+      y = (x - after.centre).dot(after.normal);
       s = begin + r * all + (x - after.centre).dot(after.along);
     }
   }
@@ -287,11 +287,11 @@ std::vector<double> Channel::sizes(const std::vector<double>& u) const {
   const double finer = 24. / options_.azimuthal_elements, radius = outline_.radius(), step = u[1] - u[0];
   const bool changes = last_ > first_;
   std::vector<double> size;
-  std::vector<Place> at;
+  std::vector<SectionParameters> at;
   for (const double v : u) at.push_back(place(v));
   for (std::size_t k = 0; k < u.size(); ++k) {
     double h = 0.75 * outline_.length() / options_.azimuthal_elements * at[k].factor.minCoeff();
-    const Place &before = at[k == 0 ? 0 : k - 1], &after = at[std::min(k + 1, u.size() - 1)];
+    const SectionParameters &before = at[k == 0 ? 0 : k - 1], &after = at[std::min(k + 1, u.size() - 1)];
     const Vec2 in(at[k].s - before.s, height_ * (at[k].factor - before.factor).cwiseAbs().maxCoeff());
     const Vec2 out(after.s - at[k].s, height_ * (after.factor - at[k].factor).cwiseAbs().maxCoeff());
     const double turn = std::abs(std::atan2(in[0] * out[1] - in[1] * out[0], in.dot(out)));

@@ -24,7 +24,7 @@ class Channel {
   explicit Channel(const TubeOptions& options);
 
   struct Section {
-    Vec3 centre, along, across;  ///< C, dC/ds and N
+    Vec3 centre, along, normal;  ///< C, dC/ds and N
     Vec2 factor;
   };
   Section section(double s) const;
@@ -48,16 +48,16 @@ class Channel {
   Section at(double u) const;
 
  private:
-  struct Place {
+  struct SectionParameters {
     double s;
     Vec2 factor;
   };
-  Place place(double u) const;
-  Place step(double u) const;
-  Place in_period(double u) const;
+  SectionParameters place(double u) const;
+  SectionParameters step(double u) const;
+  SectionParameters in_period(double u) const;
   double in_period_along(double s) const;
   void check_period();
-  Section section_of(const Place& place) const;
+  Section section_of(const SectionParameters& place) const;
   double parameter(double s) const;
   double jump() const;
   void find_ends();

@@ -37,8 +37,6 @@ double bend(const PlaneCurve& curve, double begin, double end) {
   return std::max(jet(curve, begin + inside).dd.norm(), jet(curve, end - inside).dd.norm());
 }
 
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
-
 /// Returns the parameter (0 at a, 1 at b) of the point of the segment from a to b that is nearest to p.
 double foot(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 along = b - a;

@@ -165,7 +165,7 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
     narrowest = at.factor.minCoeff();
   }
   const auto centre = through(*channel, knots, [](const Channel::Section& at) -> Vec2 { return at.centre.head<2>(); });
-  const auto across = through(*channel, knots, [](const Channel::Section& at) -> Vec2 { return at.factor[0] * at.across.head<2>(); });
+  const auto across = through(*channel, knots, [](const Channel::Section& at) -> Vec2 { return at.factor[0] * at.normal.head<2>(); });
   const auto upward = through(*channel, knots, [](const Channel::Section& at) -> Vec2 { return Vec2(at.factor[1], 0); });
   for (int i = 0; i < wall.n_along; ++i)
     for (int k = 0; k < wall.n_around; ++k)

@@ -99,7 +99,7 @@ EmptyFlow ChannelFlow::solution(const Wall& wall) const {
   const std::vector<int>& own = wall.points().own_targets();
   Net of_ends(wall.points().targets().rows(), 3);
   of_ends(own, Eigen::all) = driving_velocity(wall.points().targets()(own, Eigen::all));
-  const Net without = viscosity() * wall.solve(wall.points().collocated(of_ends)), &with = wall.pumped();
+  const Net without = viscosity() * wall.solve(wall.points().collocated(of_ends)), &with = wall.traction_per_pressure_drop();
   const double middle = (channel_->start() + channel_->end()) / 2;
   const stokes::DuctEnd::Points points = section(middle, 1).points();
   const Vec3 along = channel_->section(middle).along;

@@ -14,7 +14,7 @@ int row_at(const Eigen::Ref<const Net>& ring, const Vec3& at, double close) {
 
 /// Returns whether the matrix map.q maps point k of each ring to point map.image[k] of the same ring, up to the distance `close`. A ring is m
 /// consecutive rows of `points`, where m is the size of map.image.
-bool maps(const Congruence& map, const Net& points, double close) {
+bool maps(const WallSymmetry& map, const Net& points, double close) {
   const auto m = static_cast<Eigen::Index>(map.image.size());
   for (Eigen::Index i = 0; i < points.rows(); ++i)
     if (!((points.row(i - i % m + map.image[static_cast<std::size_t>(i % m)]) - points.row(i) * map.q.transpose()).norm() < close)) return false;
@@ -23,14 +23,14 @@ bool maps(const Congruence& map, const Net& points, double close) {
 
 }  // namespace
 
-std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& sites) {
+std::vector<WallSymmetry> wall_symmetries(const surface::TubeWall& wall, const Net& sites) {
   const int m = wall.n_around;
   const double close = 1e-10 * wall.radius();
-  std::vector<Congruence> all;
+  std::vector<WallSymmetry> all;
   for (const double sign : {1., -1.})
     for (int j = 0; j < m; ++j) {
       const double angle = 2 * std::numbers::pi * j / m, c = std::cos(angle), s = std::sin(angle);
-      Congruence map{(Mat3() << 1, 0, 0, 0, c, -sign * s, 0, s, sign * c).finished(), {}, std::vector<int>(static_cast<std::size_t>(m))};
+      WallSymmetry map{(Mat3() << 1, 0, 0, 0, c, -sign * s, 0, s, sign * c).finished(), {}, std::vector<int>(static_cast<std::size_t>(m))};
       for (int k = 0; k < m; ++k) {
         const int to = row_at(sites.topRows(m), map.q * sites.row(k).transpose(), close);
         if (to < 0) break;
@@ -42,11 +42,11 @@ std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& si
   return all;
 }
 
-std::vector<Original> originals(const std::vector<Congruence>& maps, int n_around) {
-  std::vector<Original> all;
+std::vector<OrbitRepresentative> orbit_representatives(const std::vector<WallSymmetry>& maps, int n_around) {
+  std::vector<OrbitRepresentative> all;
   for (int k = 0; k < n_around; ++k) {
-    Original of{k, &maps.front()};
-    for (const Congruence& map : maps)
+    OrbitRepresentative of{k, &maps.front()};
+    for (const WallSymmetry& map : maps)
       if (const int point = map.source[static_cast<std::size_t>(k)]; point < of.point) of = {point, &map};
     all.push_back(of);
   }

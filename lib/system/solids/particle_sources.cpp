@@ -21,8 +21,8 @@ ParticleSources::ParticleSources(const spline::Space& space, double viscosity, c
   if (cell) cell_ = *cell, single_layer.repeat(*cell_, how_);
 }
 
-void ParticleSources::set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present) {
-  single_layer.set_reference(unstressed, std::move(present));
+void ParticleSources::set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> per_current_area) {
+  single_layer.set_reference(unstressed, std::move(per_current_area));
   measure_ = measure;
 }
 
@@ -35,7 +35,7 @@ void ParticleSources::set_contrasts(const Eigen::VectorXd& contrasts) {
 }
 
 void ParticleSources::set(const Net& unstressed, std::span<const Particle> particles) {
-  set_reference(unstressed, measure(particles), measured_on_present(particles));
+  set_reference(unstressed, measure(particles), loads_per_current_area(particles));
   set_contrasts(viscosity_contrasts_of_points(particles));
 }
 

@@ -37,7 +37,7 @@ class ParticleSources {
                   const stokes::Repetition& how);
 
   /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
-  void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
+  void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> per_current_area = {});
 
   /// Sets the viscosity contrast at each control point: 1 - lambda of a deformable particle. The contrast of a rigid body is 0 if its unknown is the
   /// traction (2.40). It is -1 if the unknown is the density w of (2.23), which then takes the place of v. All contrasts are 0 before the first call.

@@ -98,7 +98,7 @@ Net LoneRigidBody::velocity(const Net& position) {
   return slope;
 }
 
-void LoneRigidBody::restore_volume(Net& position) { position.bottomRows<2>() /= quaternion(position).norm(); }
+void LoneRigidBody::restore_constraints(Net& position) { position.bottomRows<2>() /= quaternion(position).norm(); }
 
 double LoneRigidBody::norm(const Net& displacement) const {
   return std::hypot(displacement.row(0).norm() / radius_, 2 * displacement.bottomRows<2>().norm());

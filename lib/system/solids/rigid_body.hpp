@@ -44,7 +44,7 @@ class LoneRigidBody : public Dynamics {
   LoneRigidBody(const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const RigidDrive& driven)
       : surface_(surface), centre_(centre), radius_(radius), flow_(flow), driven_(driven) {}
 
-  void at(double time, double start) override { flow_.at(time, start); }
+  void set_time(double time, double start) override { flow_.set_time(time, start); }
   double next_kink(double time) const override { return flow_.next_kink(time); }
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< flow at the time set last
   Net velocity(const Net& position) override;
@@ -53,7 +53,7 @@ class LoneRigidBody : public Dynamics {
   Net solve(double, const Net& r, double, const Secants&) override { return r; }  ///< returns r: the Jacobian is taken as 0, because the motion is
                                                                                   ///< not stiff
   Net jacobian_error(const Net& change, const Net& delta, double shift) override { return change + delta / shift; }
-  void restore_volume(Net& position) override;                       ///< normalises the quaternion; the volume of a rigid body needs no correction
+  void restore_constraints(Net& position) override;                  ///< normalises the quaternion; the volume of a rigid body needs no correction
   double norm(const Net& displacement) const override;            ///< combines the displacement of the centre, divided by R_C, and the angle of
                                                                   ///< rotation
 
@@ -123,8 +123,8 @@ class BoundedFreeBody : public LoneRigidBody {
   BoundedFreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
                  const RigidDrive& driven = {});
 
-  void at(double time, double start) override {
-    if (flow_.at(time, start)) position_ = {};
+  void set_time(double time, double start) override {
+    if (flow_.set_time(time, start)) position_ = {};
   }
   RigidMotion motion(const Net& position) const override { return solution(position).motion; }
   Net force_density(const Net& position) const override { return solution(position).density; }

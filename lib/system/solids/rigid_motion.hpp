@@ -10,14 +10,16 @@ struct RigidMotion {
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
 };
 
+/// Returns the stresslet of a force density with the first moment `moment`: the symmetric, traceless part of `moment`.
+inline Mat3 stresslet(const Mat3& moment) { return (moment + moment.transpose()) / 2 - moment.trace() / 3 * Mat3::Identity(); }
+
 /// Motion of a rigid body, and integrals of its force density f on the fluid.
 struct SolvedBody {
   RigidMotion motion;
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque (about the centre) of the body on the fluid
   Mat3 moment = Mat3::Zero();                        ///< first moment int f_i r_j dGamma, with the position r from the centre
 
-  /// Returns the symmetric, traceless part of `moment`.
-  Mat3 stresslet() const { return (moment + moment.transpose()) / 2 - moment.trace() / 3 * Mat3::Identity(); }
+  Mat3 stresslet() const { return coupling::stresslet(moment); }
 };
 
 /// Returns the unit motion k: translations along x1, x2, x3 (k = 0, 1, 2), rotations about these axes (k = 3, 4, 5).

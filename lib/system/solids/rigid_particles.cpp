@@ -214,12 +214,12 @@ Net RigidParticles::completing_load(const Net& w) const {
 
 void RigidParticles::move_into_cell(std::span<const CellShift> shifts) {
   for (std::size_t p = 0; p < shifts.size(); ++p)
-    if (holds(p)) bodies_[static_cast<std::size_t>(of_particle_[p])].cell_velocity = shifts[p].velocity;
+    if (is_rigid(p)) bodies_[static_cast<std::size_t>(of_particle_[p])].cell_velocity = shifts[p].velocity;
 }
 
 void RigidParticles::move_out_of_cell(std::span<const CellShift> shifts) {
   for (std::size_t p = 0; p < shifts.size(); ++p) {
-    if (!holds(p)) continue;
+    if (!is_rigid(p)) continue;
     Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
     body.centre += shifts[p].position;
     body.motion.velocity += shifts[p].velocity;

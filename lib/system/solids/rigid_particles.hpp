@@ -82,7 +82,7 @@ class RigidParticles {
   void move_out_of_cell(std::span<const CellShift> shifts);
 
   /// Returns whether particle p is a rigid body. The members below refer to the latest evaluated velocities.
-  bool holds(std::size_t p) const { return of_particle_[p] >= 0; }
+  bool is_rigid(std::size_t p) const { return of_particle_[p] >= 0; }
   const RigidMotion& motion(std::size_t p) const { return body(p).motion; }
   const Net& density(std::size_t p) const { return body(p).density; }  ///< w, rows of this body
   Vec3 force(std::size_t p) const { return body(p).force; }            ///< force on the fluid

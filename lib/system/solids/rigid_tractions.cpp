@@ -18,12 +18,13 @@ void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& cent
   for (int k = 0; k < 6; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(rigid_velocity(own, unit_motion(k), centre));
 }
 
-constexpr int strains = 5;
+constexpr int n_unit_strains = 5;
 
 /// Sets five columns to the velocities of the unit strain flows at the sites of a body.
 void set_unit_strains(const Net& at, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
   const Net from_centre = block.rows(at).rowwise() - centre.transpose();
-  for (int k = 0; k < strains; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
+  for (int k = 0; k < n_unit_strains; ++k)
+    columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
 }
 
 std::vector<Particle> bodies_among(std::span<const Particle> particles) {
@@ -64,11 +65,11 @@ Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resis
   return motion;
 }
 
-/// Returns the amplitudes of the unit motions: prescribed motions, and the motions that give the prescribed forces and torques. `held`: forces and
-/// torques if all bodies are held at rest.
-Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held,
+/// Returns the amplitudes of the unit motions: prescribed motions, and the motions that give the prescribed forces and torques. `loads_at_rest`:
+/// forces and torques if all bodies are held at rest.
+Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& loads_at_rest,
                         std::span<const RigidDrive> driven) {
-  Eigen::VectorXd motion = Eigen::VectorXd::Zero(held.size()), given = motion;
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(loads_at_rest.size()), given = motion;
   for (std::size_t p = 0; p < driven.size(); ++p) {
     const RigidDrive& rigid = driven[p];
     const auto first = static_cast<Eigen::Index>(6 * p);
@@ -77,7 +78,7 @@ Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& res
     else
       given.segment<6>(first) << rigid.force, rigid.torque;
   }
-  return motion + freed(free, resistance, given - held - resistance * motion);
+  return motion + freed(free, resistance, given - loads_at_rest - resistance * motion);
 }
 
 }  // namespace
@@ -163,8 +164,8 @@ void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std:
 Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z) {
   Eigen::VectorXd work = z.transpose() * weighted_residual_;
   if (!walls_.tube || !walls_.tube->fixed() || !all_rigid()) return work;
-  const Tube::Leak leak = walls_.tube->leak(load(y));
-  for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(leak, walls_.tube->respond(load(as_net(z.col(k)))));
+  const Tube::WallResidual residual = walls_.tube->wall_residual(load(y));
+  for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(residual, walls_.tube->respond(load(as_net(z.col(k)))));
   return work;
 }
 
@@ -255,7 +256,7 @@ bool RigidTractions::inside(const Net& x) const {
 Mat3 RigidTractions::moment(std::size_t p) {
   reports_.clear();
   if (walls_.tube) return bodies_[p].moment;
-  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(weighted_residual_.size(), strains);
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(weighted_residual_.size(), n_unit_strains);
   set_unit_strains(sites_, particles_[p].block, centres_[p], velocities);
   return bodies_[p].moment + strain_of_products(densities(velocities).transpose() * weighted_residual_);
 }

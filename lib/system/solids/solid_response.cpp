@@ -22,7 +22,7 @@ Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlo
   return solids.solve(solids.velocities() * flow.change().transpose() - flow.velocities(solids.sites()), force);
 }
 
-Vec3 velocity_integral(const SolidScene& scene, const Solids::Flow& flow) {
+Vec3 solids_flow_integral(const SolidScene& scene, const Solids::Flow& flow) {
   if (scene.planes.empty()) return scene.solids->cell().volume() * flow.drift;
   if (scene.planes.size() == 1) return Vec3::Zero();
   const stokes::PlaneWall& wall = scene.planes.front();
@@ -33,7 +33,7 @@ Vec3 velocity_integral(const SolidScene& scene, const Solids::Flow& flow) {
 SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow)
     : scene_(scene),
       flow_(flow),
-      particles_(space, scene.solids->viscosity(), scene.quadrature, &scene.solids->cell(), {.across = scene.solids->across()}) {}
+      particles_(space, scene.solids->viscosity(), scene.quadrature, &scene.solids->cell(), {.target_range = scene.solids->range()}) {}
 
 void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> own) {
   Solids& solids = *scene_.solids;
@@ -64,12 +64,12 @@ Solids::Flow SolidResponse::respond(const Net& f, const Net& v) {
 
 void SolidResponse::velocities(const Solids::Flow& flow, Net& u) { scene_.solids->velocity_at(at_, own_, flow, u, &*solids_on_particles_); }
 
-Vec3 SolidResponse::velocity_integral(const Solids::Flow& flow, const Net& f, const Net& v) {
-  if (scene_.planes.size() != 2) return coupling::velocity_integral(scene_, flow);
+Vec3 SolidResponse::flow_integral(const Solids::Flow& flow, const Net& f, const Net& v) {
+  if (scene_.planes.size() != 2) return coupling::solids_flow_integral(scene_, flow);
   const stokes::PlaneWall& wall = scene_.planes.front();
   const Vec3& n = wall.normal();
   const auto height = [&](const std::vector<double> (&x)[3], std::size_t k) { return wall.height(Vec3(x[0][k], x[1][k], x[2][k])); };
-  Vec3 sum = coupling::velocity_integral(scene_, flow);
+  Vec3 sum = coupling::solids_flow_integral(scene_, flow);
   const stokes::Layer& single = particles_.single_layer;
   std::vector<double> weighted = single.weights();
   for (std::size_t k = 0; k < weighted.size(); ++k) weighted[k] *= profile(scene_, height(single.nodes(), k)) / scene_.solids->viscosity();

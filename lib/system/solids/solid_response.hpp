@@ -26,7 +26,7 @@ struct SolidScene {
 Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow);
 
 /// Returns the integral over the cell (2.49) of the velocity due to the solids only. `flow`: solution of (2.46).
-Vec3 velocity_integral(const SolidScene& scene, const Solids::Flow& flow);
+Vec3 solids_flow_integral(const SolidScene& scene, const Solids::Flow& flow);
 
 /// Velocity u that solids (with the surface S) add to the ambient flow v_inf and to the layers of the particles (with the surface C):
 ///
@@ -69,7 +69,7 @@ class SolidResponse {
   /// In this formula, f_i is the force density of the solids (`flow`) and df_i the load of the particles (the argument f). S are the surfaces of the
   /// solids, and C the surfaces of the particles. With z the distance from one plate and phi = z (D - z)/2, a pressure that decreases along e_i with
   /// unit gradient drives the flow phi e_i/mu, which has the stress sigma_i.
-  Vec3 velocity_integral(const Solids::Flow& flow, const Net& f, const Net& v);
+  Vec3 flow_integral(const Solids::Flow& flow, const Net& f, const Net& v);
 
   /// Returns the force of the particles on the fluid for a load f.
   Vec3 force(const Net& f) const { return -f.transpose() * areas_; }

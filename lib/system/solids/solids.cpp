@@ -41,15 +41,15 @@ Solids::Solids(const std::vector<Solid>& solids, const Parameters& parameters, P
   }
   areas_ = moments([](const Vec3&) { return 1.; });
   flux_ = surface_.open_from_periodic.transpose() * surface::Geometry(surface_.space).volume_gradient(surface_.net);
-  across_ = cell().range(surface_.net);
+  range_ = cell().range(surface_.net);
   if (solids.size() == 1 && cell().n() == 2) {  // widens the range of coordinates across a single plate, which has no thickness
     const double period = cell().vectors().col(0).norm();
-    across_[0][2] -= period, across_[1][2] += period;
+    range_[0][2] -= period, range_[1][2] += period;
   }
-  reached_ = across_;
+  reached_ = range_;
   make_layer();
   stokes::Layer on_itself(stokes::Layer::Kernel::single_layer, surface_.space, surface_.sites, parameters.quadrature.for_matrix());
-  on_itself.repeat(cell(), {.assembled = true, .across = across_});
+  on_itself.repeat(cell(), {.assembled = true, .target_range = range_});
   on_itself.set_shape(surface_.net);
   const auto& grid = solids.front().surface.grid;
   if (grid[0] > 0 && std::ranges::all_of(solids, [&](const Solid& one) { return one.surface.grid == grid; })) factor_plates(on_itself, grid);
@@ -82,7 +82,7 @@ void Solids::factor_plates(stokes::Layer& on_itself, const std::array<int, 2>& g
 void Solids::make_layer() {
   if (layer_) evaluations_ += layer_->evaluations();
   layer_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, stokes::Sites(), parameters_.quadrature);
-  layer_->repeat(cell(), {.across = reached_});
+  layer_->repeat(cell(), {.target_range = reached_});
   layer_->set_shape(surface_.net);
 }
 
@@ -91,10 +91,10 @@ void Solids::make_layer() {
 void Solids::reach(const Net& x) {
   if (cell().n() == 3) return;
   const auto [low, high] = cell().range(x);
-  const double step = (across_[1][2] - across_[0][2]) / 4;
+  const double step = (range_[1][2] - range_[0][2]) / 4;
   const auto rounded = [&](double length) { return step * std::ceil(std::max(0., length) / step); };
-  std::array<Vec3, 2> range = across_;
-  range[0][2] -= rounded(across_[0][2] - low[2]), range[1][2] += rounded(high[2] - across_[1][2]);
+  std::array<Vec3, 2> range = range_;
+  range[0][2] -= rounded(range_[0][2] - low[2]), range[1][2] += rounded(high[2] - range_[1][2]);
   if (range == reached_) return;
   reached_ = range;
   make_layer();
@@ -115,7 +115,7 @@ bool Solids::outside(const Net& at) const {
 Eigen::MatrixXd Solids::rows(stokes::Layer& on_itself, std::span<const int> sites) const {
   stokes::Rows<double> all;
   on_itself.assemble(sites, all);
-  on_itself.assemble_rest(sites, all);
+  on_itself.assemble_remainder(sites, all);
   Eigen::MatrixXd found(all.rows(), sites_.size());
   for (Eigen::Index r = 0; r < all.rows(); ++r) {
     const Net periodic = surface_.open_from_periodic.transpose() * Eigen::Map<const Net>(all.row(r).data(), surface_.space.n_points, 3);

@@ -101,7 +101,7 @@ class Solids {
   stokes::Layer& layer() { return *layer_; }
   Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values of f on the layer's space, which is not periodic
   const surface::SolidSurface& surface() const { return surface_; }
-  const std::array<Vec3, 2>& across() const { return across_; }  ///< lowest and highest coordinates of the solids, in the axes of the cell
+  const std::array<Vec3, 2>& range() const { return range_; }  ///< lowest and highest coordinates of the solids, in the axes of the cell
   stokes::Evaluations evaluations() const { return evaluations_ + layer_->evaluations(); }
 
  private:
@@ -114,7 +114,7 @@ class Solids {
   Parameters parameters_;
   Ranks ranks_;
   std::vector<int> own_;
-  std::array<Vec3, 2> across_;            // lowest and highest coordinates of the solids, in the axes of the cell
+  std::array<Vec3, 2> range_;            // lowest and highest coordinates of the solids, in the axes of the cell
   std::array<Vec3, 2> reached_;           // lowest and highest coordinates, in the axes of the cell, for which `layer_` is set up
   std::unique_ptr<stokes::Layer> layer_;  // single layer at points off the solids
   Net sites_, velocities_;

@@ -101,25 +101,25 @@ Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correct
   const auto clock = phases_.time("wall");
   Response response;
   response.pressure_drop = pressure_of(f) + pressure_correction;
-  const bool moves = v.size() > 0 && particle_->sources.has_double(), by_flow = moves && fixed();
-  if (moves && !fixed()) response.pressure_drop += dot(particle_->pressure_of_velocity, v);
+  const bool has_velocity = v.size() > 0 && particle_->sources.has_double(), by_flow = has_velocity && fixed();
+  if (has_velocity && !fixed()) response.pressure_drop += dot(particle_->pressure_of_velocity, v);
   if (cell()) {
     ParticleData::Cause cause = particle_->cause(f, v);
     const Net on_wall = wall_->points().collocated(cause.at_wall);
     if (by_flow) response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? particle_on_wall({}, v) : on_wall);
     response.wall_traction = solve_wall(on_wall);
     response.velocity = on_particle(std::move(cause.at_sites));
-    response.load = f, response.moves = v;
+    response.load = f, response.particle_velocity = v;
   } else {
     Net on_wall = Net::Zero(wall_->points().sites().rows(), 3);
-    if (moves) on_wall += particle_on_wall({}, v);
+    if (has_velocity) on_wall += particle_on_wall({}, v);
     if (by_flow) response.pressure_drop += pressure_of_velocity(v, on_wall);
     if (f.size() > 0) on_wall += particle_on_wall(f);
-    response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->pumped();
+    response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->traction_per_pressure_drop();
   }
   response.velocity = (response.velocity.size() > 0 ? response.velocity : Net(Net::Zero(particle_->sites().rows(), 3))) +
                       wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
-  if (const double slower = slowed(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
+  if (const double slower = flow_rate_reduction(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
   return response;
 }
 
@@ -131,13 +131,13 @@ double Tube::empty_pressure_drop() const {
 
 /// Returns the fraction by which the particle reduces the flow rate if the pressure drop of the duct is prescribed, otherwise 0. `pressure_drop`: dp
 /// (2.7).
-double Tube::slowed(double pressure_drop) const {
+double Tube::flow_rate_reduction(double pressure_drop) const {
   return particle_->parameters.holds_pressure_drop ? pressure_drop / empty_pressure_drop() : 0;
 }
 
 /// Returns mu c (2.5) at points in the wall's frame: mu times the velocity due to a unit pressure drop, without the velocity due to the wall's
 /// traction.
-Net Tube::driven(const Net& at) const {
+Net Tube::pressure_driven_velocity(const Net& at) const {
   return cell() ? Net(viscosity() / empty_pressure_drop() * flow_->velocities(at)) : wall_->inlet().integral(at);
 }
 
@@ -146,11 +146,11 @@ void Tube::velocity_at(const Eigen::SparseMatrix<double>& points, const Net& x, 
   shape.col(0).array() -= particle_->centroid;  // before the product, so that a point at a far node coincides with it up to round-off (node_sum)
   const Net at = points * shape;
   wall_->layer().apply(wall_->on_space(response.wall_traction), at, rows, u);
-  const Net by_pressure = cell() ? Net(driven(at)(rows, Eigen::all)) : driven(at(rows, Eigen::all));
+  const Net by_pressure = cell() ? Net(pressure_driven_velocity(at)(rows, Eigen::all)) : pressure_driven_velocity(at(rows, Eigen::all));
   for (std::size_t k = 0; k < rows.size(); ++k)
     u.row(rows[k]) = (response.pressure_drop * by_pressure.row(static_cast<Eigen::Index>(k)) - u.row(rows[k])) / viscosity();
-  if (cell()) particle_->sources.add_velocity(response.load, response.moves, at, rows, u, {.first_image_row = 0});
-  if (const double slower = slowed(response.pressure_drop); slower != 0) {
+  if (cell()) particle_->sources.add_velocity(response.load, response.particle_velocity, at, rows, u, {.first_image_row = 0});
+  if (const double slower = flow_rate_reduction(response.pressure_drop); slower != 0) {
     const Net ambient = flow_->velocities(points * x);
     for (const int i : rows) u.row(i) -= slower * ambient.row(i);
   }
@@ -176,16 +176,16 @@ Net Tube::frozen_response(const Net& f, const Net& v) {
     of.apply(strength, part);
     to += factor * part;
   };
-  const bool loads = f.size() > 0, moves = v.size() > 0 && particle_->sources.has_double();
+  const bool loads = f.size() > 0, has_velocity = v.size() > 0 && particle_->sources.has_double();
   const Net on_wall = wall_->points().ranks().filled(wall_->points().sites().rows(), [&](Net& u) {
     if (loads) add(-1 / viscosity(), frozen.single, f, u);
-    if (moves) add(1, frozen.dual, particle_->sources.strength(v), u);
+    if (has_velocity) add(1, frozen.dual, particle_->sources.strength(v), u);
   });
-  const Net traction = solve_wall(on_wall) + pressure * wall_->pumped();
+  const Net traction = solve_wall(on_wall) + pressure * wall_->traction_per_pressure_drop();
   const Net u = particle_->ranks.filled(particle_->sites().rows(), [&](Net& own) {
     frozen.wall.apply(traction, own);
   });
-  return -u / viscosity() + pressure * frozen.inlet - slowed(pressure) * frozen.ambient;
+  return -u / viscosity() + pressure * frozen.inlet - flow_rate_reduction(pressure) * frozen.ambient;
 }
 
 }  // namespace tanktread::coupling

@@ -88,7 +88,7 @@ class Tube {
     Net velocity;       ///< velocity u (2.5) that wall and pressure drop cause at the particle's collocation points, shape (N, 3)
     Net wall_traction;  ///< disturbance f^D of the traction on the wall, control values
     double pressure_drop = 0;  ///< disturbance dp of the pressure drop
-    Net load, moves;  ///< load f and velocity v of the particle that cause this response; set only in a periodic duct
+    Net load, particle_velocity;  ///< load f and velocity v of the particle that cause this response; set only in a periodic duct
   };
 
   /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `pressure_correction`: collocation-error correction of dp.
@@ -136,19 +136,19 @@ class Tube {
 
   /// Discretisation error of the response to a load f. `velocity`: int N_A u dGamma over the wall, with u the velocity at Gauss points between the
   /// collocation points. `flow`: flow rate of the disturbance through the inlet. Both vanish for the exact response.
-  struct Leak {
+  struct WallResidual {
     Net velocity;
     double flow = 0;
   };
-  Leak leak(const Net& f);
+  WallResidual wall_residual(const Net& f);
 
-  /// Returns the inner product of f^D and leak.velocity, minus dp times leak.flow: the contribution of the wall and the inlet to the
-  /// collocation-error correction (2.42). `leak`: discretisation error of the response to one load. `of`: response (f^D, dp) to another load.
-  double work(const Leak& leak, const Response& of) const;
+  /// Returns the inner product of f^D and residual.velocity, minus dp times residual.flow: the contribution of the wall and the inlet to the
+  /// collocation-error correction (2.42). `residual`: discretisation error of the response to one load. `of`: response (f^D, dp) to another load.
+  double work(const WallResidual& residual, const Response& of) const;
 
   /// Returns the flow rate of the duct flow: Q times its current factor `amplitude`. If the pressure drop of the duct flow is prescribed, returns the
   /// flow rate that remains when the particle causes the additional pressure drop dp = `pressure_drop` (2.7): Q (amplitude - dp/dp_0).
-  double flow_rate(double pressure_drop, double amplitude) const { return flow_->flow_rate() * (amplitude - slowed(pressure_drop)); }
+  double flow_rate(double pressure_drop, double amplitude) const { return flow_->flow_rate() * (amplitude - flow_rate_reduction(pressure_drop)); }
 
   /// Returns the smallest distance between the particle and the wall; negative if they intersect.
   double gap() const;
@@ -176,8 +176,8 @@ class Tube {
   double gap_to_straight_wall() const;
   double gap_to_channel_wall() const;
   double empty_pressure_drop() const;
-  double slowed(double pressure_drop) const;
-  Net driven(const Net& at) const;
+  double flow_rate_reduction(double pressure_drop) const;
+  Net pressure_driven_velocity(const Net& at) const;
   Net on_particle(const Net& own) const;
   double pressure_of_velocity(const Net& v, const Net& on_wall);
   void weigh_flow();
@@ -186,7 +186,7 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<ParticleData> particle_;
-  std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which leak() evaluates the velocity; set up at the first call of leak()
+  std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which wall_residual() evaluates the velocity; set up at its first call
   Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate through the inlet and in the axial force. weigh_flow() sets
                                       // these and all following members
   Net flow_of_wall_;  // weights w for a velocity u on the wall: w.u is the flow rate through the inlet due to the wall traction that cancels u

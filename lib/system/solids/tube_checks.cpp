@@ -14,7 +14,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // check_sharpness: factor by which leak() multiplies the tolerance of
+constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // check_sharpness: factor by which wall_residual() multiplies the tolerance of
                                                            // integrals over the wall, because pressures are large. sharpest: upper limit of
                                                            // this product
 
@@ -40,7 +40,7 @@ std::vector<Vec3> points_of_caps(const surface::TubeWall& wall) {
       continue;
     }
     const surface::Channel::Section at = wall.channel->section(s);
-    const auto place = [&](const surface::Vec2& p) -> Vec3 { return at.centre + p[0] * at.across + p[1] * Vec3::UnitZ(); };
+    const auto place = [&](const surface::Vec2& p) -> Vec3 { return at.centre + p[0] * at.normal + p[1] * Vec3::UnitZ(); };
     add_points_of_cap(wall.channel->outline(s), place, points);
   }
   return points;
@@ -54,7 +54,7 @@ void Tube::weigh_flow() {
   force_weights_ = wall_->force_weights();
   if (!wall_->iterates()) flow_of_wall_ = wall_->solve_transposed(flow_weights_);
   own_flow_ = cell() ? viscosity() * flow_->flow_rate() / empty_pressure_drop() : wall_->inlet().own_flow();
-  flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->pumped())) / viscosity();
+  flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->traction_per_pressure_drop())) / viscosity();
 }
 
 /// Returns the errors of the response in the conditions (2.14). By reciprocity, a force f at y causes the flow rate f.c(y)/mu through the inlet, with
@@ -79,7 +79,7 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
     }
   }
   if (v.size() > 0 && particle.sources.has_double()) flow += dot(particle.flow_of_strength(*wall_), particle.sources.strength(v));
-  const double force_of_pressure = area - dot(force_weights_, wall_->pumped());
+  const double force_of_pressure = area - dot(force_weights_, wall_->traction_per_pressure_drop());
 
   Checks checks;
   checks.flux = flow / flow_->flow_rate();
@@ -108,12 +108,12 @@ Tube::BetweenSitesOfWall::BetweenSitesOfWall(const surface::TubeWall& wall, cons
   layer.set_shape(wall.net);
 }
 
-Tube::Leak Tube::leak(const Net& f) {
+Tube::WallResidual Tube::wall_residual(const Net& f) {
   const Response response = respond(f);
   const surface::TubeWall& wall = wall_->surface();
   if (!between_)
     between_ = std::make_unique<BetweenSitesOfWall>(wall, cell(), between_sites(wall.space, wall.net), particle_->parameters.quadrature);
-  const Net &at = between_->at, by_pressure = response.pressure_drop * driven(at);
+  const Net &at = between_->at, by_pressure = response.pressure_drop * pressure_driven_velocity(at);
   const Net u = wall_->points().ranks().divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& velocity) {
     Net of_wall(at.rows(), 3);
     between_->layer.apply(wall_->on_space(response.wall_traction), own, of_wall);
@@ -123,8 +123,8 @@ Tube::Leak Tube::leak(const Net& f) {
   return {wall_->from_space(Net(between_->weights * u)), checks(f, {}, response).flux * flow_->flow_rate()};
 }
 
-double Tube::work(const Leak& leak, const Response& of) const {
-  return dot(of.wall_traction, leak.velocity) - of.pressure_drop * leak.flow;
+double Tube::work(const WallResidual& residual, const Response& of) const {
+  return dot(of.wall_traction, residual.velocity) - of.pressure_drop * residual.flow;
 }
 
 double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) {

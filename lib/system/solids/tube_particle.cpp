@@ -29,7 +29,7 @@ Tube::ParticleData::ParticleData(const spline::Space& particle, const TubeParame
       parameters(how),
       geometry(particle),
       sources(particle, how.viscosity, how.quadrature, wall.cell() ? &*wall.cell() : nullptr,
-              wall.cell() ? stokes::Repetition{.assembled = true, .across = wall.across()} : stokes::Repetition()),
+              wall.cell() ? stokes::Repetition{.assembled = true, .target_range = wall.range()} : stokes::Repetition()),
       from_sites(how.direct),
       periodic(wall.cell()) {
   own = ranks.divide_points(space, parameters.symmetry.order() > 1 ? parameters.symmetry : surface::Symmetry(space.n_points));

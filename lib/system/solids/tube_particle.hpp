@@ -76,7 +76,7 @@ struct Tube::ParticleData {
   Net flow_of_strength_;
 };
 
-/// Points of the wall between its collocation points, at which leak() evaluates the velocity, and the single layer for these points.
+/// Points of the wall between its collocation points, at which wall_residual() evaluates the velocity, and the single layer for these points.
 struct Tube::BetweenSitesOfWall {
   BetweenSitesOfWall(const surface::TubeWall& wall, const std::optional<stokes::PeriodicCell>& cell, const BetweenSites& between,
                      const quadrature::Options& options);

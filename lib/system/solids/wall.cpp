@@ -106,7 +106,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
                                                quadrature.for_matrix());
   if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
   on_itself_->set_shape(wall.net);
-  if (cell_) find_pressure();
+  if (cell_) find_null_vector();
   const surface::Symmetry of_wall = reflections(surface_, points_.sites());
   if (solver.iterates(WallFactors::bytes(of_wall, symmetry_), cell_.has_value())) {
     patches_of_rows_.emplace(surface_, *on_itself_, symmetry_.fundamental());
@@ -115,7 +115,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
     factor(of_wall);
   }
   inlet_column_ = cell_ ? Net(Net::Zero(n, 3)) : points_.collocated(inlet_->integral(points_.targets()));
-  pumped_ = cell_ ? inlet_column_ : solve(inlet_column_);
+  traction_per_pressure_drop_ = cell_ ? inlet_column_ : solve(inlet_column_);
 }
 
 bool Wall::is_for(const surface::TubeWall& wall, const quadrature::Options& quadrature, const surface::Symmetry& symmetry,
@@ -126,14 +126,14 @@ bool Wall::is_for(const surface::TubeWall& wall, const quadrature::Options& quad
   return same_surface && same_symmetry && quadrature == quadrature_ && solver == solver_;
 }
 
-/// Computes pressure_ and flux_. The outer product of these two fields is added to A, because A is singular: a uniform pressure produces no velocity.
-/// The product is scaled so that it maps a uniform pressure to about the velocity that A produces for a tangential traction of equal size.
-void Wall::find_pressure() {
-  flux_ = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
-  pressure_.resize(n_sites(), 3);
-  for (Eigen::Index i = 0; i < pressure_.rows(); ++i)
-    pressure_.row(i) = surface::point(surface_.space, surface_.net, surface_.sites[static_cast<std::size_t>(i)].front()).n.transpose();
-  pressure_ *= surface_.radius() / dot(flux_, pressure_);
+/// Computes null_vector_ and flux_vector_. The outer product of these two fields is added to A, because A is singular: a uniform pressure produces no
+/// velocity. The product is scaled so that it maps a uniform pressure to about the velocity that A produces for a tangential traction of equal size.
+void Wall::find_null_vector() {
+  flux_vector_ = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
+  null_vector_.resize(n_sites(), 3);
+  for (Eigen::Index i = 0; i < null_vector_.rows(); ++i)
+    null_vector_.row(i) = surface::point(surface_.space, surface_.net, surface_.sites[static_cast<std::size_t>(i)].front()).n.transpose();
+  null_vector_ *= surface_.radius() / dot(flux_vector_, null_vector_);
 }
 
 template <class Real>
@@ -151,7 +151,7 @@ template void Wall::from_space(stokes::Rows<float>& rows) const;
 /// Assembles the rows of the single layer of the wall at targets on the wall itself. The columns belong to the control values of f.
 void Wall::assemble_rows(std::span<const int> targets, stokes::Rows<double>& rows) {
   on_itself_->assemble(targets, rows);
-  if (cell_) on_itself_->assemble_rest(targets, rows);
+  if (cell_) on_itself_->assemble_remainder(targets, rows);
   from_space(rows);
 }
 
@@ -163,15 +163,15 @@ void Wall::factor(const surface::Symmetry& of_wall) {
   factors_ = WallFactors(of_wall, symmetry_);
   const auto n = static_cast<int>(n_sites());
   const int m = surface_.n_around;
-  const std::vector<Congruence> maps = congruences(surface_, points_.sites());
-  const std::vector<Original> original = originals(maps, m);
-  const auto original_of = [&](int site) { return original[static_cast<std::size_t>(site % m)]; };
-  std::vector<int> own;  // sites of this rank, sorted by Original::point (congruence.hpp): equal originals are adjacent
+  const std::vector<WallSymmetry> maps = wall_symmetries(surface_, points_.sites());
+  const std::vector<OrbitRepresentative> representative = orbit_representatives(maps, m);
+  const auto representative_of = [&](int site) { return representative[static_cast<std::size_t>(site % m)]; };
+  std::vector<int> own;  // sites of this rank, sorted by OrbitRepresentative::point (congruence.hpp): equal representatives are adjacent
   for (const int k : points_.ranks().share(static_cast<int>(of_wall.fundamental().size())))
     own.push_back(of_wall.fundamental()[static_cast<std::size_t>(k)]);
-  std::ranges::stable_sort(own, {}, [&](int site) { return site - site % m + original_of(site).point; });
+  std::ranges::stable_sort(own, {}, [&](int site) { return site - site % m + representative_of(site).point; });
   // Adds the rows of `site`. `rows`: the three rows of the congruent site that `map` moves to `site`.
-  const auto add_rows = [&](int site, const Congruence& map, const auto& rows) {
+  const auto add_rows = [&](int site, const WallSymmetry& map, const auto& rows) {
     for (int p = 0; p < n; ++p) {
       const int from = p - p % m + map.source[static_cast<std::size_t>(p % m)];
       factors_.add(site, p, map.q * rows.template middleCols<3>(3 * from) * map.q.transpose());
@@ -180,15 +180,15 @@ void Wall::factor(const surface::Symmetry& of_wall) {
   for (std::size_t first = 0, last = 0; first < own.size(); first = last) {
     std::vector<int> some, row;  // some: sites whose rows are assembled. row: for each site of `own`, index in `some` of the congruent site
     for (; last < own.size() && some.size() < at_a_time; ++last) {
-      const int site = own[last] - own[last] % m + original_of(own[last]).point;
+      const int site = own[last] - own[last] % m + representative_of(own[last]).point;
       if (some.empty() || some.back() != site) some.push_back(site);
       row.push_back(static_cast<int>(some.size()) - 1);
     }
     stokes::Rows<double> part;
     points_.collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { assemble_rows(targets, rows); }, part);
-    for (std::size_t k = 0; k < row.size(); ++k) add_rows(own[first + k], *original_of(own[first + k]).from, part.middleRows<3>(3 * row[k]));
+    for (std::size_t k = 0; k < row.size(); ++k) add_rows(own[first + k], *representative_of(own[first + k]).from, part.middleRows<3>(3 * row[k]));
   }
-  if (cell_ && points_.ranks().rank() == 0) factors_.add_product(pressure_, flux_);
+  if (cell_ && points_.ranks().rank() == 0) factors_.add_product(null_vector_, flux_vector_);
   factors_.factor(points_.ranks());
 }
 
@@ -196,7 +196,7 @@ Net Wall::apply(const Net& f) const {
   Net u(points_.targets().rows(), 3);
   on_itself_->apply(on_space(f), points_.own_targets(), u);
   const Net rows = points_.collocated(u);
-  return cell_ ? Net(rows + dot(flux_, f) * pressure_) : rows;
+  return cell_ ? Net(rows + dot(flux_vector_, f) * null_vector_) : rows;
 }
 
 Net Wall::solve(const Net& rhs) const {

@@ -93,7 +93,7 @@ class Wall {
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }
 
   /// Returns the lowest and highest coordinates of the wall in the axes of the cell.
-  std::array<Vec3, 2> across() const { return cell_->range(surface_.net); }
+  std::array<Vec3, 2> range() const { return cell_->range(surface_.net); }
 
   /// Converts the control values of a traction f, one row per collocation site of the wall, to control values on the space of layer(). Changes f only
   /// if the wall is periodic, because f is then a periodic spline, whereas this space is not periodic. from_space() multiplies by the transpose of
@@ -114,7 +114,8 @@ class Wall {
   Net solve_transposed(const Net& weights) const;
 
   const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet integral c (2.13); 0 for a periodic wall
-  const Net& pumped() const { return pumped_; }              ///< wall traction A^-1 c (2.13) in the open, empty tube per unit pressure drop
+  /// Returns the wall traction A^-1 c (2.13) in the open, empty tube per unit pressure drop; 0 for a periodic wall.
+  const Net& traction_per_pressure_drop() const { return traction_per_pressure_drop_; }
 
   /// Returns weights int N_A c dGamma, one row per control point A, with c = flow_of_forces(x). Their inner product with a traction on the wall is mu
   /// times the flow rate that the traction causes.
@@ -146,7 +147,7 @@ class Wall {
   void assemble_rows(std::span<const int> targets, stokes::Rows<double>& rows);
   void factor(const surface::Symmetry& of_wall);
   Net iterated(const Net& rhs) const;
-  void find_pressure();
+  void find_null_vector();
   Eigen::VectorXd fundamental(const Net& net) const;
   Net fundamental_net(const Eigen::VectorXd& numbers) const;
 
@@ -160,8 +161,9 @@ class Wall {
   std::optional<stokes::PeriodicCell> cell_;
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
-  Net inlet_column_, pumped_;
-  Net pressure_, flux_;  // periodic wall only. pressure_: traction of a uniform pressure at the sites. flux_: int N_A n dGamma
+  Net inlet_column_, traction_per_pressure_drop_;
+  Net null_vector_, flux_vector_;  // periodic wall only. null_vector_: normals n at the sites, scaled by radius/(flux_vector_.n); a traction
+                                   // proportional to n produces no velocity. flux_vector_: int N_A n dGamma
   std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
   WallFactors factors_;                       // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;

@@ -57,7 +57,6 @@ class Krylov {
   /// Constructs the Belos solver named in the options ("GMRES", "BICGSTAB", …). The parameter list of the options is passed to Belos unchanged and
   /// overrides the defaults set here. Throws UserError if Belos does not know the name or a parameter.
   explicit Krylov(const IterativeOptions& options);
-  Krylov(const std::string& solver, const std::shared_ptr<Teuchos::ParameterList>& list) : Krylov(IterativeOptions{solver, list}) {}
   ~Krylov();
 
   /// Solves the system for the right-hand side b to the residual `tolerance` relative to |b|, with initial guess x. Collective. Does not throw if the

@@ -114,9 +114,9 @@ class Test : public NOX::StatusTest::Generic {
   Test(const FixedPoint::Norm& norm, double unit, double tolerance, int most) : norm_(norm), unit_(unit), tolerance_(tolerance), most_(most) {}
   NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const NOX::Abstract::Group& group = solver.getSolutionGroup();
-    const double rest = group.isF() ? norm_(net(group.getF(), unit_)) : std::numeric_limits<double>::quiet_NaN();
-    if (rest <= tolerance_) return status_ = NOX::StatusTest::Converged;
-    return status_ = !std::isfinite(rest) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
+    const double residual = group.isF() ? norm_(net(group.getF(), unit_)) : std::numeric_limits<double>::quiet_NaN();
+    if (residual <= tolerance_) return status_ = NOX::StatusTest::Converged;
+    return status_ = !std::isfinite(residual) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
   }
   NOX::StatusTest::StatusType getStatus() const override { return status_; }
   std::ostream& print(std::ostream& stream, int) const override { return stream; }
@@ -193,7 +193,7 @@ FixedPoint::~FixedPoint() = default;
 
 std::string FixedPoint::unread() const { return impl_->last ? unread_path(impl_->given, *impl_->last) : std::string(); }
 
-NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& rest) const {
+NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& residual_norm) const {
   using Teuchos::RCP;
   using Weights = Thyra::VectorBase<double>;
   const double unit = unit_of(norm, x.rows());
@@ -213,7 +213,7 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
   auto& anderson = list->sublist("Anderson Parameters");
   if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
   try {
-    const auto solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(rest ? rest : norm, unit, tolerance, most)), list);
+    const auto solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(residual_norm ? residual_norm : norm, unit, tolerance, most)), list);
     const bool converged = solver->solve() == NOX::StatusTest::Converged;
     x = net(solver->getSolutionGroup().getX(), unit);
     return {solver->getNumIterations(), converged};

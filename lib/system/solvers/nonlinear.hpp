@@ -35,10 +35,10 @@ class FixedPoint {
   FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear = {"GMRES"}, int depth = 4);
   ~FixedPoint();
 
-  /// Iterates from x until rest(g(x) - x) <= tolerance or until `most` iterations have been made. `norm`: norm that scales the unknowns and the steps
-  /// of finite differences. `rest`: norm of the convergence test; `norm` if not given. A value of g that is not finite ends the iteration. Throws
-  /// UserError if NOX rejects its parameter list. Collective.
-  NonlinearReport solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& rest = {}) const;
+  /// Iterates from x until residual_norm(g(x) - x) <= tolerance or until `most` iterations have been made. `norm`: norm that scales the unknowns and
+  /// the steps of finite differences. `residual_norm`: norm of the convergence test; `norm` if not given. A value of g that is not finite ends the
+  /// iteration. Throws UserError if NOX rejects its parameter list. Collective.
+  NonlinearReport solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& residual_norm = {}) const;
 
   /// Returns the path of a parameter of the given list that the last solve did not use; empty if all were used.
   std::string unread() const;

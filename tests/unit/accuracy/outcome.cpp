@@ -34,10 +34,10 @@ TEST(Errors, AreThoseOfTheLevelsWithoutARequest) {
 TEST(Errors, AreThoseOfATrustedRequestForAnyOrderOfTheRequests) {
   const std::vector<Outcome> levels{level(2, 0), level(3, 1e-6), level(4, 2e-6)};
   EXPECT_NE(errors(levels)[0].untrusted, "");
-  const Answer generous = answer(at_most(1e-3), levels), strict = answer(at_most(1e-9), levels);
+  const RequestResult generous = answer(at_most(1e-3), levels), strict = answer(at_most(1e-9), levels);
   ASSERT_TRUE(generous.met);
   ASSERT_FALSE(strict.estimate.trusted());
-  for (const std::vector<Answer>& answers : {std::vector{generous, strict}, std::vector{strict, generous}}) {
+  for (const std::vector<RequestResult>& answers : {std::vector{generous, strict}, std::vector{strict, generous}}) {
     const SeriesError found = errors(levels, {}, answers)[0];
     EXPECT_EQ(found.untrusted, "");
     for (const double value : found.values) EXPECT_NEAR(value, generous.estimate.error, 1e-12);

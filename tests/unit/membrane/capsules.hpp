@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <random>
+#include <variant>
 #include <vector>
 
 #include "base/types.hpp"
@@ -14,6 +15,11 @@
 #include "surface/shapes.hpp"
 
 namespace tanktread::membrane {
+
+/// Returns the strain energy Psi per unstressed area at the principal stretches l1 and l2.
+inline double energy(const Law& law, double l1, double l2) {
+  return std::visit([&](const auto& l) { return l.energy(l1 * l1 + l2 * l2 - 2, l1 * l1 * l2 * l2 - 1); }, law);
+}
 
 /// A unit sphere on the cube mesh of n x n elements per face. Spheres are cached, because fits take time.
 struct Sphere {

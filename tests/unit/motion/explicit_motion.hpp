@@ -12,7 +12,7 @@ class ExplicitMotion : public coupling::Dynamics {
   void linearise(const Net&) override {}
   Net solve(double, const Net& r, double, const coupling::Secants&) override { return r; }
   Net jacobian_error(const Net& change, const Net&, double) override { return 0 * change; }
-  void restore_volume(Net&) override {}
+  void restore_constraints(Net&) override {}
 };
 
 }  // namespace tanktread::motion

@@ -12,6 +12,7 @@
 #include "base/errors.hpp"
 #include "explicit_motion.hpp"
 #include "motion/integrator.hpp"
+#include "system/agreement.hpp"
 #include "system/ranks.hpp"
 
 namespace tanktread::motion {
@@ -111,8 +112,8 @@ TEST(GuardedDynamics, TheFirstRankDecidesAboutSteps) {
     State state = start(0.5);
     const auto integrate = integrator(options);
     for (int k = 0; k < 4; ++k) integrate->advance(motion, state, 4);
-    EXPECT_EQ(state.time, ranks.first(state.time)) << scheme;
-    EXPECT_EQ(state.step, ranks.first(state.step)) << scheme;
+    EXPECT_EQ(state.time, coupling::of_first(state.time)) << scheme;
+    EXPECT_EQ(state.step, coupling::of_first(state.step)) << scheme;
     EXPECT_EQ(motion.distance(Net::Zero(1, 3), Net::Ones(1, 3)), std::sqrt(3.)) << scheme;
   }
 }

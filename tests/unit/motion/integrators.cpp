@@ -40,7 +40,7 @@ class Model : public coupling::Dynamics {
     return (w.inverse() * r.transpose()).transpose();
   }
   Net jacobian_error(const Net& change, const Net&, double) override { return 0 * change; }
-  void restore_volume(Net&) override {}
+  void restore_constraints(Net&) override {}
   double norm(const Net& d) const override { return d.norm() / std::sqrt(3.0); }
 
   int evaluations = 0, assemblies = 0, solves = 0;
@@ -119,7 +119,7 @@ class Clocked : public Model {
  public:
   static constexpr double kink = 0.3;
   Clocked() : Model(2) {}
-  void at(double time, double start) override { time_ = time, jumped_ = start >= kink; }
+  void set_time(double time, double start) override { time_ = time, jumped_ = start >= kink; }
   double next_kink(double time) const override { return time < kink ? kink : Model::next_kink(time); }
   Net velocity(const Net& x) override {
     const double c = std::cos(time_) - jumped_;
@@ -301,7 +301,7 @@ TEST(Integrators, AutoIsExplicitIfThatIsStableAndImplicitOtherwise) {
 class InLattice : public Model {
  public:
   using Model::Model;
-  void at(double time, double /*start*/) override { now = time; }
+  void set_time(double time, double /*start*/) override { now = time; }
   bool lattice_moves() const override { return true; }
   void freeze(const Net& x) override {
     Model::freeze(x);

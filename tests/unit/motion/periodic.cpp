@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Turns, Periodic, testing::Values(0., 180.));
 TEST(Periodic, AMotionThatStartsAtRestNeedsNoFinalTime) {
   class Driven : public ExplicitMotion {
    public:
-    void at(double time, double) override { time_ = time; }
+    void set_time(double time, double) override { time_ = time; }
     Net velocity(const Net&) override { return Net::Constant(1, 3, std::sin(time_)); }
     double norm(const Net& d) const override { return d.norm(); }
 

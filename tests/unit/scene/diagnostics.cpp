@@ -101,7 +101,7 @@ TEST(FlowPlanes, AreThoseInWhichALinearFlowMovesAndChanges) {
   stokes::FlowOptions flow = linear({0, 0, 1, 0, 0, 0, 0, 0, 0});
   flow.gradient = turn * *flow.gradient * turn.transpose();
   const FlowPlane plane = flow_plane(flow);
-  EXPECT_TRUE(plane.holds_flow);
+  EXPECT_TRUE(plane.contains_flow);
   EXPECT_NEAR(std::abs(plane.components(turn.col(1))[1]), 1, 1e-12);
   EXPECT_LT((plane.axes * plane.axes.transpose() - Mat3::Identity()).norm(), 1e-14);
 }
@@ -126,7 +126,7 @@ TEST(FlowPlanes, HaveTheDirectionsOfAShearFlow) {
 
 TEST(FlowPlanes, DoNotExistForANonplanarFlow) {
   const FlowPlane plane = flow_plane(linear({1, 0.5, 0, -0.5, 1, 0, 0, 0, -2}));
-  EXPECT_FALSE(plane.holds_flow);
+  EXPECT_FALSE(plane.contains_flow);
   EXPECT_EQ(plane.axes.row(1).cwiseAbs(), Eigen::RowVector3d(0, 0, 1));  // the normal is along the vorticity
 }
 

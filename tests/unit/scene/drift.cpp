@@ -90,7 +90,7 @@ TEST(Drift, MovingTheCentroidBackUpdatesEarlierPositions) {
   const Net direction = state.direction = Net::Random(state.x.rows(), 3);
   hold_centre(flow, geometry, Vec3::Zero(), state);
   EXPECT_LT(geometry.measures(state.x).centroid.norm(), 1e-14);
-  for (const motion::Place& place : state.places) EXPECT_LT((place.x - at(place.time)).norm(), 1e-13) << place.time;
+  for (const motion::PastPosition& place : state.places) EXPECT_LT((place.x - at(place.time)).norm(), 1e-13) << place.time;
   EXPECT_EQ(state.direction, direction);
 }
 

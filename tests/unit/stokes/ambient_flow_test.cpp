@@ -56,7 +56,7 @@ Mat3 integrated(AmbientFlow flow, double end, int steps) {
   const double h = end / steps;
   for (int k = 0; k < steps; ++k) {
     const auto gradient = [&](double part) {
-      flow.at((k + part) * h, k * h);
+      flow.set_time((k + part) * h, k * h);
       return flow.gradient(Vec3::Zero());
     };
     const Mat3 k1 = gradient(0) * f, k2 = gradient(0.5) * (f + h / 2 * k1), k3 = gradient(0.5) * (f + h / 2 * k2), k4 = gradient(1) * (f + h * k3);
@@ -191,12 +191,12 @@ TEST(FlowHistory, MultipliesAndRotatesAnyFlow) {
     options.history = stopped();
     AmbientFlow f(options);
     EXPECT_EQ(f.velocity(x), steady.velocity(x)) << "amplitude 1 as long as no time is told";
-    EXPECT_TRUE(f.at(1.5, 1.0));
-    EXPECT_FALSE(f.at(1.5, 1.2)) << "the same flow as before";
+    EXPECT_TRUE(f.set_time(1.5, 1.0));
+    EXPECT_FALSE(f.set_time(1.5, 1.2)) << "the same flow as before";
     const Mat3 turn = stopped().turn(45);
     EXPECT_LT((f.velocity(x) - 2 * turn * steady.velocity(turn.transpose() * x)).norm(), 1e-14) << options.type;
     EXPECT_LT((f.gradient(x) - 2 * turn * steady.gradient(turn.transpose() * x) * turn.transpose()).norm(), 1e-14) << options.type;
-    EXPECT_TRUE(f.at(2, 2));
+    EXPECT_TRUE(f.set_time(2, 2));
     EXPECT_EQ(f.velocity(x).norm(), 0);
     EXPECT_EQ(f.affine(), steady.affine());
     EXPECT_EQ(f.rate(), steady.rate());

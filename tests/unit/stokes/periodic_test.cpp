@@ -138,7 +138,7 @@ Mat3 over_sphere(const PeriodicCell& cell, const Vec3& x0, double a) {
   }
   for (int j = 0; j < 3; ++j) {
     Vec3 u = Vec3::Zero();
-    sum.add_rest({2 * n * n, x[0].data(), x[1].data(), x[2].data(),
+    sum.add_remainder({2 * n * n, x[0].data(), x[1].data(), x[2].data(),
                   {q[j][0].data(), q[j][1].data(), q[j][2].data(), q[j][3].data(), q[j][4].data(), q[j][5].data()}}, target, u.data());
     whole.col(j) += u;
   }
@@ -206,7 +206,7 @@ double error_of_sums(Kind kind, const PeriodicCell& cell, double tolerance) {
   for (int c = 0; c < 6; ++c)  // with one and two periods, sums are defined up to a constant times these means
     for (double& charge : q[c]) charge -= mean[c];
   std::vector<double> u(3 * n, 0.);
-  sum.add_rest({n, x[0].data(), x[1].data(), x[2].data(),
+  sum.add_remainder({n, x[0].data(), x[1].data(), x[2].data(),
                 {q[0].data(), q[1].data(), q[2].data(), q[3].data(), q[4].data(), q[5].data()}}, targets, u.data());
   double largest = 0;
   for (int i = 0; i < n; i += 5) {

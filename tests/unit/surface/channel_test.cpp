@@ -57,7 +57,7 @@ TEST(Channel, FindsThePositionOfAPointInTheChannel) {
     for (const double s : {-3., -0.5, 0.3, 1.5, 4., 7.})
       for (const Vec2& y : {Vec2(0.3, -0.2), Vec2(-0.5, 0.6)}) {
         const Channel::Section at = channel.section(s);
-        const Vec3 x = at.centre + at.factor[0] * y[0] * at.across + at.factor[1] * y[1] * Vec3::UnitZ();
+        const Vec3 x = at.centre + at.factor[0] * y[0] * at.normal + at.factor[1] * y[1] * Vec3::UnitZ();
         EXPECT_LT((channel.coordinates(x) - Vec3(s, y[0], y[1])).norm(), 1e-9) << s;
       }
     EXPECT_FALSE(channel.inside(Vec3(-3, 0, 2.5)));

@@ -30,8 +30,8 @@ TEST(Agreement, OnlyTheFirstRankDecides) {
   EXPECT_EQ(decided([&] { return std::vector(static_cast<std::size_t>(++calls + 2), 1. + ranks.rank()); }), std::vector(3, 1.));
   EXPECT_EQ(calls, ranks.rank() == 0 ? 1 : 0);
   EXPECT_THROW(decided([]() -> std::vector<double> { throw std::logic_error("undecided"); }), RunFailure);
-  EXPECT_TRUE(any_told_to_stop(ranks.rank() == ranks.size() - 1));
-  EXPECT_FALSE(any_told_to_stop(false));
+  EXPECT_TRUE(any_stop_requested(ranks.rank() == ranks.size() - 1));
+  EXPECT_FALSE(any_stop_requested(false));
 }
 
 TEST(Agreement, TheWorstOutcomeHasAReason) {

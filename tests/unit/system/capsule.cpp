@@ -41,7 +41,7 @@ TEST(Capsule, StoredEnergyDecreasesInAQuiescentFluid) {
   Fixture f("quiescent");
   Capsule capsule = f.capsule();
   Net x = f.deformed();
-  capsule.restore_volume(x);
+  capsule.restore_constraints(x);
   const Net v = capsule.velocity(x);
   Net d;
   capsule.membrane().load(x, [&] {
@@ -83,7 +83,7 @@ TEST(Capsule, ExactConstraintRestoresTheVolumeToRoundOff) {
   Fixture f;
   Capsule capsule = f.capsule();
   Net x = f.sphere * 1.001;  // 0.3 %: more than the volume error of any step
-  capsule.restore_volume(x);
+  capsule.restore_constraints(x);
   EXPECT_NEAR(capsule.volume_error(capsule.geometry().volume(x)), 0, std::pow(0.003, 4));  // two Newton iterations square the error twice
 }
 
@@ -91,7 +91,7 @@ TEST(Capsule, AVolumeThatCannotBeRestoredGivesNan) {
   Fixture f;
   Capsule capsule = f.capsule();
   Net x = f.sphere * 0.05;  // at this size Newton's first iteration overshoots by a factor of a hundred
-  capsule.restore_volume(x);
+  capsule.restore_constraints(x);
   EXPECT_FALSE(x.allFinite());
 }
 
@@ -148,15 +148,15 @@ TEST(Capsule, VelocityFollowsAFlowThatChangesInTime) {
   f.flow.history->times = {0, 2}, f.flow.history->amplitudes = {1, -1};
   Capsule capsule = f.capsule();
   const Net x = f.deformed(), one = capsule.velocity(x);
-  capsule.at(1, 0);
+  capsule.set_time(1, 0);
   const Net none = capsule.velocity(x);
-  capsule.at(0, 0);
+  capsule.set_time(0, 0);
   EXPECT_LT((capsule.velocity(x) - one).norm(), 1e-13 * one.norm());
   const long before = capsule.counts().evaluations;
-  capsule.at(0, 0);
+  capsule.set_time(0, 0);
   capsule.velocity(x);
   EXPECT_EQ(capsule.counts().evaluations, before) << "the same flow, so nothing is evaluated again";
-  capsule.at(1.5, 0);
+  capsule.set_time(1.5, 0);
   EXPECT_LT((capsule.velocity(x) - none + 0.5 * (one - none)).norm(), 1e-13 * one.norm()) << "what the flow adds is linear in it";
 }
 

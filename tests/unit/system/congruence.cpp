@@ -37,9 +37,9 @@ surface::TubeWall bent() {
 /// Returns the number of maps of a wall, and the number of azimuthal points whose rows are not images of other rows.
 std::pair<std::size_t, int> found(const surface::TubeWall& wall) {
   quadrature::Options rule;
-  const std::vector<Congruence> maps = congruences(wall, Wall(wall, rule).points().sites());
+  const std::vector<WallSymmetry> maps = wall_symmetries(wall, Wall(wall, rule).points().sites());
   int own = 0;
-  const std::vector<Original> all = originals(maps, wall.n_around);
+  const std::vector<OrbitRepresentative> all = orbit_representatives(maps, wall.n_around);
   for (int k = 0; k < wall.n_around; ++k) {
     const auto& [point, from] = all[static_cast<std::size_t>(k)];
     EXPECT_EQ(from->image[static_cast<std::size_t>(point)], k);
@@ -48,7 +48,7 @@ std::pair<std::size_t, int> found(const surface::TubeWall& wall) {
   return {maps.size(), own};
 }
 
-TEST(Congruence, FindsAllMapsOfASection) {
+TEST(WallSymmetry, FindsAllMapsOfASection) {
   EXPECT_EQ(found(open(circle())), std::pair(std::size_t{16}, 1));
   EXPECT_EQ(found(open(rectangle(2))).first, 8u);
   EXPECT_EQ(found(open(rectangle(1))).first, 4u);
@@ -56,7 +56,7 @@ TEST(Congruence, FindsAllMapsOfASection) {
 }
 
 // `apply` sums over all targets and does not know of the maps.
-TEST(Congruence, MapsRowsOfTheWallToRows) {
+TEST(WallSymmetry, MapsRowsOfTheWallToRows) {
   quadrature::Options rule;
   rule.tolerance = 1e-6;
   const surface::TubeWall periodic = surface::periodic_tube_wall(surface::outline(circle()), circle(), 3, 6);

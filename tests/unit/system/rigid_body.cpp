@@ -94,8 +94,8 @@ TEST(FreeBody, InAQuadraticFlowModesAgreeWithADirectSolve) {
   BoundedFreeBody solve(*f.tractions, f.rest, f.shape.center, 0.9, flow, viscosity);
   const Net place = f.turned(1.1, Vec3(1, -1, 0.5));
   for (const double time : {0.0, 1.0}) {
-    modes.at(time, 0);
-    solve.at(time, 0);
+    modes.set_time(time, 0);
+    solve.set_time(time, 0);
     const RigidMotion one = modes.motion(place), other = solve.motion(place);
     EXPECT_LT((one.velocity - other.velocity).norm(), 2e-5 * other.velocity.norm());
     EXPECT_LT((one.angular_velocity - other.angular_velocity).norm(), 5e-5 * other.angular_velocity.norm());
@@ -135,7 +135,7 @@ TEST(FreeBody, KeepsItsQuaternionNormalised) {
   const Mat3 before = rotation_of(place);
   place.bottomRows<2>() *= 1.3;
   EXPECT_LT((rotation_of(place) - before).norm(), 1e-15);
-  f.body->restore_volume(place);
+  f.body->restore_constraints(place);
   EXPECT_NEAR(place.bottomRows<2>().norm(), 1, 1e-15);
 }
 

@@ -182,7 +182,7 @@ TEST(RigidParticles, KeepTheirShape) {
   Capsule system = pair.system();
   Net x = pair.rest + 0.3 * system.velocity(pair.rest);
   const Net stage = x;
-  system.restore_volume(x);
+  system.restore_constraints(x);
   EXPECT_GT((x - stage).norm(), 1e-3);
   for (size_t p = 0; p < 2; ++p) {
     const Net now = pair.parameters.particles[p].block.rows(x);

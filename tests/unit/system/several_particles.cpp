@@ -92,7 +92,7 @@ TEST(SeveralParticles, ConserveTheirVolumes) {
   Several pair({{3, Vec3(0, 0, 0), 2, soft}, {4, Vec3(0, 0, 2.4), 0.5, hard}});
   Capsule system = pair.system();
   Net x = pair.x;
-  system.restore_volume(x);
+  system.restore_constraints(x);
   const Net v = system.velocity(x), flux = system.geometry().volume_gradient(x);
   for (size_t p = 0; p < 2; ++p) {
     EXPECT_NEAR(system.volume_error(surface::volume(pair.spaces[p], pair.velocity_of(p, x)), p), 0, 1e-14) << p;
