@@ -237,7 +237,7 @@ class PeriodicSearch : public SteadyRun {
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     found_.period = returns_->period(), found_.mean_velocity = returns_->mean_velocity();
-    system_->motion->restore_volume(state_.x);
+    system_->motion->restore_constraints(state_.x);
     write();
     if (!found.converged)
       throw RunFailure(formatted("no periodic motion was found: after %d periods the residual is %.2g", found.iterations, found.rest));
@@ -264,7 +264,7 @@ class BranchSearch : public SteadyRun {
       stop_where_told();
       use(pool_.at({point->parameter, point->second}, state_.x));
       state_.x = point->x, state_.time = k, totals_.step = k;
-      system_->motion->restore_volume(state_.x);
+      system_->motion->restore_constraints(state_.x);
       report_.iterations = point->iterations, report_.error = point->rest, found_.point = *point;
       write();
       if (ranks_.rank() == 0 && !request_.quiet)
