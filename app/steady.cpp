@@ -33,7 +33,7 @@ namespace {
 class SteadyRun {
  public:
   SteadyRun(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), pool_(scene, request.changed, ranks_, phases_, told_), system_(pool_.latest()),
+      : scene_(scene), request_(request), pool_(scene, request.changed, ranks_, phases_, stop_requested_), system_(pool_.latest()),
         chosen_(plan(scene, system_->particle->body(), ranks_.size())),
         results_(scene, request, system_->particle->body(), system_->particle->bezier(), ranks_) {
     ranks_.measure(phases_);
@@ -169,7 +169,7 @@ class SteadyRun {
 
   const Clock::time_point start_ = Clock::now();
   // Function that returns whether this rank has received a stop signal or has passed the wall-clock limit.
-  const std::function<bool()> told_ = [this] { return stop_requested() || scene_.output.too_late(seconds()); };
+  const std::function<bool()> stop_requested_ = [this] { return stop_requested() || scene_.output.too_late(seconds()); };
   Phases phases_ = started();
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};
   int earlier_coarsenings_ = 0;  // coarsenings up to the last recorded shape
@@ -237,7 +237,6 @@ class PeriodicSearch : public SteadyRun {
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     found_.period = returns_->period(), found_.mean_velocity = returns_->mean_velocity();
-    system_->motion->restore_constraints(state_.x);
     write();
     if (!found.converged)
       throw RunFailure(formatted("no periodic motion was found: after %d periods the residual is %.2g", found.iterations, found.rest));

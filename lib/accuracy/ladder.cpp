@@ -311,7 +311,7 @@ class Ladder {
   std::unique_ptr<output::Occupation> occupation_;  // lock of the results directory, on the first rank
   std::vector<Outcome> levels_;                     // finished levels, on the first rank
   std::optional<Outcome> looser_;                   // result of level 2 with a looser time tolerance, on the first rank
-  std::vector<RequestResult> answers_;                     // estimated errors for the requests, on the first rank
+  std::vector<RequestResult> answers_;              // estimated errors for the requests, on the first rank
   int count_ = 0;                                   // number of finished levels
   // wall seconds of all runs, on the first rank. Finished runs include the time before they were resumed
   double seconds_ = 0;

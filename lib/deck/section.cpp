@@ -230,6 +230,13 @@ void Section::without_effect(const std::vector<std::string>& names, const std::s
       record.idle.push_back(record.path_of(entry.key) + " has no effect " + because + ": remove the key.");
 }
 
+void Section::without_effect_except(const std::string& name, const std::string& because) {
+  std::vector<std::string> others;
+  for (const Entry& entry : state_->record->entries)
+    if (entry.key != name) others.push_back(entry.key);
+  without_effect(others, because);
+}
+
 std::vector<std::string> Section::idle_keys() const { return deck::idle_keys(*state_->record); }
 
 Section Section::enter(std::string_view name, std::string_view meaning) {

@@ -48,8 +48,8 @@ class WallRepulsion : public Load {
   Repulsion repulsion_;
   // per element: values of its basis functions, one row per Gauss point
   std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;
-  std::vector<Eigen::VectorXd> area_;  // per element: unstressed area that each Gauss point represents
-  std::vector<RepulsionPoint> latest_;                                                                  // points at the linearisation
+  std::vector<Eigen::VectorXd> area_;   // per element: unstressed area that each Gauss point represents
+  std::vector<RepulsionPoint> latest_;  // points at the linearisation
 };
 
 }  // namespace tanktread::membrane

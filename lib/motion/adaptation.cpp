@@ -4,21 +4,12 @@
 #include <cmath>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/section.hpp"
 
 namespace tanktread::motion {
-
-namespace {
-/// Keys that have an effect only if the mesh is adapted.
-const std::vector<std::string> criteria{
-    "indicator", "surface tolerance", "load tolerance", "reference length", "reference curvature variation", "reference traction variation",
-    "reference velocity variation", "limit aspect ratio", "order", "film resolution", "minimum length", "interval", "levels",
-    "largest number of points", "coarsen", "coarsening margin", "coarsening tolerance"};
-}  // namespace
 
 void AdaptationOptions::declare(deck::Section& section) {
   section.key("enabled", enabled, "whether the surface mesh is refined where and when the particle's deformation requires it");
@@ -77,7 +68,7 @@ void AdaptationOptions::declare(deck::Section& section) {
   section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length",
               "largest allowed displacement of the surface by one coarsening of the mesh; default 1e-4 R_C, where R_C is the radius of the "
               "sphere with the particle's volume");
-  if (!enabled) section.without_effect(criteria, "without Adaptation/enabled");
+  if (!enabled) section.without_effect_except("enabled", "without Adaptation/enabled");
 }
 
 void AdaptationOptions::check(int first_points, double first_length) const {

@@ -158,6 +158,7 @@ PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::Para
   };
   const coupling::FixedPoint solver("anderson", nox);
   const coupling::NonlinearReport found = solver.solve(back, norm, map.options().tolerance, map.options().iterations, x);
+  map.dynamics().restore_constraints(x);
   return {found.iterations, found.converged, rest};
 }
 

@@ -292,7 +292,7 @@ Parity::Parity(const Symmetry& symmetry, const Vec3& of_planes)
   for (const int a : symmetry.fundamental()) signs_.row(a).setOnes(), scalar_signs_[a] = 1;
   for (const Image& g : symmetry.images()) {  // adds, at the image b of each fundamental point a, the factors by which g multiplies a vector (signs_)
                                               // and a scalar (scalar_signs_)
-    const double turned = (g.signs.array() < 0).select(of_planes, Vec3::Ones()).prod();
+    const double turned = character(g.signs, of_planes);
     for (const int a : symmetry.fundamental()) {
       const int b = g.point[static_cast<std::size_t>(a)];
       signs_.row(b) += turned * g.signs.transpose(), scalar_signs_[b] += turned;

@@ -138,9 +138,9 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
 }
 
 /// Returns v_inf - (1/mu) R^-1 A f of (4.2), with the ambient velocity v_inf, the collocation matrix R and the single layer A. Adds the velocity that
-/// plates and posts cause in response to the load f and, if given, to the velocity of the particles. In a tube whose wall
-/// unknowns are eliminated, adds the response of the wall in the same way. Stores this response in `answer`, if given, unless a linear system for the
-/// velocity follows, because the solution changes the response.
+/// plates and posts cause in response to the load f and, if given, to the velocity of the particles. In a tube whose wall unknowns are eliminated,
+/// adds the response of the wall in the same way. Stores this response in `answer`, if given, unless a linear system for the velocity follows,
+/// because the solution changes the response.
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer) {
   Net u = layers_.apply_single(x, f);
   if (flow_at_targets()) {

@@ -53,8 +53,8 @@ Vec3 Capsule::cell_origin(const Net& x) const {
   return x.col(0).mean() * Vec3::UnitX();
 }
 
-/// Adds to the rank-owned rows of u the velocity (2.47) that the solids cause at the targets in response to the load f and the velocity of
-/// the particles. If `with_empty`, also adds the velocity that the solids cause without particles.
+/// Adds to the rank-owned rows of u the velocity (2.47) that the solids cause at the targets in response to the load f and the velocity of the
+/// particles. If `with_empty`, also adds the velocity that the solids cause without particles.
 void Capsule::add_solids(const Net& x, const Net& f, const Net& particle_velocity, bool with_empty, Net& u) {
   const auto clock = phases_.time("wall");
   set_solid_shape(x);

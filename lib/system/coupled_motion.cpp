@@ -32,7 +32,7 @@ Eigen::SparseMatrix<double> CoupledMotion::basis(std::size_t k, const surface::S
   for (const surface::Image& g : symmetry.images()) {
     std::vector<std::pair<int, double>> map = field.images(g);
     if (map.empty()) break;
-    const double turned = (g.signs.array() < 0).select(parity, Vec3::Ones()).prod();
+    const double turned = surface::character(g.signs, parity);
     for (auto& [to, sign] : map) sign *= turned;
     maps.push_back(std::move(map));
   }

@@ -36,14 +36,12 @@ class Images {
   spline::PointSearch search_;
 };
 
-/// Returns the factor by which a reflection multiplies a scalar field of the parity with these factors of the planes.
-double character(const Vec3& signs, const Vec3& of_planes) { return (signs.array() < 0).select(of_planes, Vec3::Ones()).prod(); }
-
 /// Returns one set of factors of the planes for each parity that differs on the group `wall` and contains fields with the symmetry `fields`.
 std::vector<Vec3> parities(const surface::Symmetry& wall, const surface::Symmetry& fields) {
   std::vector<Vec3> found;
   const auto agree = [](const surface::Symmetry& on, const Vec3& a, const Vec3& b) {
-    return std::ranges::all_of(on.images(), [&](const surface::Image& g) { return character(g.signs, a) == character(g.signs, b); });
+    const auto same = [&](const surface::Image& g) { return surface::character(g.signs, a) == surface::character(g.signs, b); };
+    return std::ranges::all_of(on.images(), same);
   };
   for (int k = 0; k < 8; ++k) {
     const Vec3 planes(k & 1 ? -1 : 1, k & 2 ? -1 : 1, k & 4 ? -1 : 1);

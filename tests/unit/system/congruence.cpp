@@ -1,4 +1,4 @@
-// Rotations and reflections that map the wall of a duct to itself, and the operator of a wall of which they map rows to rows.
+// Rotations and reflections that map the wall of a duct to itself, and the operator of a wall: they map its rows to rows, and split it into parities.
 
 #include <cmath>
 #include <memory>
