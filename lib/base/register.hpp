@@ -84,17 +84,6 @@ inline FloatRegister inverse_root(const FloatRegister& a, const FloatRegister& l
 #endif
 }
 
-/// Returns its argument, a difference of two numbers. Kernels are compiled so that the compiler may reorder sums; this function prevents the compiler
-/// from merging the difference with other sums.
-inline FloatRegister as_it_stands(FloatRegister difference) {
-#if defined(__x86_64__)
-  asm("" : "+v"(difference));
-#elif defined(__aarch64__)
-  asm("" : "+w"(difference));
-#endif
-  return difference;
-}
-
 /// Returns the sum of all lanes of a register, adding neighbouring lanes first.
 inline double sum(const Register& a) {
   Register part = a;

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "base/errors.hpp"
 #include "deck/section.hpp"
-#include "deck/words.hpp"
 
 namespace tanktread::quadrature {
 
@@ -24,30 +22,17 @@ void Options::declare(deck::Section& section) {
               "target sums over every far node. `tree`: distant targets and nodes interact as clusters, to the same Quadrature/tolerance, "
               "in a time proportional to the number of elements. `auto`: the faster of the two, and `dense` for a Spectrum, whose finite "
               "differences need sums that are smooth functions of the shape");
-  section.key(
-      "far precision", far_precision, deck::Choice{"auto", "single", "double"},
-      "floating-point precision of the terms of boundary integrals over far elements. `single`: 1.5 times as fast, with errors of about "
-      "1e-7 of the sum of the magnitudes of the terms, and of about 1e-8 in the shape; results of a mirrored, reordered or shifted deck in "
-      "unbounded fluid then agree to 1e-8 instead of 1e-10. `double`: no such error. `auto`: `single` if Quadrature/tolerance is at least 1e-3 and "
-      "the deck has no Spectrum");
   if (rule == LayerRule::adaptive) section.without_effect({"points"}, "with Quadrature/rule `adaptive`");
 }
 
 void Options::choose_smooth_sums() {
   if (far_sum == "auto") far_sum = "dense";
-  if (far_precision == "auto") far_precision = "double";
 }
 
 Options Options::for_matrix() const {
   Options options = *this;
   options.tolerance = std::max(1e-12, std::min(1e-7, tolerance / 10));
   return options;
-}
-
-void Options::check() const {
-  if (far_precision == "single" && tolerance < 1e-6)
-    throw UserError("Quadrature/far precision `single`, with errors of about 1e-7, cannot meet Quadrature/tolerance " +
-                    deck::number_text(tolerance) + ": give a tolerance of 1e-6 or more, or `double`.");
 }
 
 }  // namespace tanktread::quadrature

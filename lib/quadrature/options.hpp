@@ -21,13 +21,8 @@ struct Options {
   int points = 8;                 ///< Gauss points per direction of the rules `fixed` and `desingularised`
   std::string far_sum = "auto";   ///< `dense`: sums over all far nodes; `tree`: sums over clusters of nodes; `auto`: the faster one
 
-  std::string far_precision = "auto";  ///< precision of the terms of far sums: `single`, `double`; `auto`: single if `tolerance` >= 1e-3
-
-  bool far_in_single() const { return far_precision == "single" || (far_precision == "auto" && tolerance >= 1e-3); }
-
-  /// Replaces the value `auto` of the keys `far sum` and `far precision` by `dense` and `double`. Sums by clusters jump when clusters change with the
-  /// shape, and sums in single precision jump by rounding. Finite differences with small displacements, as for a spectrum, amplify the jumps. With
-  /// `auto`, the leading growth rate of a capsule was wrong by 1 to 25 %.
+  /// Replaces the value `auto` of the key `far sum` by `dense`. Sums by clusters jump when clusters change with the shape. Finite differences with
+  /// small displacements, as for a spectrum, amplify the jumps: with `auto`, the leading growth rate of a capsule was wrong by 1 to 25 %.
   void choose_smooth_sums();
 
   /// Returns options with a smaller tolerance, for single-layer matrices and integrals of walls, plates and posts that are computed only once.
@@ -36,7 +31,6 @@ struct Options {
   bool operator==(const Options&) const = default;
 
   void declare(deck::Section& section);
-  void check() const;
 };
 
 }  // namespace tanktread::quadrature

@@ -328,11 +328,6 @@ void add_particles(Lines& lines, const std::vector<ParticleScene>& alone, int n_
   lines.back().first += last;
 }
 
-std::string far_sum_line(const Scene& scene, bool tree) {
-  const std::string sum = tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target with every node";
-  return sum + (scene.quadrature.far_in_single() ? ", terms in single precision" : "");
-}
-
 }  // namespace
 
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks) {
@@ -350,7 +345,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
     lines.emplace_back("deformation", body.plane.description());
     lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   }
-  lines.emplace_back("far sum", far_sum_line(scene, tree));
+  lines.emplace_back("far sum", tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target with every node");
   lines.emplace_back("kernels", instructions());
   if (scene.has_gaps())
     lines.emplace_back("contact",

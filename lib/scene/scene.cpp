@@ -237,7 +237,6 @@ void Scene::declare(deck::Section& root) {
 }
 
 void Scene::check() const {
-  quadrature.check();
   if (solvers.rigid_bodies == coupling::BodyEquation::first_kind) check_first_kind(*this);
   Rejections found;
   reject_power(*this, first().load_is_strong(), found);

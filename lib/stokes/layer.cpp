@@ -28,7 +28,7 @@ void Layer::set_reference(const Net& unstressed, std::vector<bool> per_current_a
 }
 
 void Layer::make_tree() {
-  tree_.emplace(tree_tolerance(), sources_.precision());
+  tree_.emplace(tree_tolerance());
   tree_->share(part_, parts_);
 }
 

@@ -11,9 +11,8 @@ namespace {
 
 /// Returns the options, with an eighth of the tolerance for the double layer. Quadrature rules are chosen for the kernel of the single layer. The
 /// kernel of the double layer is singular by one order more, so that its error with the same rule is up to five times as large
-/// (tests/verify/layers.cpp). The precision of the far sum is chosen from the unchanged tolerance of the deck.
+/// (tests/verify/layers.cpp).
 quadrature::Options for_kernel(quadrature::Options options, LayerKernel kernel) {
-  options.far_precision = options.far_in_single() ? "single" : "double";
   if (kernel == LayerKernel::double_layer) options.tolerance /= 8;
   return options;
 }
@@ -105,8 +104,8 @@ void LayerSources::set_moments_of_constant(int component) {
 
 Net LayerSources::direct_sum(const NodeVectors& x, std::span<const Vec3> at, std::span<const Vec3> f0) {
   Net sums(at.size(), 3);
-  single() ? far_sums(charges(x, density), at, sums.data(), precision())
-           : far_sums(stresslets(x, density, normal), at, f0, sums.data(), precision());
+  single() ? far_sums(charges(x, density), at, sums.data())
+           : far_sums(stresslets(x, density, normal), at, f0, sums.data());
   evaluations.far += static_cast<long long>(at.size()) * n_nodes();
   return sums;
 }

@@ -41,7 +41,6 @@ class LayerSources {
   bool on_reference(int e) const {
     return measure_ == Measure::reference || (measure_ == Measure::by_element && !reference_.per_current_area[static_cast<std::size_t>(e)]);
   }
-  Precision precision() const { return surface.options.far_in_single() ? Precision::single : Precision::full; }
   bool desingularised() const { return single() && surface.options.rule == quadrature::LayerRule::desingularised; }
 
   /// See Layer::set_reference.

@@ -64,7 +64,6 @@ SETTINGS = [
     (["Flow/type=linear", "Flow/gradient=[1, 2, 3]"], ["Flow/gradient", "nine numbers", "[1, 2, 3]"]),
     (["Membrane/law=3"], ["Membrane/law", "neo-Hookean", "3"]),
     (["Time/final time/value=3"], ["Time/final time", "a number", "a section of keys"]),
-    (["Quadrature/far precision=single", "Quadrature/tolerance=1e-8"], ["Quadrature/far precision", "1e-08", "`double`"]),
     (["Quadrature/tolerance=nan"], ["Quadrature/tolerance", "a number", "nan"]),
     # values outside the allowed range
     (["Membrane/shear modulus=-1"], ["Membrane/shear modulus", "positive", "force/length", "-1"]),

@@ -47,9 +47,6 @@ inline Stresslets stresslets(const std::vector<double> (&x)[3], const std::vecto
           n[2].data()};
 }
 
-/// Precision of the terms of a far sum. The sums are accumulated in double precision.
-enum class Precision { single, full };
-
 /// Number of targets that are processed together in one pass over the nodes.
 constexpr int far_block = 16;
 
@@ -65,7 +62,7 @@ Number coincident(const Number& x0, const Number& y0, const Number& z0) {
 void stokeslet_sum(const Charges& forces, const double* target, double* u);
 
 /// Computes the stokeslet_sum() of point forces for any number of targets k; result u[3 k + c].
-void far_sums(const Charges& forces, std::span<const Vec3> targets, double* u, Precision precision = Precision::full);
+void far_sums(const Charges& forces, std::span<const Vec3> targets, double* u);
 
 /// Computes the stokeslet_sum() of a few point forces at one target x0[3]; result u[3]. If a better quadrature rule replaces these nodes, the caller
 /// subtracts this sum from the far sum.
@@ -75,22 +72,13 @@ void node_sum(const Charges& forces, const double* x0, double* u);
 /// or one target. In far_sum(), target[far_block c + l] is coordinate c = 0, 1, 2 of target l, and for c = 3, 4, 5 component c - 3 of the velocity v0
 /// there.
 void far_sum(const Stresslets& nodes, const double* target, double* u);
-void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision = Precision::full);
+void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u);
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
-
-/// Number of consecutive terms that are summed in single precision before their sum is added in double precision. The functions below compute
-/// stokeslet_sum() and far_sum() with terms in single precision. Position differences have a relative error of 1e-7 even for close points, because
-/// the part of a position that single precision drops is stored separately. The error is 3e-8 of the sum of the magnitudes of the terms (root mean
-/// square; at most 3e-7). The result of one target does not depend on the other targets.
-constexpr int single_run = 64;
-void stokeslet_sum_in_single(const Charges& forces, const double* target, double* u);
-void far_sum_in_single(const Stresslets& nodes, const double* target, double* u);
 
 /// Kernels for TreeSum: each computes a sum over sources with several components, at far_block targets. Targets have the layout of stokeslet_sum().
 /// Component c of the result at target l is value[far_block c + l].
 void stresslet_sum(const Charges& points, const double* target, double* value);
 void normal_stress_sum(const Charges& points, const double* target, double* value);
-void stresslet_sum_in_single(const Charges& points, const double* target, double* value);
 using KernelSum = void (*)(const Charges& points, const double* target, double* value);
 
 /// Computes a sum `kernel` that has three components per target, for any number of targets k; result u[3 k + c].
@@ -98,7 +86,7 @@ void kernel_sums(KernelSum kernel, const Charges& points, std::span<const Vec3> 
 
 struct StokesletKernel {  ///< kernel for TreeSum: maps forces f to the velocities G f
   static constexpr int in = 3, out = 3;
-  static constexpr auto *sum = stokeslet_sum, *single = stokeslet_sum_in_single;
+  static constexpr auto* sum = stokeslet_sum;
 };
 /// Order of the six components of a Stokeslet and of assembled rows: 11, 12, 13, 22, 23, 33.
 constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
@@ -107,11 +95,11 @@ constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
 struct StressletKernel {  ///< kernel for TreeSum: maps symmetric stresslet strengths (S_jk + S_kj)/2, ordered as in `stresses`, to T_ijk S_jk
   static constexpr int in = 6, out = 3;
-  static constexpr auto *sum = stresslet_sum, *single = stresslet_sum_in_single;
+  static constexpr auto* sum = stresslet_sum;
 };
 struct NormalStressKernel {  ///< kernel for TreeSum: maps normals n to T_ijk n_k, with the components ij ordered as in `stresses`
   static constexpr int in = 3, out = 6;
-  static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // double precision, because it is evaluated only once per shape
+  static constexpr auto* sum = normal_stress_sum;
 };
 
 }  // namespace tanktread::stokes

@@ -31,12 +31,10 @@ void sums_by_blocks(const Nodes& nodes, const std::array<std::span<const Vec3>, 
 
 }  // namespace
 
-void far_sums(const Charges& forces, std::span<const Vec3> targets, double* u, Precision precision) {
-  kernel_sums(precision == Precision::single ? stokeslet_sum_in_single : stokeslet_sum, forces, targets, u);
-}
+void far_sums(const Charges& forces, std::span<const Vec3> targets, double* u) { kernel_sums(stokeslet_sum, forces, targets, u); }
 
-void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision) {
-  sums_by_blocks<2>(nodes, {targets, v0}, u, precision == Precision::single ? far_sum_in_single : far_sum);
+void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u) {
+  sums_by_blocks<2>(nodes, {targets, v0}, u, far_sum);
 }
 
 void kernel_sums(KernelSum kernel, const Charges& points, std::span<const Vec3> targets, double* u) {

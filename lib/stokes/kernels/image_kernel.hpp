@@ -19,11 +19,11 @@ void image_stokeslet_sum(const Charges& points, const double* target, double* va
 void image_stresslet_sum(const Charges& points, const double* target, double* value);
 struct ImageStokesletKernel {
   static constexpr int in = 3, out = 3;
-  static constexpr auto *sum = image_stokeslet_sum, *single = sum;  // always in double precision
+  static constexpr auto* sum = image_stokeslet_sum;
 };
 struct ImageStressletKernel {
   static constexpr int in = 6, out = 3;
-  static constexpr auto *sum = image_stresslet_sum, *single = sum;
+  static constexpr auto* sum = image_stresslet_sum;
 };
 
 /// Compute the velocity u at a target due to the image of one panel in the wall (single or double layer), or the moments of this image, by a

@@ -45,8 +45,8 @@ void reflect(ChebyshevBox& box, const surface::Reflection& image) {
 
 }  // namespace
 
-TreeSum::TreeSum(double tolerance, Precision precision)
-    : precision_(precision), sources_(allowance * tolerance, source_leaf, 1), target_tree_(allowance * tolerance, target_leaf, far_block) {}
+TreeSum::TreeSum(double tolerance)
+    : sources_(allowance * tolerance, source_leaf, 1), target_tree_(allowance * tolerance, target_leaf, far_block) {}
 
 void TreeSum::set_sources(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
                     std::span<const surface::Reflection> reflections) {

@@ -20,7 +20,7 @@ namespace tanktread::stokes {
 class TreeSum {
  public:
   /// `tolerance`: error of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
-  explicit TreeSum(double tolerance, Precision precision = Precision::full);
+  explicit TreeSum(double tolerance);
 
   /// Sets the positions x of the nodes, and all n targets. The nodes starts[g] .. starts[g + 1] - 1 (group g) always stay in the same cluster. The
   /// sums have n rows for the targets, followed by n rows for each entry of `reflections`: row i + n k belongs to target i reflected by reflections[k
@@ -39,7 +39,7 @@ class TreeSum {
   /// row i is values[Kernel::out i + c].
   template <class Kernel>
   void sum(const std::array<const double*, 6>& strengths, double* values) {
-    in_ = Kernel::in, out_ = Kernel::out, kernel_ = precision_ == Precision::single ? Kernel::single : Kernel::sum;
+    in_ = Kernel::in, out_ = Kernel::out, kernel_ = Kernel::sum;
     sum(strengths, values);
   }
 
@@ -67,7 +67,6 @@ class TreeSum {
   void add(const Pair& pair);
   void interpolate_downwards();
 
-  Precision precision_;
   int part_ = 0, parts_ = 1;
   int in_ = 3, out_ = 3;  // in_: number of components of a source strength. out_: number of components of the sum at a target
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
