@@ -1,35 +1,35 @@
 #include "stokes/layer.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <stdexcept>
 #include <typeinfo>
 #include <utility>
 
 #include "base/indices.hpp"
+#include "stokes/closed_surface_identities.hpp"
 
 namespace tanktread::stokes {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : sources_(kernel, space, sites, options, std::move(factor)) {
-  if (sums_by_tree(space, options)) make_tree();
+  if (sums_by_tree(space, options)) use_clusters();
   fundamental_sites_ = indices(sites.size());
 }
 
 void Layer::set_symmetry(const surface::Symmetry& symmetry) {
   sources_.surface.set_symmetry(symmetry);
   if (sources_.surface.n_sites == sources_.surface.n_points) fundamental_sites_ = symmetry.fundamental();
-  tree_rows_.clear();
+  if (clusters_) clusters_->renew();
 }
 
 void Layer::set_reference(const Net& unstressed, std::vector<bool> per_current_area) {
   sources_.set_reference(unstressed, std::move(per_current_area));
 }
 
-void Layer::make_tree() {
-  tree_.emplace(tree_tolerance());
-  tree_->share(part_, parts_);
+void Layer::use_clusters() {
+  clusters_.emplace(cluster_tolerance());
+  clusters_->share(part_, parts_);
 }
 
 void Layer::use(std::unique_ptr<LayerMedium> medium) {
@@ -42,7 +42,7 @@ void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
   const auto* lattice = dynamic_cast<const Lattice*>(medium_.get());
   if (lattice && lattice->is(cell, how)) return;
   if (!lattice && typeid(*medium_) != typeid(LayerMedium)) throw std::logic_error("a layer has one medium, or is on a lattice");
-  if (!tree_ && sums_by_tree(lattice_images * n_nodes(), sources_.surface.options)) make_tree();
+  if (!clusters_ && sums_by_tree(lattice_images * n_nodes(), sources_.surface.options)) use_clusters();
   use(std::make_unique<Lattice>(cell, how));
 }
 
@@ -55,24 +55,22 @@ void Layer::share(int part, int parts, std::vector<int> everybody) {
   part_ = part, parts_ = parts;
   everybody_ = std::move(everybody);
   if (!shared()) return;
-  tree_->share(part, parts);
+  clusters_->share(part, parts);
   medium_->share(part, parts);
-  tree_rows_.clear();
 }
 
 void Layer::set_shape(const Net& x, Measure measure) {
   const auto clock = sources_.phases.time("setup");
   if (!sources_.set_shape(x, measure)) return;
-  tree_rows_.clear();
   medium_->set_sources(sources_);
-  if (tree_) tree_->repeat(medium_->node_shifts());
+  if (clusters_) clusters_->repeat(medium_->node_shifts());
 }
 
 void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
   const LayerSurface& surface = sources_.surface;
   assert(surface.n_sites > 0 && "a layer is for sites or for points off its surfaces");
   sources_.set_density(f);
-  const std::span<const int> far_rows = shared() ? everybody_ : sites, in_tree = tree_ ? std::span<const int>(fundamental_sites_) : sites;
+  const std::span<const int> far_rows = shared() ? everybody_ : sites, in_tree = clusters_ ? std::span<const int>(fundamental_sites_) : sites;
   Net at(u.rows(), 3), f0 = Net::Zero(u.rows(), 3);
   for (const int i : in_tree) at.row(i) = surface.site(i).transpose();
   for (const int i : far_rows)
@@ -126,104 +124,21 @@ void Layer::add_self(const LayerTargets& targets, Net& u) {
       u.row(i) +=
           sources_.beyond_far_sum(pair.panel, table, &pair, targets.at.row(i), targets.f0.row(i), sources_.evaluations.self).transpose();
     }
-  if (sources_.desingularised()) subtract_identities(targets.rows, u);
+  if (sources_.desingularised()) subtract_identities(sources_, targets.rows, u);
 }
 
-/// Returns the positions of the targets `rows` for the far sums.
-std::vector<Vec3> Layer::far_targets(const LayerTargets& targets, std::span<const int> rows) const {
-  std::vector<Vec3> at = rows_of(targets.at, rows);
-  for (Vec3& x : at) x = medium_->wrapped(x);
-  return at;
-}
-
+/// Adds the sums over all far nodes, without the factor 1/(8 pi).
 void Layer::add_far(const LayerTargets& targets, Net& u) {
   const auto clock = sources_.phases.time("far");
-  if (tree_) {
-    place_tree(targets);
-    single() ? add_forces_by_clusters(targets, u) : add_stresslets_by_clusters(targets, u);
-    sources_.evaluations.far += tree_->interactions();
-    return;
-  }
-  const std::vector<Vec3> places = far_targets(targets, targets.far_rows), f0 = rows_of(targets.f0, targets.far_rows);
-  Net all = Net::Zero(static_cast<Eigen::Index>(places.size()), 3);
+  if (clusters_) return clusters_->add(sources_, *medium_, targets, u);
+  const std::vector<Vec3> at = wrapped(*medium_, targets, targets.far_rows), f0 = rows_of(targets.f0, targets.far_rows);
+  Net all = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
   for (const Vec3& image : medium_->node_shifts()) {
-    std::vector<Vec3> at = places;
-    for (Vec3& x : at) x -= image;
-    all += sources_.direct_sum(medium_->nodes(sources_), at, f0);
+    std::vector<Vec3> displaced = at;
+    for (Vec3& x : displaced) x -= image;
+    all += sources_.direct_sum(medium_->nodes(sources_), displaced, f0);
   }
-  for (std::size_t k = 0; k < places.size(); ++k) u.row(targets.far_rows[k]) = all.row(static_cast<Eigen::Index>(k));
-}
-
-/// Sets the nodes and targets of the tree of clusters, and for a double layer computes the sum of T_ijk n_k over all far nodes at the targets. The
-/// tree and these sums are reused if the shape and the targets have not changed, because a Krylov solver applies the layer of one shape many times.
-/// Row k + g n of the tree's sums belongs to symmetry image g of target k (g = 0: the target itself), where n is the number of targets.
-void Layer::place_tree(const LayerTargets& targets) {
-  std::vector<Vec3> at = far_targets(targets, targets.in_tree);
-  if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;
-  tree_at_ = std::move(at);
-  tree_rows_.assign(targets.far_rows.begin(), targets.far_rows.end());
-  if (medium_->wraps())
-    tree_->set_sources(medium_->nodes(sources_), indices(n_nodes() + 1), tree_at_);
-  else
-    sources_.surface.set_sources_of(*tree_, tree_at_);
-  std::vector<int> wanted;
-  const std::size_t reflections = medium_->wraps() ? 0 : sources_.surface.reflections().size();
-  for (std::size_t g = 0; g <= reflections; ++g)
-    for (const int i : tree_rows_) {
-      const auto k = std::ranges::lower_bound(targets.in_tree, i) - targets.in_tree.begin();
-      assert(targets.in_tree[k] == i && "rows are of fundamental sites");
-      wanted.push_back(static_cast<int>(k + static_cast<std::ptrdiff_t>(g * tree_at_.size())));
-    }
-  tree_->want(wanted);
-  if (single()) return;
-  assert(reflections == 0);
-  stress_.resize(6 * tree_at_.size());
-  const auto& normal = sources_.normal;
-  tree_->sum<NormalStressKernel>({normal[0].data(), normal[1].data(), normal[2].data()}, stress_.data());
-  sources_.evaluations.far += tree_->interactions();
-}
-
-/// Adds the far sums of the single layer by clusters. In a symmetric scene the sources are the nodes of the fundamental panels, and the sums at the
-/// reflections of the targets are added (2.19). If the medium is a lattice, which shifts each node and target into the unit cell, symmetry cannot be
-/// used: the sources are the nodes of all panels, and targets have no reflections.
-void Layer::add_forces_by_clusters(const LayerTargets& targets, Net& u) {
-  const auto& [fundamental, weight] = sources_.surface.fundamental();
-  const bool all = medium_->wraps();
-  const std::span<const surface::Reflection> images = all ? std::span<const surface::Reflection>() : sources_.surface.reflections();
-  std::vector<double> strength[3];
-  for (int c = 0; c < 3 && all; ++c) strength[c] = sources_.density[c];
-  for (std::size_t k = 0; k < fundamental.size() && !all; ++k) {
-    const Panel& panel = sources_.surface.panels[fundamental[k]];
-    for (int c = 0; c < 3; ++c)
-      for (int q = 0; q < panel.table->n_nodes; ++q) strength[c].push_back(weight[k] * sources_.density[c][panel.first_node + q]);
-  }
-  const std::size_t n = tree_at_.size();
-  Net there(n * (images.size() + 1), 3);
-  tree_->sum<StokesletKernel>({strength[0].data(), strength[1].data(), strength[2].data()}, there.data());
-  for (const int i : targets.far_rows) {
-    const auto k = std::ranges::lower_bound(targets.in_tree, i) - targets.in_tree.begin();
-    u.row(i) = there.row(k);
-    for (std::size_t g = 0; g < images.size(); ++g)
-      u.row(i) += there.row(k + static_cast<Eigen::Index>((g + 1) * n)).cwiseProduct(images[g].signs.transpose());
-  }
-}
-
-/// Computes the far sum of the double layer by clusters, sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k. The sums are over the far nodes q. f
-/// is the density, m its mean, and f0 the constant that is subtracted from f for the target. The sum is exactly 0 for a uniform density.
-void Layer::add_stresslets_by_clusters(const LayerTargets& targets, Net& u) {
-  const Vec3 mean = sources_.mean_density();
-  sources_.set_moments(mean);
-  std::array<const double*, 6> strength;
-  for (std::size_t c = 0; c < 6; ++c) strength[c] = sources_.moment[c].data();
-  Net there(tree_at_.size(), 3);
-  tree_->sum<StressletKernel>(strength, there.data());
-  for (const int i : targets.far_rows) {
-    const auto k = std::ranges::lower_bound(targets.in_tree, i) - targets.in_tree.begin();
-    const double* s = &stress_[static_cast<std::size_t>(6 * k)];
-    Mat3 stress;
-    stress << s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2];
-    u.row(i) = there.row(k) - (stress * (targets.f0.row(i).transpose() - mean)).transpose();
-  }
+  for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.far_rows[k]) = all.row(static_cast<Eigen::Index>(k));
 }
 
 Layer::Near Layer::near(const Net& at, std::span<const int> targets, int first_image_row) {

@@ -11,19 +11,13 @@
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
+#include "stokes/cluster_sums.hpp"
 #include "stokes/layer_sources.hpp"
 #include "stokes/medium/lattice.hpp"
 #include "stokes/medium/medium.hpp"
-#include "stokes/sums/tree_sum.hpp"
 #include "surface/symmetry.hpp"
 
 namespace tanktread::stokes {
-
-/// List of control points for each target: target k has point[first[k]] .. point[first[k + 1] - 1].
-struct NearPoints {
-  std::vector<std::size_t> first{0};
-  std::vector<int> point;
-};
 
 /// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density,
 /// dGamma is the area element, and k_p is a factor per surface, by default 1. The viscosity is not included.
@@ -35,7 +29,7 @@ struct NearPoints {
 /// contains the target equals k_p times the sum of the principal value and f/2. If f is a rigid motion of all surfaces, u is 0. For a target off the
 /// surfaces, f(x0) is a constant given by the caller, by default 0. This constant does not change u if the target is outside a closed surface (2.3).
 ///
-/// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (TreeSum). On panels that are close to
+/// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (ClusterSums). On panels close to
 /// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's terms of this sum. The tolerance of this
 /// quadrature is relative to an integral over the panel's whole surface. The value at a target does not depend on which other targets are requested.
 /// The quadrature rule `desingularised` uses only the Gauss nodes. This rule subtracts the singularity of the single layer by two identities of a
@@ -79,10 +73,10 @@ class Layer {
   /// `apply` computes only the share of this rank in the rows `everybody`. The caller must sum these rows over all ranks. Near-singular and singular
   /// quadrature is included only by the rank that requests the row.
   void share(int part, int parts, std::vector<int> everybody);
-  bool shared() const { return tree_ && parts_ > 1; }
+  bool shared() const { return clusters_ && parts_ > 1; }
 
   /// Returns whether far sums use clusters. If so, a few products are computed faster by `apply` than with assembled rows.
-  bool by_clusters() const { return tree_.has_value(); }
+  bool by_clusters() const { return clusters_.has_value(); }
 
   /// Sets the shape x, which is kept for any number of densities. `measure`: area to which the density of a single layer refers.
   void set_shape(const Net& x, Measure measure = Measure::current);
@@ -115,10 +109,10 @@ class Layer {
 
   /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3 x
   /// number of targets, 3 x number of control points).
-  void assemble(std::span<const int> sites, Rows<float>& a);
-  void assemble(std::span<const int> sites, Rows<double>& a);
-  void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
-  void assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
+  template <class Real>
+  void assemble(std::span<const int> sites, Rows<Real>& a);
+  template <class Real>
+  void assemble(const Net& at, std::span<const int> targets, Rows<Real>& a);
 
   /// Adds to the assembled rows `a` at `sites` the images of a periodic single layer that are not near (PeriodicSum).
   void assemble_remainder(std::span<const int> sites, Rows<double>& a);
@@ -148,46 +142,25 @@ class Layer {
   const Phases& phases() const { return sources_.phases; }
 
  private:
-  template <class Real>
-  class RowSums;
-
   bool single() const { return sources_.single(); }
   /// Returns the tolerance of the sum by clusters. For the single layer it is the tolerance of the deck. For the double layer it is half of this
   /// tolerance, with which the measured error is a quarter of the deck's tolerance. The options of a double layer contain an eighth of the deck's
   /// tolerance.
-  double tree_tolerance() const { return (single() ? 1 : 4) * sources_.surface.options.tolerance; }
-  void make_tree();
+  double cluster_tolerance() const { return (single() ? 1 : 4) * sources_.surface.options.tolerance; }
+  void use_clusters();
   void use(std::unique_ptr<LayerMedium> medium);
   void integrate(const LayerTargets& targets, const Near* kept, Net& u);
   void add_far(const LayerTargets& targets, Net& u);
-  std::vector<Vec3> far_targets(const LayerTargets& targets, std::span<const int> rows) const;
-  void place_tree(const LayerTargets& targets);
-  void add_forces_by_clusters(const LayerTargets& targets, Net& u);
-  void add_stresslets_by_clusters(const LayerTargets& targets, Net& u);
   void add_near(const LayerTargets& targets, Net& u);
   void add_kept(const LayerTargets& targets, const Near& kept, Net& u) const;
   void add_self(const LayerTargets& targets, Net& u);
-  Mat3 identities(int site) const;
-  void subtract_identities(std::span<const int> sites, Net& u);
-  template <class Real>
-  void subtract_identities(std::span<const int> sites, Rows<Real>& a) const;
-  void subtract_identities(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) const;
-  template <class Real>
-  void subtract_density_at_site(int site, Real* sums) const;
-  template <class Real>
-  void assemble_rows(std::span<const int> targets, const Net* at, Rows<Real>& a);
-  template <class Real>
-  void add_medium_rows(std::span<const int> targets, const Net* at, Rows<Real>& a);
 
   LayerSources sources_;
   std::unique_ptr<LayerMedium> medium_ = std::make_unique<LayerMedium>();
-  std::optional<TreeSum> tree_;         // clusters for far sums; not set if direct sums are used
-  std::vector<int> fundamental_sites_;  // targets in the tree
-  int part_ = 0, parts_ = 1;            // part of the far sums that this rank computes, and number of parts, see share()
-  std::vector<int> everybody_;          // rows whose far sums share() divides into parts
-  std::vector<Vec3> tree_at_;           // targets of the tree
-  std::vector<int> tree_rows_;          // rows that the tree computes; empty if the tree must be built anew
-  std::vector<double> stress_;          // sum of T_ijk n_k over the far nodes at the targets, six components each
+  std::optional<ClusterSums> clusters_;  // not set if far sums are direct
+  std::vector<int> fundamental_sites_;   // targets in the tree of clusters
+  int part_ = 0, parts_ = 1;             // part of the far sums that this rank computes, and number of parts, see share()
+  std::vector<int> everybody_;           // rows whose far sums share() divides into parts
 };
 
 }  // namespace tanktread::stokes

@@ -5,9 +5,8 @@
 #include <cassert>
 #include <cstdint>
 
-#include <Eigen/Geometry>
-
 #include "base/indices.hpp"
+#include "stokes/closed_surface_identities.hpp"
 #include "stokes/kernels/assembly_kernel.hpp"
 #include "stokes/layer.hpp"
 
@@ -92,14 +91,12 @@ void sort_and_drop_repeated(std::vector<int>& numbers) {
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-}  // namespace
-
 /// Assembles the integrals of kernel times basis function, one per control point and kernel component, for up to sixteen targets at a time.
 template <class Real>
-class Layer::RowSums {
+class RowSums {
  public:
   /// `at`: positions of targets off the surfaces, one row per target; if null, the targets are sites.
-  RowSums(Layer& layer, const Net* at) : layer_(layer), sources_(layer.sources_), at_(at) {}
+  RowSums(LayerSources& sources, const LayerMedium& medium, const Net* at) : sources_(sources), medium_(medium), at_(at) {}
 
   FarBasis<Real> basis;
   std::vector<Real> sums;  ///< sums[m (6 row + c) + l], with m = assembly_block: integral of kernel entry c (11, 12, 13, 22, 23, 33) times the basis
@@ -108,14 +105,13 @@ class Layer::RowSums {
   void add(std::span<const int> targets, int rows) {
     sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
     skip_.assign(basis.panels.size(), 0u);
-    const LayerMedium& medium = *layer_.medium_;
     const std::vector<Vec3> itself{Vec3::Zero()};
-    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], images() ? medium.panel_shifts() : itself, l);
-    for (const Vec3& image : images() ? medium.node_shifts() : itself) {
+    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], images() ? medium_.panel_shifts() : itself, l);
+    for (const Vec3& image : images() ? medium_.node_shifts() : itself) {
       double place[3 * assembly_block];
       for (int l = 0; l < assembly_block; ++l) {
         const Vec3 x0 = place_of(targets[std::min<std::size_t>(l, targets.size() - 1)]);
-        const Vec3 seen = images() ? Vec3(medium.wrapped(x0) - image) : x0;
+        const Vec3 seen = images() ? Vec3(medium_.wrapped(x0) - image) : x0;
         for (int c = 0; c < 3; ++c) place[assembly_block * c + l] = seen[c];
       }
       for (std::size_t k = 0; k < basis.panels.size(); ++k) add_far_panel(k, place, static_cast<int>(targets.size()));
@@ -124,7 +120,7 @@ class Layer::RowSums {
 
  private:
   Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : sources_.surface.site(target); }
-  bool images() const { return layer_.medium_->rows_include_images(); }
+  bool images() const { return medium_.rows_include_images(); }
 
   /// Adds the corrections by near-singular and singular quadrature for one target. `images`: displacements of the panels; a displaced panel is
   /// corrected if it is close to the target. On a lattice, the far sum that is corrected contains the nodes of displaced panels. l: index of the
@@ -157,7 +153,7 @@ class Layer::RowSums {
 
   void add_far_panel(std::size_t k, const double* place, int n_targets) {
     const int first = sources_.surface.panels[basis.panels[k]].first_node;
-    PanelNodes<Real> nodes = basis.nodes(sources_.surface, images() ? layer_.medium_->nodes(sources_) : sources_.surface.node, k);
+    PanelNodes<Real> nodes = basis.nodes(sources_.surface, images() ? medium_.nodes(sources_) : sources_.surface.node, k);
     if (sources_.single())
       nodes.weight = &sources_.weight[first];
     else
@@ -167,8 +163,8 @@ class Layer::RowSums {
     sources_.evaluations.far += static_cast<long long>(n_targets) * nodes.n_nodes;
   }
 
-  const Layer& layer_;
   LayerSources& sources_;
+  const LayerMedium& medium_;
   const Net* at_;
   std::vector<Real> kernel_;
   std::vector<double> moments_;
@@ -179,27 +175,27 @@ class Layer::RowSums {
 /// N_B(x_i) sum_C A_iC from the sum A_iB of each control point B. The subtracted term is thereby integrated by the same quadrature rules as the term
 /// with f(x).
 template <class Real>
-void Layer::subtract_density_at_site(int site, Real* sums) const {
+void subtract_density_at_site(const LayerSources& sources, int site, Real* sums) {
   double total[6] = {};
-  for (int p = 0; p < sources_.surface.n_points; ++p)
+  for (int p = 0; p < sources.surface.n_points; ++p)
     for (int c = 0; c < 6; ++c) total[c] += sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(p) + c)];
-  const auto [panel, basis] = sources_.surface.self_field.basis(site, sources_.surface.panels);
+  const auto [panel, basis] = sources.surface.self_field.basis(site, sources.surface.panels);
   for (int b = 0; b < basis.size(); ++b)
     for (int c = 0; c < 6; ++c)
-      sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(sources_.surface.panels.points(panel)[b]) + c)] -=
+      sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(sources.surface.panels.points(panel)[b]) + c)] -=
           static_cast<Real>(basis[b] * total[c]);
 }
 
 /// Adds the terms of the medium other than displaced images to the matrix rows `a` of the targets. For a double layer at sites, this includes the
 /// term of (2.2) that subtracts the density at the site.
 template <class Real>
-void Layer::add_medium_rows(std::span<const int> targets, const Net* at, Rows<Real>& a) {
-  const LayerSurface& surface = sources_.surface;
+void add_medium_rows(LayerSources& sources, LayerMedium& medium, std::span<const int> targets, const Net* at, Rows<Real>& a) {
+  const LayerSurface& surface = sources.surface;
   std::vector<Mat3> block;
   for (std::size_t k = 0; k < targets.size(); ++k) {
     block.assign(static_cast<std::size_t>(surface.n_points), Mat3::Zero());
-    if (!medium_->add_row(sources_, at ? Vec3(at->row(targets[k]).transpose()) : surface.site(targets[k]), block)) return;
-    if (!single() && !at) {
+    if (!medium.add_row(sources, at ? Vec3(at->row(targets[k]).transpose()) : surface.site(targets[k]), block)) return;
+    if (!sources.single() && !at) {
       Mat3 total = Mat3::Zero();
       for (const Mat3& of_point : block) total += of_point;
       const auto [panel, basis] = surface.self_field.basis(targets[k], surface.panels);
@@ -212,31 +208,41 @@ void Layer::add_medium_rows(std::span<const int> targets, const Net* at, Rows<Re
 }
 
 template <class Real>
-void Layer::assemble_rows(std::span<const int> targets, const Net* at, Rows<Real>& a) {
-  const auto clock = sources_.phases.time("assembly");
+void assemble_rows(LayerSources& sources, LayerMedium& medium, std::span<const int> targets, const Net* at, Rows<Real>& a) {
+  const auto clock = sources.phases.time("assembly");
   constexpr std::size_t block = assembly_block;
-  const Panels& panels = sources_.surface.panels;
-  RowSums<Real> rows(*this, at);
-  const std::vector<int> row_of_point = indices(sources_.surface.n_points);
+  const Panels& panels = sources.surface.panels;
+  RowSums<Real> rows(sources, medium, at);
+  const std::vector<int> row_of_point = indices(sources.surface.n_points);
   rows.basis.clear(panels);
-  for (int e = 0; e < panels.size(); ++e) rows.basis.add(panels, e, row_of_point, sources_.surface.n_points);
-  a.resize(3 * static_cast<Eigen::Index>(targets.size()), 3 * sources_.surface.n_points);
+  for (int e = 0; e < panels.size(); ++e) rows.basis.add(panels, e, row_of_point, sources.surface.n_points);
+  a.resize(3 * static_cast<Eigen::Index>(targets.size()), 3 * sources.surface.n_points);
   for (std::size_t first = 0; first < targets.size(); first += block) {
     const std::span<const int> some = targets.subspan(first, std::min(block, targets.size() - first));
-    rows.add(some, sources_.surface.n_points);
+    rows.add(some, sources.surface.n_points);
     for (std::size_t l = 0; l < some.size(); ++l) {
-      if (!single() && !at) subtract_density_at_site(some[l], &rows.sums[l]);
-      write_rows(3 * static_cast<int>(first + l), sources_.surface.n_points, &rows.sums[l], a);
+      if (!sources.single() && !at) subtract_density_at_site(sources, some[l], &rows.sums[l]);
+      write_rows(3 * static_cast<int>(first + l), sources.surface.n_points, &rows.sums[l], a);
     }
   }
-  add_medium_rows(targets, at, a);
-  if (sources_.desingularised()) subtract_identities(targets, a);
+  add_medium_rows(sources, medium, targets, at, a);
+  if (sources.desingularised()) subtract_identities(sources, targets, a);
 }
 
-void Layer::assemble(std::span<const int> sites, Rows<float>& a) { assemble_rows(sites, nullptr, a); }
-void Layer::assemble(std::span<const int> sites, Rows<double>& a) { assemble_rows(sites, nullptr, a); }
-void Layer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a) { assemble_rows(targets, &at, a); }
-void Layer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a) { assemble_rows(targets, &at, a); }
+}  // namespace
+
+template <class Real>
+void Layer::assemble(std::span<const int> sites, Rows<Real>& a) {
+  assemble_rows(sources_, *medium_, sites, nullptr, a);
+}
+template <class Real>
+void Layer::assemble(const Net& at, std::span<const int> targets, Rows<Real>& a) {
+  assemble_rows(sources_, *medium_, targets, &at, a);
+}
+template void Layer::assemble(std::span<const int> sites, Rows<float>& a);
+template void Layer::assemble(std::span<const int> sites, Rows<double>& a);
+template void Layer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
+template void Layer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
 
 void Layer::assemble_remainder(std::span<const int> sites, Rows<double>& a) {
   assert(single());
@@ -252,7 +258,7 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
   std::vector<std::vector<int>> panels_of(static_cast<std::size_t>(sources_.surface.n_points));
   for (int e = 0; e < panels.size(); ++e)
     for (int a = 0; a < panels[e].functions; ++a) panels_of[panels.points(e)[a]].push_back(e);
-  RowSums<double> rows(*this, nullptr);
+  RowSums<double> rows(sources_, *medium_, nullptr);
   std::vector<int> row_of_point;
   entries.resize(6 * near.point.size());
   for (std::size_t first = 0; first < sites.size(); first += block) {
@@ -274,56 +280,7 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
         for (std::size_t c = 0; c < 6; ++c)
           entries[6 * j + c] = over_8_pi * rows.sums[block * (6 * static_cast<std::size_t>(row_of_point[near.point[j]]) + c) + l];
   }
-  if (sources_.desingularised()) subtract_identities(sites, near, entries);
-}
-
-/// Returns the correction matrix M of the quadrature rule `desingularised` for the collocation site x_i: u_i = sum_q w G f - M f(x_i). With
-/// f(x_i) = f_n n0 + f_t, f_t tangential, M f(x_i) is the quadrature error of an integral that vanishes:
-///   M f = sum_q w [G (f_n n + f_t (n0.n) + n0 (f_t.n)) - (n0.r) T f_t n].
-/// n0 is the normal at x_i, w and n are the weight and the normal at the node x_q, and r = x_q - x_i. If the density is a force per unstressed
-/// area, M is scaled to this area.
-Mat3 Layer::identities(int site) const {
-  const auto normal_of = [&](const std::vector<double>& bezier) -> Vec3 {
-    const auto [a1, a2] = sources_.surface.self_field.tangents(site, sources_.surface.panels, bezier);
-    return a1.cross(a2);
-  };
-  const Vec3 at = sources_.surface.site(site), a = normal_of(sources_.surface.bezier), n0 = a.normalized();
-  const auto& node = sources_.surface.node;
-  const IdentitySums s = identity_sums(n_nodes(), node[0].data(), node[1].data(), node[2].data(), sources_.normal[0].data(),
-                                       sources_.normal[1].data(), sources_.normal[2].data(), at.data(), n0.data());
-  const Mat3 tangential = Mat3::Identity() - n0 * n0.transpose();
-  const Mat3 m = Vec3(s.pressure) * n0.transpose() + Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.shear) * tangential;
-  const bool unstressed = sources_.on_reference(sources_.surface.self_field.basis(site, sources_.surface.panels).first);
-  return unstressed ? Mat3(m * (normal_of(sources_.reference_bezier()).norm() / a.norm())) : m;
-}
-
-void Layer::subtract_identities(std::span<const int> sites, Net& u) {
-  for (const int i : sites) u.row(i) -= (identities(i) * sources_.surface.value(i, sources_.bezier_f)).transpose();
-  sources_.evaluations.self += static_cast<long long>(sites.size()) * n_nodes();
-}
-
-template <class Real>
-void Layer::subtract_identities(std::span<const int> sites, Rows<Real>& a) const {
-  for (std::size_t k = 0; k < sites.size(); ++k) {
-    const Mat3 m = over_8_pi * identities(sites[k]);
-    const auto [panel, basis] = sources_.surface.self_field.basis(sites[k], sources_.surface.panels);
-    for (int b = 0; b < basis.size(); ++b)
-      a.template block<3, 3>(3 * static_cast<Eigen::Index>(k), 3 * sources_.surface.panels.points(panel)[b]) -=
-          (basis[b] * m).template cast<Real>();
-  }
-}
-
-void Layer::subtract_identities(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) const {
-  for (std::size_t k = 0; k < sites.size(); ++k) {
-    const Mat3 m = over_8_pi * identities(sites[k]);
-    const auto [panel, basis] = sources_.surface.self_field.basis(sites[k], sources_.surface.panels);
-    const std::span<const int> points(sources_.surface.panels.points(panel), static_cast<std::size_t>(basis.size()));
-    for (std::size_t j = near.first[k]; j < near.first[k + 1]; ++j) {
-      const auto b = std::ranges::find(points, near.point[j]) - points.begin();
-      if (b == basis.size()) continue;
-      for (std::size_t c = 0; c < 6; ++c) entries[6 * j + c] -= basis[b] * m(upper[c][0], upper[c][1]);
-    }
-  }
+  if (sources_.desingularised()) subtract_identities(sources_, sites, near, entries);
 }
 
 }  // namespace tanktread::stokes

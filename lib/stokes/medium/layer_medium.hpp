@@ -21,6 +21,12 @@ inline std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
   return all;
 }
 
+/// List of control points for each target: target k has point[first[k]] .. point[first[k + 1] - 1].
+struct NearPoints {
+  std::vector<std::size_t> first{0};
+  std::vector<int> point;
+};
+
 /// Targets of one evaluation of a layer: their positions, and the rows of the result to compute.
 struct LayerTargets {
   std::span<const int> rows, far_rows;  ///< rows of the result that get near-singular and singular quadrature, and rows that get far sums
