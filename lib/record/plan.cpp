@@ -1,98 +1,23 @@
 #include "record/plan.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 #include <utility>
 
 #include "base/formatted.hpp"
 #include "base/instruction_set.hpp"
 #include "deck/section.hpp"
 #include "deck/units.hpp"
-#include "membrane/strain_energy.hpp"
+#include "record/numbers.hpp"
+#include "record/plan_particles.hpp"
 #include "scene/member.hpp"
 #include "scene/particles/gaps.hpp"
 #include "scene/solids.hpp"
 #include "scene/tube.hpp"
 #include "stokes/layer_surface.hpp"
-#include "surface/geometry.hpp"
 #include "system/solids/wall.hpp"
 #include "system/solvers/frozen_operator.hpp"
 
 namespace tanktread {
-
-namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-double resting_volume(const Body& body) { return surface::volume(body.space, body.rest); }
-double resting_area(const Body& body) { return surface::measures(body.space, body.rest).area; }
-
-constexpr Number named_numbers[] = {
-    {"radius", "length", "R_C: radius of the sphere with the particle's volume", [](const ParticleScene&, const Body& b) { return b.radius; }},
-    {"volume", "length^3", "volume of the resting shape", [](const ParticleScene&, const Body& b) { return resting_volume(b); }},
-    {"area", "length^2", "area of the resting shape", [](const ParticleScene&, const Body& b) { return resting_area(b); }},
-    {"reduced_volume", "1", "reduced volume 6 sqrt(pi) V/A^(3/2), with volume V and area A of the resting shape; 1 for a sphere",
-     [](const ParticleScene&, const Body& b) { return 6 * std::sqrt(std::numbers::pi) * resting_volume(b) / std::pow(resting_area(b), 1.5); }},
-    {"speed", "length/time", "velocity scale of the capillary number: rate of the flow times R_C; in a tube the mean velocity",
-     [](const ParticleScene& s, const Body&) { return s.speed() > 0 ? s.speed() : none; }},
-    {"viscosity_ratio", "1", "lambda: viscosity of the inner fluid divided by the viscosity of the outer fluid",
-     [](const ParticleScene& s, const Body&) { return s.particle.rigid() ? none : s.particle.viscosity_ratio; }},
-    {"capillary_number", "1",
-     "capillary number mu speed/G_s, with the outer viscosity mu and the surface shear modulus G_s; for a drop mu speed/sigma, with the "
-     "surface tension sigma",
-     [](const ParticleScene& s, const Body&) { return !s.particle.rigid() && s.speed() > 0 ? s.flow.viscosity * s.speed() / s.modulus() : none; }},
-    {"shear_modulus", "force/length", "surface shear modulus G_s of the membrane",
-     [](const ParticleScene& s, const Body&) { return s.elastic() ? s.modulus() : none; }},
-    {"area_modulus", "force/length",
-     "area modulus K_s of the membrane at small strains: (1 + 2 C) G_s for the laws `Skalak` and `Evans-Skalak` with Membrane/area "
-     "dilatation C, 3 G_s for rubber",
-     [](const ParticleScene& s, const Body& b) { return s.elastic() ? area_modulus(b.law) : none; }},
-    {"surface_tension", "force/length", "surface tension sigma of the drop",
-     [](const ParticleScene& s, const Body&) { return s.particle.rigid() || s.elastic() ? none : s.modulus(); }},
-    {"bending_modulus", "force length", "bending modulus E_b of the membrane",
-     [](const ParticleScene& s, const Body&) { return s.elastic() && s.bending_modulus() > 0 ? s.bending_modulus() : none; }},
-    {"bending_number", "1", "bending number E_b/(G_s R_C^2)",
-     [](const ParticleScene& s, const Body& b) {
-       return s.elastic() && s.bending_modulus() > 0 ? s.bending_modulus() / (s.modulus() * b.radius * b.radius) : none;
-     }},
-    {"relaxation_time", "time", "relaxation time of the shape: mu R_C/G_s; for a drop mu R_C/sigma",
-     [](const ParticleScene& s, const Body& b) { return s.particle.rigid() ? none : s.flow.viscosity * b.radius / s.modulus(); }},
-    {"tube_radius", "length", "radius R_T of the circle with the area of the cross-section",
-     [](const ParticleScene&, const Body& b) { return b.duct ? b.duct->radius() : none; }},
-    {"tube_length", "length", "length of the computed part of the tube",
-     [](const ParticleScene&, const Body& b) { return b.wall ? b.wall->length() : none; }},
-    {"confinement", "1", "confinement R_C/R_T: radius of the sphere with the particle's volume divided by the tube radius",
-     [](const ParticleScene&, const Body& b) { return b.duct ? b.radius / b.duct->radius() : none; }},
-    {"flow_rate", "length^3/time", "flow rate of the empty tube",
-     [](const ParticleScene& s, const Body& b) {
-       return b.duct && s.flow.type == "duct" ? b.duct->mean_velocity() * std::numbers::pi * std::pow(b.duct->radius(), 2) : none;
-     }},
-    {"pressure_gradient", "force/length^3", "decrease of the pressure per length along the empty tube",
-     [](const ParticleScene& s, const Body& b) { return b.duct && s.flow.type == "duct" ? b.duct->pressure_gradient() : none; }},
-    {"reynolds_number", "1", "Reynolds number: always 0, because the fluids have no inertia",
-     [](const ParticleScene&, const Body&) { return 0.0; }},
-};
-
-}  // namespace
-
-std::span<const Number> all_numbers() { return named_numbers; }
-
-output::Entries<double> numbers(const Scene& scene, const Body& body) {
-  output::Entries<double> found;
-  if (scene.particles.size() > 1 || scene.only_solids) return found;  // named_numbers are defined only if there is a single particle
-  const ParticleScene only = scene.first();
-  for (const Number& one : named_numbers)
-    if (const double value = one.value(only, body); !std::isnan(value)) found.emplace_back(one.name, value);
-  return found;
-}
-
-std::string numbers_text(const output::Entries<double>& numbers) {
-  std::string text;
-  for (const auto& [name, value] : numbers) text += (text.empty() ? "" : ", ") + name + formatted(" %.6g", value);
-  return text;
-}
 
 namespace {
 
@@ -158,43 +83,6 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; ", unknowns, wall_solver(scene).c_str()) + how);
 }
 
-std::string viscosity_line(const ParticleScene& scene, int n_points, bool tree) {
-  if (scene.particle.viscosity_ratio == 1 && scene.kelvin_voigt_membrane())
-    return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns per velocity",
-                     scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
-  if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
-  return formatted("ratio %g: double layer %s, a system of %d unknowns per velocity", scene.particle.viscosity_ratio,
-                   scene.solvers.assembled(tree) && (scene.tube.present || !scene.domain.present) ? "assembled" : "matrix-free",
-                   3 * n_points);
-}
-
-std::string membrane_line(const ParticleScene& scene) {
-  const std::size_t forces = scene.membrane.forces.all.size();
-  const std::string pulled = forces > 0 ? formatted(", pulled at %d patch%s", static_cast<int>(forces), forces > 1 ? "es" : "") : "";
-  const auto own = scene.membrane.strain_energy();
-  const std::string law = own ? formatted(" with shear modulus %.6g G_s and area modulus %.6g G_s for small strains", own->shear_modulus(),
-                                          own->area_modulus())
-                              : "";
-  const std::string memory =
-      scene.maxwell_membrane() ? formatted(", a Maxwell element of relaxation time %g", *scene.membrane.relaxation_time) : "";
-  const std::string load = scene.membrane.law + law + memory + pulled + ", load " + scene.membrane.load;
-  if (scene.load_is_strong()) return load + " at the collocation sites, as by Maestre et al. (2017)";
-  if (scene.membrane.law == "surface tension") return load + " per current area (3.6)";
-  if (scene.membrane.load_measure == "reference") return load + " per unstressed area (3.7), mass matrix factored once";
-  return load + " per current area (3.6), mass matrix factored every evaluation";
-}
-
-std::string surfactant_line(const ParticleScene& scene) {
-  return formatted("%s equation of state, initial tension %.6g times that of the clean interface: one unknown per control point",
-                   scene.surfactant->equation_of_state.c_str(), scene.surfactant->tension(1));
-}
-
-std::string mesh_line(const ParticleScene& scene) {
-  if (!scene.adaptation.enabled) return "fixed";
-  const char* where = scene.adaptation.indicator == "error" ? "by estimated errors (1.5)" : "where curvature, traction or velocity varies (1.4)";
-  return std::string("refined as the particle deforms, ") + where;
-}
-
 /// Returns the line of the plan about the time scheme and the size of the frozen operator (the single layer in the Jacobian of implicit steps).
 /// `pairs`: number of pairs of control points in the frozen operator.
 std::string time_line(const Scene& scene, double pairs, int ranks) {
@@ -233,21 +121,6 @@ std::string symmetry_line(const Scene& scene, const Body& body) {
              evaluated, body.space.n_points, double(body.space.n_points) / evaluated);
 }
 
-/// Returns the line of the plan about a rigid particle: that its motion is prescribed, or how its free motion is computed.
-std::string rigid_line(const ParticleScene& scene, const Body& body) {
-  if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
-  if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
-  return std::string("rigid and free, no membrane: six rigid motions") +
-         (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") +
-         ", solved once, determine its motion";
-}
-
-std::string forces_line(const ParticleScene& scene) {
-  const ParticleOptions& particle = scene.particle;
-  if (particle.motion == Motion::free) return particle.force || particle.torque || particle.density_difference ? "as given" : "none";
-  return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
-}
-
 /// Returns the line of the plan that lists the linear systems that are solved iteratively, with their solvers.
 std::string solvers_line(const Scene& scene) {
   const coupling::SolverOptions& solvers = scene.solvers;
@@ -269,6 +142,21 @@ std::string solvers_line(const Scene& scene) {
   return line.empty() ? "no iterative solver" : line;
 }
 
+/// Returns the line of the plan about a rigid particle: that its motion is prescribed, or how its free motion is computed.
+std::string rigid_line(const ParticleScene& scene, const Body& body) {
+  if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
+  if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
+  return std::string("rigid and free, no membrane: six rigid motions") +
+         (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") +
+         ", solved once, determine its motion";
+}
+
+std::string forces_line(const ParticleScene& scene) {
+  const ParticleOptions& particle = scene.particle;
+  if (particle.motion == Motion::free) return particle.force || particle.torque || particle.density_difference ? "as given" : "none";
+  return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
+}
+
 Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   const int n = body.space.n_points;
   const ParticleScene only = scene.first();
@@ -286,46 +174,6 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
     lines.emplace_back("mesh", "refined once at the initial position, where the shape, a film or the traction needs it");
   lines.emplace_back("symmetry", "none used");
   return lines;
-}
-
-/// Returns the lines of the plan about one particle. `n_points`: number of control points of all particles. `tree`: true if far-field sums use
-/// clusters. `responds`: true if the tractions of rigid bodies are found by GMRES, because the scene has a tube, a periodic domain, or a deforming
-/// particle whose velocity is found from a linear system.
-Lines particle_lines(const ParticleScene& one, int n_points, bool tree, bool responds) {
-  if (!one.particle.rigid()) {
-    Lines lines = {{"viscosity", viscosity_line(one, n_points, tree)}, {"membrane", membrane_line(one)}};
-    if (one.surfactant) lines.emplace_back("surfactant", surfactant_line(one));
-    lines.emplace_back("mesh", mesh_line(one));
-    return lines;
-  }
-  const bool first_kind = one.solvers.rigid_bodies == coupling::BodyEquation::first_kind;
-  const char* by_traction = responds ? "its traction, by GMRES preconditioned with factors of the bodies, for each velocity (2.40)"
-                                     : "its traction, in a factored system for each velocity (2.40)";
-  return {{"body", formatted("rigid, %s: no membrane, no moving mesh; ", one.particle.motion == Motion::free ? "free" : "with prescribed motion") +
-                       (first_kind ? by_traction : formatted("a double layer, in a system of %d unknowns per velocity (2.23)", 3 * n_points))}};
-}
-
-/// Adds the lines about all particles to the plan. A single particle has several lines. If there are several particles, the lines of each are joined
-/// into one, and consecutive particles with equal lines share one line.
-void add_particles(Lines& lines, const std::vector<ParticleScene>& alone, int n_points, bool tree) {
-  std::string last;
-  const bool responds = std::ranges::any_of(alone, [](const ParticleScene& one) {
-    return one.tube.present || one.domain.present || (!one.particle.rigid() && one.has_velocity_system());
-  });
-  for (const ParticleScene& one : alone) {
-    const Lines own = particle_lines(one, n_points, tree, responds);
-    if (alone.size() == 1) {
-      lines.insert(lines.end(), own.begin(), own.end());
-      return;
-    }
-    std::string line;
-    for (const auto& [what, how] : own) line += (line.empty() ? "" : "; ") + what + ": " + how;
-    if (lines.back().second == line)
-      last = " … " + one.name;
-    else
-      lines.back().first += std::exchange(last, {}), lines.emplace_back(one.name, line);
-  }
-  lines.back().first += last;
 }
 
 }  // namespace

@@ -20,7 +20,7 @@
 #include "record/files/file.hpp"
 #include "record/files/progress.hpp"
 #include "record/files/checkpoint.hpp"
-#include "record/plan.hpp"
+#include "record/numbers.hpp"
 #include "scene/series/series.hpp"
 #include "spline/iga.hpp"
 #include "system/agreement.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "record/duct_arrays.hpp"
-#include "record/plan.hpp"
+#include "record/numbers.hpp"
 #include "scene/series/series.hpp"
 #include "scene/series/run_totals.hpp"
 

@@ -136,6 +136,39 @@ void check_periods(const ParticleScene& scene, const coupling::LoadList& loads) 
                     " and Domain contradict each other: a load that depends on the position of the particle is not the same in all cells.");
 }
 
+/// Returns the data of one member for the coupled system. `wall`: wall of the tube, or null.
+coupling::Particle particle(const Member& member, const surface::TubeWall* wall) {
+  const ParticleScene& scene = member.scene;
+  const Body& body = *member.body;
+  coupling::Particle particle;
+  particle.space = &body.space;
+  particle.viscosity_ratio = scene.particle.viscosity_ratio;
+  particle.material = material(scene, body);
+  particle.loads = loads(scene, body, wall);
+  check_periods(scene, particle.loads);
+  particle.radius = body.radius;
+  if (scene.particle.rigid()) particle.rigid = drive_of(scene, body);
+  particle.by_traction = scene.particle.rigid() && scene.solvers.rigid_bodies == coupling::BodyEquation::first_kind;
+  particle.interface_motion = scene.interface_motion();
+  const double rate = scene.flow.rate() > 0 ? scene.flow.rate() : body.modulus / (scene.flow.viscosity * body.radius);
+  particle.interface_speed = scene.interface.relaxation * (scene.flow.type == "duct" ? scene.speed() : rate * body.radius);
+  particle.interface_turns = !scene.periodic.present || scene.periodic.turn != 0;  // otherwise, a net that has turned would not recur
+  particle.kept_volume = body.volume;
+  particle.measure = load_measure(scene);
+  return particle;
+}
+
+/// Returns the data of all members for the coupled system. The load of a rigid body may be per unstressed or per current area (`measure`). The
+/// `measure` of the deforming particles is used, because it is cheapest if all layers use the same area.
+std::vector<coupling::Particle> particles(const std::vector<Member>& members, const surface::TubeWall* wall) {
+  std::vector<coupling::Particle> all;
+  for (const Member& member : members) all.push_back(particle(member, wall));
+  const auto deforms = std::ranges::find_if(all, [](const coupling::Particle& one) { return !one.rigid; });
+  for (coupling::Particle& one : all)
+    if (one.rigid && deforms != all.end()) one.measure = deforms->measure;
+  return all;
+}
+
 }  // namespace
 
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
@@ -143,31 +176,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
   const ParticleScene& scene = members.front().scene;
   coupling::CapsuleParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
-  parameters.particles.clear();
-  for (const Member& member : members) {
-    const ParticleScene& own = member.scene;
-    const Body& body = *member.body;
-    coupling::Particle& particle = parameters.particles.emplace_back();
-    particle.space = &body.space;
-    particle.viscosity_ratio = own.particle.viscosity_ratio;
-    particle.material = material(own, body);
-    particle.loads = loads(own, body, all.wall.get());
-    check_periods(own, particle.loads);
-    particle.radius = body.radius;
-    if (own.particle.rigid()) particle.rigid = drive_of(own, body);
-    particle.by_traction = own.particle.rigid() && own.solvers.rigid_bodies == coupling::BodyEquation::first_kind;
-    particle.interface_motion = own.interface_motion();
-    const double rate = own.flow.rate() > 0 ? own.flow.rate() : body.modulus / (own.flow.viscosity * body.radius);
-    particle.interface_speed = own.interface.relaxation * (own.flow.type == "duct" ? own.speed() : rate * body.radius);
-    particle.interface_turns = !own.periodic.present || own.periodic.turn != 0;  // otherwise, a net that has turned would not recur
-    particle.kept_volume = body.volume;
-    particle.measure = load_measure(own);
-  }
-  const auto deforms = std::ranges::find_if(parameters.particles, [](const coupling::Particle& one) { return !one.rigid; });
-  // The load of a rigid body may be per unstressed or per current area (`measure`). The `measure` of the deforming particles is used, because it is
-  // cheapest if all layers use the same area.
-  for (coupling::Particle& one : parameters.particles)
-    if (one.rigid && deforms != parameters.particles.end()) one.measure = deforms->measure;
+  parameters.particles = particles(members, all.wall.get());
   parameters.strong_load = scene.load_is_strong();
   parameters.volume = scene.volume;
   parameters.solvers = scene.solvers;
