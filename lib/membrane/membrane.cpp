@@ -176,7 +176,7 @@ TensionSummary Membrane::tension_summary(const Net& x) const {
   return {all.smallest, sum(all.compressed) / sum(all.area), all.area_change};
 }
 
-ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> elements) const {
+ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> elements, double uniform) const {
   const std::vector<double> none(space_->elements.size(), 0.);
   ElementTensions result{std::numeric_limits<double>::infinity(), 0, none, none};
   const int lanes = pack_lanes();
@@ -189,7 +189,7 @@ ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> el
     smaller_tensions(at.whole, at.n, at.reference, a, tension, share);
     for (int q = 0; q < at.n; ++q)
       for (int l = 0; l < at.batch.used; ++l) {
-        const double here = numbers(tension)[lanes * q + l] / unit, area = numbers(share)[lanes * q + l];
+        const double here = numbers(tension)[lanes * q + l] / unit + uniform, area = numbers(share)[lanes * q + l];
         result.area_change = std::max(result.area_change, std::abs(area / numbers(at.reference, q, 4)[l] - 1));
         if (!sampled) continue;
         result.smallest = std::min(result.smallest, here);

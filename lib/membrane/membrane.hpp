@@ -56,8 +56,9 @@ class Membrane {
   Net load(const Net& x) const;
 
   /// Returns the smallest principal tension, the fraction of the area under compression, and the largest area change over all Gauss points.
+  /// `uniform`: uniform tension that a load adds, in the unit of the summary.
   TensionSummary tension_summary(const Net& x) const;
-  ElementTensions element_tensions(const Net& x, std::span<const int> elements) const;
+  ElementTensions element_tensions(const Net& x, std::span<const int> elements, double uniform = 0) const;
 
   /// Returns the strong form of the load, t = -div_s tau (equation 3 of Maestre et al. 2017), at a parametric point. It uses second derivatives of
   /// the current and the unstressed net, and leaves out bending. The result is a force per current area.

@@ -210,4 +210,10 @@ stokes::Measure load_measure(const ParticleScene& scene) {
   return reference ? stokes::Measure::reference : stokes::Measure::current;
 }
 
+double global_tension(const ParticleScene& scene, const Body& body, const Net& x) {
+  const double modulus = scene.membrane.global_area_dilatation;
+  if (scene.particle.rigid() || modulus == 0) return 0;
+  return modulus * (surface::measures(body.space, x).area / surface::measures(body.space, body.unstressed).area - 1);
+}
+
 }  // namespace tanktread

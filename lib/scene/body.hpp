@@ -105,4 +105,8 @@ coupling::LoadList loads(const ParticleScene& scene, const Body& body, const sur
 /// load is computed in the strong form.
 stokes::Measure load_measure(const ParticleScene& scene);
 
+/// Returns the uniform tension K (A/A0 - 1) that Membrane/global area dilatation (3.26) causes at the shape x, divided by the shear modulus or
+/// surface tension of the particle; 0 without this key.
+double global_tension(const ParticleScene& scene, const Body& body, const Net& x);
+
 }  // namespace tanktread

@@ -70,6 +70,14 @@ def the_change_of_the_total_area_falls_like_the_inverse_of_its_modulus():
     check(counts[2] <= 2 * counts[0], f"evaluations {counts}")
 
 
+def the_smallest_tension_includes_that_of_the_total_area():
+    """A drop without other tension gradients has the tension sigma + K (A/A0 - 1) everywhere (3.26)."""
+    run(deck(WHOLE), "--set", "Membrane/law=surface tension", "--set", "Membrane/global area dilatation=10", "--output", "drop", "--quiet")
+    area, tension, compressed = (series("drop", name) for name in ("area", "smallest_tension", "compressed_area"))
+    check(abs(tension - (1 + 10 * (area / area[0] - 1))).max() < 1e-12, f"tensions {tension} for areas {area}")
+    check((compressed == (tension < 0)).all(), f"compressed fractions {compressed} for tensions {tension}")
+
+
 def the_total_area_is_the_same_with_symmetry_and_on_two_ranks():
     words = ["--set", "Membrane/global area dilatation=100", "--set", "Membrane/bending number=0.05", "--set", "Membrane/area difference modulus=2",
              "--set", "Membrane/area difference=0.9", "--set", "Time/fixed step=0.05", "--set", "Time/final time=0.2", "--set", "Solvers/tolerance=1e-12"]

@@ -162,7 +162,8 @@ void DeformingRow::add_columns(const ParticleScene& one, Columns& to) const {
       tension.smallest,
       {"smallest_tension", "1",
        "smallest principal tension anywhere on the membrane, negative under compression, divided by the surface shear modulus G_s; for a "
-       "drop divided by the surface tension"});
+       "drop divided by the surface tension. Includes the tension of Membrane/global area dilatation, but not the stresses of "
+       "Membrane/relaxation time, of surface viscosity and of a surfactant"});
   to.add(tension.compressed_area, {"compressed_area", "1", "fraction of the membrane's area where a principal tension is negative, so "
                                                            "that the membrane may wrinkle"});
   if (to.when(one.membrane.law != "surface tension"))
@@ -322,7 +323,7 @@ DeformingRow deforming_row(const ParticleScene& scene, const Body& body, const s
   const std::vector<int>& sites = body.symmetry.fundamental();  // fundamental collocation sites; all other sites are symmetry images of these
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
-  const membrane::ElementTensions tensions = membrane.element_tensions(x, elements);
+  const membrane::ElementTensions tensions = membrane.element_tensions(x, elements, global_tension(scene, body, x));
   const auto [moments, energy, area, compressed, smallest, change, fastest, shape] = ranks.of_all(std::array{
       geometry.block_moments(x, blocks), surface::block_sums(membrane.element_energies(x, elements)), surface::block_sums(tensions.area),
       surface::block_sums(tensions.compressed), slots(ranks, elements.empty() ? 0 : tensions.smallest), slots(ranks, tensions.area_change),

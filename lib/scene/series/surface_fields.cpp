@@ -207,13 +207,15 @@ std::vector<output::Field> snapshot_fields(std::span<const Member> members, cons
   std::vector<output::Field> fields{{"load", traction}};
   Eigen::MatrixX2d tensions(n, 2);
   Eigen::VectorXd curvature(n), particle(n);
+  std::vector<double> uniform;
+  for (const Member& member : members) uniform.push_back(global_tension(member.scene, *member.body, member.own(x)));
   nodes.each_node(all.unstressed, x, [&](Eigen::Index i, const surface::Jet& before, const surface::Jet& now) {
     const std::size_t p = particle_of(members, sites[static_cast<std::size_t>(i)].element);
     if (load_measure(members[p].scene) == stokes::Measure::reference) traction.row(i) *= surface::jacobian(before) / surface::jacobian(now);
     if (members[p].scene.particle.rigid())
       tensions.row(i).setZero();
     else
-      tensions.row(i) = membrane::tensions(members[p].body->law, std::span(&before, 1), std::span(&now, 1));
+      tensions.row(i) = membrane::tensions(members[p].body->law, std::span(&before, 1), std::span(&now, 1)).array() + uniform[p];
     curvature[i] = surface::mean_curvature(now);
     particle[i] = static_cast<double>(p + 1);
   });
