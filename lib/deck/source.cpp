@@ -35,10 +35,12 @@ int levels_of_xml(const std::string& text) {
 
 std::shared_ptr<Teuchos::ParameterList> root_list(const Teuchos::ParameterList& whole, const std::string& origin) {
   if (whole.numParams() == 0) throw UserError(origin + " is empty; a deck has one section named `" + root_name + "`.");
-  for (const auto& item : whole)
-    if (item.first != root_name || !item.second.isList())
+  for (const auto& item : whole) {
+    if (item.first == root_name && !item.second.isList()) throw UserError(origin + ": `" + root_name + "` must be a section with keys.");
+    if (item.first != root_name)
       throw UserError(origin + ": the outermost section must be `" + root_name + "`, and the only one, but there is `" +
                       shortened(item.first, 60) + "`.");
+  }
   return std::make_shared<Teuchos::ParameterList>(whole.sublist(root_name));
 }
 

@@ -55,6 +55,8 @@ def files_without_a_closed_surface_are_rejected_in_one_sentence():
     elements = len(starts) - 1
     without = lines[:starts[7]] + lines[starts[8]:]
     _refused("missing.iga", without, "elemN", str(elements), str(elements - 1))
+    _refused("empty.iga", [], "elemN")
+    _refused("binary.iga", ["no\x07de 1 2 3 1"], '"no\\x07de" is not a keyword')
     _refused("hole.iga", [f"elemN {elements - 1}" if i == count else line for i, line in enumerate(without)], "closed")
     mirrored = [" ".join([w[0], w[1], w[2], str(-float(w[3])), w[4]]) if (w := line.split())[0] == "node" else line for line in lines]
     _refused("inverted.iga", mirrored, "inside out")

@@ -200,6 +200,8 @@ def the_final_time_may_change_and_the_membrane_may_not():
     run("deck.yaml", "--output", "short", "--set", "Time/final time=0.5", "--quiet")
     run("--resume", "short", "--set", "Time/final time=1.0", "--quiet")
     check(series("short", "time")[-1] == 1.0, "the run did not go on to its new end")
+    result = run("--resume", "short", "--set", "Time/final time=0.75", "--quiet")
+    check("Time/final time 0.75 is before the time 1 " in result.stderr, result.stderr)
     result = run("--resume", "short", "--set", "Membrane/capillary number=0.6", code=2)
     check("Membrane/capillary number" in result.stderr, result.stderr)
 

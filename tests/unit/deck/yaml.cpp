@@ -98,7 +98,8 @@ TEST(RootLists, AreUniqueAndNamedTanktread) {
             "deck.yaml: the outermost section must be `Tanktread`, and the only one, but there is `Other`.");
   EXPECT_EQ(refusal_of("Kinds: {count: 1}\n"),
             "deck.yaml: the outermost section must be `Tanktread`, and the only one, but there is `Kinds`.");
-  EXPECT_NE(refusal_of("Tanktread: 3\n"), "");
+  EXPECT_EQ(refusal_of("Tanktread: [1, 2]\n"), "deck.yaml: `Tanktread` must be a section with keys.");
+  EXPECT_EQ(refusal_of("Tanktread: 3\n"), "deck.yaml: `Tanktread` must be a section with keys.");
   EXPECT_EQ(refusal_of("Tanktread: {}\n---\nTanktread: {}\n"), "deck.yaml, line 2: a second document begins here, but a deck is a single YAML "
             "document.");
   EXPECT_EQ(refusal_of("%YAML 1.1\n---\nTanktread:\n  Kinds: {count: 1}\n...\n"), "");
