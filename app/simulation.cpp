@@ -101,7 +101,8 @@ class Run {
     if (particle_->resume(resumed)) results_.remesh(particle_->body(), particle_->bezier());
     state_ = resumed.state;
     if (scene_.time.final_time < state_.time)
-      results_.warn(formatted("Time/final time %g is before the time %g that the run has reached: nothing was computed", scene_.time.final_time, state_.time));
+      results_.warn(formatted("Time/final time %g is before the time %g that the run has reached: nothing was computed", scene_.time.final_time,
+                              state_.time));
     if (request_.another_scheme) motion::forget(state_);
     totals_ = resumed.totals;
     earlier_wall_seconds_ = totals_.wall_seconds;

@@ -48,11 +48,11 @@ std::string kind() {
   else return std::string(Value::SizeAtCompileTime == 2 ? "two" : Value::SizeAtCompileTime == 3 ? "three" : "nine") + " numbers";
 }
 
-/// Returns whether a text begins with a number followed by other characters, such as a unit.
+/// Returns whether a text begins with a number followed by other characters, such as a unit, but not by a comma, as in a list without brackets.
 bool has_unit(const std::string& text) {
   double number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && rest != text.data() + text.size();
+  return error == std::errc() && rest != text.data() + text.size() && *rest != ',';
 }
 
 /// Returns the numbers of an entry, converted to the deck's units, if at least one of them has a unit; otherwise an empty vector. Throws UserError if

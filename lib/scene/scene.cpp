@@ -93,6 +93,13 @@ void check_motion(const ParticleScene& scene) {
                          : ": for a deformable particle give a force per volume, by Particle/density difference and Flow/gravity."));
 }
 
+/// Adds Flow/gravity to the keys without effect if no particle has a weight.
+void list_idle_gravity(Scene& scene) {
+  const auto has_weight = [](const ParticleScene& one) { return one.particle.density_difference.has_value(); };
+  if (scene.flow.gravity && std::ranges::none_of(scene.particle_scenes(), has_weight))
+    scene.idle_keys.push_back("Flow/gravity has no effect without Particle/density difference: remove the key.");
+}
+
 /// Throws UserError if a key lacks a section or key of the surroundings that it needs.
 void check_needs(const ParticleScene& scene) {
   if (scene.particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
@@ -198,6 +205,8 @@ void Scene::declare(deck::Section& root) {
   particles = declare_particles(root, only, *registry);
   if (several || root.given("Domain") || root.documenting())
     root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
+  else if (root.given("Contact"))
+    throw UserError("Contact needs Particles or Domain, because a single particle has no gaps to other particles.");
   volume_given = root.given("Volume");
   constexpr const char* cell = "periodic cell of fluid and particles, whose lattice the flow convects; nothing is periodic without this section";
   domain.present = root.optional_section("Domain", domain, cell) && !domain.medium;
@@ -234,6 +243,7 @@ void Scene::declare(deck::Section& root) {
   complete_walls(*this);
   walls = std::make_shared<coupling::SharedWalls>();
   take_posts(*this);
+  list_idle_gravity(*this);
 }
 
 void Scene::check() const {

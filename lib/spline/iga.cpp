@@ -276,7 +276,8 @@ SplineSurface read_iga(const std::filesystem::path& file) {
       out.space.elements.push_back(std::move(e));
     } else if (key != "set" && key != "domain") {
       if (n_elements >= 0 && int(out.space.elements.size()) == n_elements) break;  // other data after the elements
-      in.fail(deck::in_quotes(deck::shortened(key, 60)) + " is not a keyword of the format; the keywords are type, nodeN, elemN, node, belem, set and domain.");
+      in.fail(deck::in_quotes(deck::shortened(key, 60)) + " is not a keyword of the format; the keywords are type, nodeN, elemN, "
+              "node, belem, set and domain.");
     }
   }
   if (n_elements < 0) in.fail("the file ends without the keyword elemN.");

@@ -56,6 +56,9 @@ void MeshOptions::declare(deck::Section& section) {
   section.key("pole subdivisions", pole_subdivisions, deck::between(0, 4), "1",
               "number of times that the elements at the poles of the polar surface mesh are halved in azimuth before the transform of "
               "Surface/poles `bezier transform`; 2 if not given");
+  if (of_cylinder)
+    section.without_effect({"mesh", "elements per side", "extraordinary points", "meridional elements", "pole axis", "poles", "pole subdivisions"},
+                           "on a particle of the shape `cylinder`");
 }
 
 void MeshOptions::check() const {

@@ -35,6 +35,7 @@ SETTINGS = [
     (["Continuation/to=1", "Continuation/parameter=Membrane/capillary number"], ["Continuation", "Steady"]),
     (["Solvers/rigid bodies=third kind"], ["Solvers/rigid bodies", "first kind"]),
     (["Solvers/rigid bodies=first kind"], ["Solvers/rigid bodies", "Particle deforms"]),
+    (["Contact/limit=0.01"], ["Contact needs Particles or Domain"]),
     (["Periodic/turn=180"], ["Periodic/period", "missing"]),
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
     (["Spectrum/number=4", "Particle/motion=prescribed"], ["Spectrum", "Particle/motion", "prescribed motion"], 2),  # and Membrane
@@ -61,6 +62,7 @@ SETTINGS = [
     (["Units/length=1 um", "Particle/radius=[2 um, 3 um]"], ["Particle/radius", "a number", "2 um"]),
     (["Particle/center=1"], ["Particle/center", "three numbers", "1"]),
     (["Particle/center=[0, 1]"], ["Particle/center", "three numbers", "[0, 1]"]),
+    (["Particle/center=1, 2, 3"], ["Particle/center", "three numbers in brackets", "1, 2, 3"]),
     (["Flow/type=linear", "Flow/gradient=[1, 2, 3]"], ["Flow/gradient", "nine numbers", "[1, 2, 3]"]),
     (["Membrane/law=3"], ["Membrane/law", "neo-Hookean", "3"]),
     (["Time/final time/value=3"], ["Time/final time", "a number", "a section of keys"]),
@@ -338,6 +340,13 @@ def several_ranks_print_one_message():
     lines = [line for line in result.stderr.splitlines() if line.startswith("tanktread:")]
     check(result.returncode == 2, f"exit code {result.returncode}")
     check(len(lines) == 1, result.stderr)
+
+
+def keys_without_effect_are_named():
+    said = run(deck(GOOD), "--set", "Flow/gravity=[0, 0, -1]", "--check").stderr
+    check("Flow/gravity has no effect without Particle/density difference" in said, said)
+    said = run(SOURCE / "inputs/posts.yaml", "--set", "Surface/elements per side=7", "--check").stderr
+    check("Surface/elements per side has no effect on a particle of the shape" in said, said)
 
 
 def the_unchanged_deck_is_valid():
