@@ -377,7 +377,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
   }
 }
 
-/// Keeps freed memory for later steps and snapshots. Memory that returns to the operating system is cleared when it is allocated again.
+/// Keeps freed memory for later steps and snapshots. The operating system would clear returned memory at each new allocation, which costs time.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 25);

@@ -53,9 +53,9 @@ struct Average {
   double value, error;
 };
 
-/// Returns the time average over the parts of a curve without NaN, of the cubics through the four nearest points; the value itself if the curve has
-/// one point. The error is estimated from every second and every fourth point. All levels have the same points where the interval of snapshots limits
-/// their steps, so that this error does not show in differences between levels.
+/// Returns the time average of a curve over its parts without NaN, or its value if it has one point. The curve is interpolated by cubics through the
+/// four nearest points. The error is estimated from every second and every fourth point. Differences between levels do not contain this error where
+/// the interval of snapshots limits the steps, because all levels then have the same points.
 Average average(const Curve& curve);
 
 /// Returns the standard error of the time average, from the averages over eight parts of equal length, which are assumed to be independent; NaN if

@@ -159,9 +159,9 @@ std::string obstacle(const std::vector<Outcome>& levels) {
 
 namespace {
 
-/// Returns the error of the finest level if errors of the mesh and of the time integration cancel in the difference from the level before, otherwise
-/// 0. (9.1) is then too small. The two certainly cancel if the known change of the time part from one level to the next is much larger than the
-/// difference `last` between these levels. The change of the mesh part is then the sum of the two.
+/// Returns the error of the finest level if the errors of the mesh and of the time integration cancel in the difference between the last two levels,
+/// so that (9.1) is too small; otherwise returns 0. The two errors certainly cancel if the known change of the time error between these levels is
+/// much larger than their difference `last`. The change of the mesh error is then the sum of `last` and the change of the time error.
 double cancelled(const Request& request, const std::vector<Outcome>& levels, double last, const std::optional<Outcome>& looser) {
   constexpr double much = 2;
   if (!looser || levels.size() < 4) return 0;

@@ -72,7 +72,7 @@ struct SeriesError {
 
 /// Returns the estimated errors of the finest level, one for each series with an error (`has_error`), in the order of the record. `looser`: result of
 /// level 2 with a looser time tolerance, if it was computed. `answers`: estimates for the requests. If a request limits the largest error of a series
-/// over the run, its estimate is used for this series; of several such requests, the last one whose estimate can be trusted.
+/// over the run, its estimate is used for this series. If there are several such requests, the last one whose estimate can be trusted is used.
 std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {},
                                 const std::vector<RequestResult>& answers = {});
 

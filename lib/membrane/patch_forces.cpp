@@ -81,7 +81,8 @@ Net PatchForces::virtual_work(const spline::Space& space, const Net& unstressed)
   Net work = Net::Zero(space.n_points, 3);
   for (const PatchForce& one : all) {
     const Vec3 ray = one.direction.normalized();
-    Eigen::VectorXd shares = Eigen::VectorXd::Zero(space.n_points);  // int N_A w dGamma_0 per control point A, before the weight w is normalised
+    Eigen::VectorXd shares = Eigen::VectorXd::Zero(space.n_points);  // int N_A w dGamma_0 per control point A, with the weight function
+                                                                    // w of the patch before its normalisation
     for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
       const auto place = [&](double s, double t) { return surface::point(space, unstressed, {e, s, t}); };
       std::array<Vec3, 9> places;

@@ -45,7 +45,7 @@ struct Conserved {
   ModeKind kind;
 };
 
-/// Small changes of the shape x. The referenced objects must outlive this object.
+/// Data that define the linearised motion of small changes of the shape x. The referenced objects must outlive this object.
 struct SmallChanges {
   coupling::Dynamics& dynamics;              ///< motion of the shape
   const coupling::ShapeCoordinates& shapes;  ///< coordinates y of the changes

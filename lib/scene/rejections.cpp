@@ -15,7 +15,7 @@ namespace {
 void reject_registered(const ParticleScene& scene, Rejections& to) {
   to.pair(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`",
           "loads are included by virtual work, in the form `weak` only");
-  if (to.every())  // for a given deck, the load itself tells (Load::rigid_conditions)
+  if (to.every())  // for a given deck, Load::rigid_conditions of each load is checked instead
     to.pair(true, "Membrane/loads that depend on the position", "Domain", "such a load is not the same in all cells");
   to.pair(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields",
           {scene.particle.choice(), "Particle/motion `prescribed` or `free`"}, "only deformable particles have surface fields");

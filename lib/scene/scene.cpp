@@ -100,7 +100,7 @@ void list_idle_gravity(Scene& scene) {
     scene.idle_keys.push_back("Flow/gravity has no effect without Particle/density difference: remove the key.");
 }
 
-/// Throws UserError if a key lacks a section or key of the surroundings that it needs.
+/// Throws UserError if a key needs another key, or a section about the surroundings of the particle, that the deck does not have.
 void check_needs(const ParticleScene& scene) {
   if (scene.particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
   if (scene.flow.type == "duct" && !scene.tube.present)
@@ -163,8 +163,8 @@ void complete_walls(Scene& scene) {
       kind.adaptation.film_resolution = motion::AdaptationOptions::default_film_resolution;
 }
 
-/// Declares the sections of particles. Returns the particles of the section Particles or, if the deck does not have it, the particle `only` of the
-/// section Particle. `only`: default values; replaced by those of the section Particle.
+/// Declares the sections of particles. Returns the particles of the section Particles. If the deck does not have this section, returns the single
+/// particle of the section Particle. `only`: on input the default values of this particle; the values of the section Particle replace them.
 std::vector<ParticleKind> declare_particles(deck::Section& root, ParticleKind& only, const Registry& registry) {
   std::vector<ParticleKind> all;
   const bool several = root.given("Particles");

@@ -128,7 +128,7 @@ bool holds_centre(const ParticleScene& scene) {
   if (!flow.affine()) return false;
   const Vec3& center = scene.particle.shape.center;
   if (!flow.velocity(center).isZero(0)) return false;
-  return largest_growth_rate(flow.gradient(center)) > 1e-4 * flow.rate();  // rounding gives a shear flow in any directions up to 1e-5
+  return largest_growth_rate(flow.gradient(center)) > 1e-4 * flow.rate();  // in a rotated simple shear it is 0 exactly, and up to 1e-5 by rounding
 }
 
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state) {

@@ -61,7 +61,7 @@ struct System {
   }
 
   /// Returns the state `after` without the motion of control points along interfaces since the state `before`. If both are the same shape, the result
-  /// differs from `before` by the cube of this motion:
+  /// differs from `before` by a term of the order of the cube of this motion:
   ///
   ///   before + D y(after - before),   with y and its displacement D y of (4.15) and (4.34) at the mean of both states
   ///

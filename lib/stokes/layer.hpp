@@ -29,8 +29,8 @@ namespace tanktread::stokes {
 /// contains the target equals k_p times the sum of the principal value and f/2. If f is a rigid motion of all surfaces, u is 0. For a target off the
 /// surfaces, f(x0) is a constant given by the caller, by default 0. This constant does not change u if the target is outside a closed surface (2.3).
 ///
-/// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (ClusterSums). On panels close to
-/// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's terms of this sum. The tolerance of this
+/// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (ClusterSums). On panels that are
+/// close to a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's terms. The tolerance of this
 /// quadrature is relative to an integral over the panel's whole surface. The value at a target does not depend on which other targets are requested.
 /// The quadrature rule `desingularised` uses only the Gauss nodes. This rule subtracts the singularity of the single layer by two identities of a
 /// closed surface: the integral of G n is 0, and the boundary integral identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the

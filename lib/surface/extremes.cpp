@@ -192,9 +192,10 @@ struct Candidate {
 
 /// Searches for the maximum of d = sign * distance in all candidates that may contain it, and extends the range `found` by the distances found. On a
 /// nearly circular curve, the search from a sampled maximum may converge to a minimum or leave the element. Then the search starts again from the
-/// next sampled point. Leaves out an element if its largest sampled d is below the largest d of all elements by more than a quarter of the element's
-/// spread (largest minus smallest sampled distance). Leaves out a sampled point if its d is below the largest d of its element by more than this. The
-/// margin is ample: if d is a parabola with its maximum inside the element, the sampling error is at most spread/cells^2.
+/// next sampled point. The margin of an element is a quarter of its spread, the largest minus the smallest sampled distance. An element is left out
+/// if its largest sampled d is below the largest sampled d of all elements by more than the margin. A sampled point is left out if its d is below
+/// the largest sampled d of its element by more than the margin. The margin is ample: if d is a parabola with its maximum inside the element, the
+/// sampling error is at most spread/cells^2.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.best(sign).distance);

@@ -21,7 +21,7 @@ int subdivisions(const spline::TMesh& mesh, int n_points) {
   return 6 * n * n + 2 == n_points && mesh.lattice->units % n == 0 ? level : -1;
 }
 
-/// Returns the initial net of 3 x 3 elements per face of the cube, in one row per lattice vertex. Only the rows of the net's own vertices are used.
+/// Returns the initial net of 3 x 3 elements per face of the cube, in one row per lattice vertex. Only the rows of vertices of this net are used.
 Net coarse_net(const spline::Lattice& l) {
   constexpr double edge = 1. / 3, inner = 0.26;
   Net net(l.vertices(), 3);

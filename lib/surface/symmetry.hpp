@@ -103,8 +103,8 @@ FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_element
 /// weighted contributions of the fundamental elements to point A. The complete sums must form a symmetric field.
 void fold(const Symmetry& symmetry, Net& sums);
 
-/// Returns the factor by which the reflection with these `signs` of the coordinates multiplies scalar fields of the parity with the factors
-/// `of_planes` (see Parity): the product of the factors of the axes that it reverses.
+/// Returns the factor by which a reflection multiplies a scalar field. `signs`: signs of the coordinates under the reflection. `of_planes`: factors
+/// of the field's parity (see Parity), one per axis. The result is the product of the factors of the reversed axes.
 inline double character(const Vec3& signs, const Vec3& of_planes) { return (signs.array() < 0).select(of_planes, Vec3::Ones()).prod(); }
 
 /// Fields of one parity. The parity has one factor per axis, 1 or -1: the reflection along this axis multiplies the fields by this factor. Half turns

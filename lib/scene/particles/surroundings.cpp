@@ -9,8 +9,8 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the force of all particles on the fluid. That of a deformable particle with registered loads is the virtual work of all its loads in a
-/// translation; elastic loads do no work. Without registered loads the force is known exactly.
+/// Returns the force of all particles on the fluid. The force of a deformable particle without registered loads is known exactly. With registered
+/// loads, it is computed as the virtual work of all loads of the particle in a translation, in which elastic loads do no work.
 Vec3 force_on_fluid(const std::vector<Member>& members, coupling::Evaluation& here) {
   Vec3 force = Vec3::Zero();
   for (std::size_t p = 0; p < members.size(); ++p) {

@@ -36,8 +36,8 @@ struct SteadyRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the columns that each row of a run's results has, in the order of the rows and without values. If there are several particles, the columns
-/// of each are named `<particle>/<name>`.
+/// Returns the columns of a run's results, without values, in the order in which each row contains them. If there are several particles, the columns
+/// of each particle are named `<particle>/<name>`.
 Columns columns(const Scene& scene);
 
 /// Returns the columns of the run as a whole. If `every`, also returns the columns that this scene does not have, for the manual (see Columns).

@@ -51,7 +51,8 @@ struct FlowHistory {
   /// Returns the first time of the table after `time`, or infinity.
   double next_kink(double time) const;
 
-  /// Returns whether the table has this time or a later one, so that the flow may still change: velocities at a jump are those before it.
+  /// Returns whether the table contains this time or a later time, so that the flow may still change. If the flow jumps at `time`, it still has to
+  /// change, because a step that ends at the jump uses the values before the jump.
   bool lasts(double time) const { return type == "table" && times->back() >= time; }
 };
 

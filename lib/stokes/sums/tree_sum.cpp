@@ -112,7 +112,8 @@ void TreeSum::keep_part() {
   });
 }
 
-/// Marks the source clusters whose Chebyshev nodes need strengths: clusters whose nodes enter a pair, and all their descendants that have nodes.
+/// Marks the source clusters whose Chebyshev nodes need strengths: clusters that interact through their nodes in one of the pairs, and all
+/// descendants of these clusters that have nodes.
 void TreeSum::mark_sources() {
   const std::vector<Cluster>& all = sources_.all();
   in_use_.assign(all.size(), 0);
