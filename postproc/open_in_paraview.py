@@ -39,13 +39,13 @@ view = simple.GetActiveViewOrCreate("RenderView")
 view.ViewSize, view.Background, view.UseColorPaletteForBackground = [1200, 900], [1, 1, 1], 0
 scene = simple.GetAnimationScene()
 scene.UpdateAnimationUsingDataTimeSteps()
-times = scene.TimeKeeper.TimestepValues or [0.0]  # a number if there is only one step
+times = scene.TimeKeeper.TimestepValues or [0.0]  # TimestepValues is a number, not a list, if there is one step
 times = list(times) if hasattr(times, "__len__") else [times]
 time = times[-1] if arguments.time is None else min(times, key=lambda one: abs(one - arguments.time))
 scene.AnimationTime = view.ViewTime = time
 display = simple.Show(source, view)
 display.SetRepresentationType("Surface")
-display.NonlinearSubdivisionLevel = 3  # of every curved element; ParaView's own default shows it nearly flat
+display.NonlinearSubdivisionLevel = 3  # with ParaView's default, curved elements look nearly flat
 display.SelectNormalArray = "Normals"
 source.UpdatePipeline(view.ViewTime)
 field, fields = arguments.field, source.PointData.keys()

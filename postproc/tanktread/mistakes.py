@@ -32,7 +32,7 @@ def optional(module, purpose, package=None):
 
 
 def progress(text):
-    """Prints a line of progress on standard error: in place on a terminal, where "" ends it; as lines otherwise."""
+    """Prints the progress on standard error. On a terminal each text replaces the previous one, and "" removes it."""
     if sys.stderr.isatty():
         print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
     elif text:

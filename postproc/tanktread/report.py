@@ -21,8 +21,8 @@ from .runs import run as run_of
 from .snapshots import DIMENSIONS, evenly
 from .studies.sweep import table
 
-FRAMES = 24            # saved steps at most
-BYTES = 3.4e6          # of shapes, before they are packed
+FRAMES = 24            # largest number of snapshots in the page
+BYTES = 3.4e6          # largest size of all shapes before they are packed
 CITE = ("J. Maestre, J. Pallares, I. Cuesta, M. A. Scott, A 3D isogeometric BE–FE analysis with dynamic remeshing for "
         "the simulation of a deformable particle in shear flows, Comput. Methods Appl. Mech. Engrg. 326 (2017), whose "
         "method tanktread implements and extends")
@@ -31,13 +31,13 @@ FIRST = ["taylor_inertia", "inclination", "velocity_x1", "smallest_gap", "distur
 
 
 def packed(values, largest, kind):
-    """Returns values up to 1 as whole numbers up to the largest one of their kind, such as u1, in base 64."""
+    """Returns values of magnitude up to 1 as integers up to `largest`, of a type such as u1, in base 64."""
     return base64.b64encode(numpy.round(values * largest).astype(kind).tobytes()).decode()
 
 
 def shapes(run, field):
-    """Returns saved steps as grids of cells: positions in 16 bits within the box of all of them, normals and the
-    field's magnitude in 8 bits."""
+    """Returns snapshots as grids of cells: positions in 16 bits, relative to the bounding box of all snapshots, and
+    normals and the magnitude of the field in 8 bits."""
     shots = evenly(run.snapshots(), FRAMES)
     if not shots:
         return None

@@ -66,7 +66,7 @@ class Snapshot:
         copy._content = self.points / run.scale("length")[0], self.cells, fields
         periodic = run.deck["Domain"]["periodic"] if "Domain" in run.deck else "x1"  # a periodic tube needs no Domain
         for axis in range(3) if copy.cell is not None else ():
-            if f"x{axis + 1}" not in periodic:  # no length of its own: as long as needed
+            if f"x{axis + 1}" not in periodic:  # not periodic: the cell is made as long as the surfaces need
                 k = numpy.abs(copy.cell[:, axis]).argmax()
                 copy.cell[k] *= 2.05 * numpy.abs(copy.positions @ numpy.linalg.inv(copy.cell)[:, k]).max()
         return copy

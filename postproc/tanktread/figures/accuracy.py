@@ -152,8 +152,8 @@ def step(deck, axis, *, radii: tuple[float, float] = (0.1, 0.05), finer: list[st
     Camb. Phil. Soc. 45, 1949).
 
     Each setting --finer is applied in two further runs, one per radius. The change that it causes is printed, and is
-    added to the extents. The extent along x3 has kinks as a function of the position. Near a kink the error is as large
-    as the distance between rows allows: --set 'Time/maximum step=0.01' gives three digits.
+    added to the extents. The extent along x3 has kinks as a function of the position. Near a kink the error depends on
+    the distance between recorded rows: with --set 'Time/maximum step=0.01', three digits are correct.
 
     radii: radii of the edges, the larger one first
     finer: settings that refine a run, each KEY=VALUE

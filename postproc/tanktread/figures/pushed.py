@@ -157,9 +157,9 @@ class Pushed:
         return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose]
 
     def rest(self, z, pressures, closed, behind):
-        """Computes by Newton's method the equilibrium shape with the volume `behind` of fluid behind it. `z`,
-        `pressures` (inside the capsule and behind it): start values. Returns the shape and the pressures; None if the
-        iteration does not converge."""
+        """Computes an equilibrium shape by Newton's method. Returns the shape and the pressures inside the capsule and
+        behind it; None if the iteration does not converge. `z`, `pressures`: start values. `behind`: volume of the
+        fluid behind the capsule."""
         n = self.loose.size
         for _ in range(60):
             gradient, matrix = self.system(z, closed)

@@ -17,17 +17,19 @@ FIGURES: dict = {}
 BENCHMARK = SOURCE / "tests/benchmark"
 RUNS = {"runs": (runs_of, "+", "directories of results, or decks; a deck without results is run"),
         "run": (run_of, None, "directory of results, or a deck; a deck without results is run")}
-ENDINGS = {"animation": "gif"}  # of the files of figures, by default png
+ENDINGS = {"animation": "gif"}  # file formats of figures that are not written as png
 AXES = inspect.Parameter("axes", inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None)
 
 
 def figure(*size, **layout):
-    """Decorates the function of a figure: sets the style, accepts directories and decks as runs, adds it to FIGURES.
+    """Returns the decorator for functions of figures. It sets the style, accepts directories and decks as runs, and
+    adds the function to FIGURES.
 
-    Parameters are `runs`, `run`, or a deck or study; axes; and options by keyword. With the `size` and `layout` of its
-    panels (`style.panels`; or a function that returns the size for the runs) the function is given the axes of each
-    panel; otherwise it is given the `axes` of the caller and returns the figure. The first paragraph of the docstring
-    is the caption; lines `option: text` below it describe options on the command line."""
+    The parameters of the function are `runs`, `run`, or a deck or study; then `axes`; then options by keyword. If the
+    `size` and `layout` of the panels are given (see `style.panels`; the size may be a function of the runs), the
+    function receives the axes of each panel. Otherwise it receives the `axes` of the caller and returns the figure. The
+    first paragraph of its docstring is the caption. Lines `option: text` below it describe options on the command
+    line."""
     def decorate(function):
         first, *others = inspect.signature(function).parameters.values()
         convert = RUNS.get(first.name, (lambda given: given,))[0]

@@ -41,8 +41,8 @@ def canvas(axes, width, height):
 
 
 def panels(axes, rows, columns, width, height, mosaic=None, **layout):
-    """Returns a figure and its axes (rows * columns,): new ones, or those given, or new ones in a given (Sub)Figure.
-    `mosaic` arranges new ones as `Figure.subplot_mosaic` does."""
+    """Returns a figure and its axes (rows * columns,). If `axes` is None, both are new. If `axes` is a (Sub)Figure, it
+    receives new axes. Otherwise the given axes are used. `mosaic` arranges new axes as `Figure.subplot_mosaic` does."""
     if axes is None or isinstance(axes, FigureBase):
         figure = canvas(axes, width, height)
         if mosaic:

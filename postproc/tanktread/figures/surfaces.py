@@ -56,7 +56,7 @@ def shape(runs, *axes, time: float | None = None, field: str = "traction", view:
         axis.set_title(f"{run.name}, {run.moment(shot.time)}")
     label = field_label(runs, field, pattern if pattern == "{}" else "magnitude of the {}")
     left, right, low, high = axes[0].axis()
-    width = 0.5 * max(1, 0.5 * (high - low) / (right - left))  # of the colour bar, divided by that of the picture
+    width = 0.5 * max(1, 0.5 * (high - low) / (right - left))  # width of the colour bar divided by width of the picture
     colour_bar(axes[0].figure, norm, colours, label=label,
                cax=axes[0].inset_axes([0.55 - width / 2, -0.08, width, 0.03]))
     draw_sections(axes[-1], runs, shots)

@@ -107,9 +107,9 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
 
 
 def draw_tube_sections(run, d, shaded, along, across):
-    """Draws sections in the plane x2 = centroid, side by side as the particle travels, each about its own centroid
-    along x1, with the wall's lowest and highest x3 on the line of the last centroid's x2; and sections in the plane
-    x1 = centroid inside the wall. Lengths are divided by R_T."""
+    """Draws two kinds of sections through the centroid of a particle. On `along`: sections normal to x2 at successive
+    times, side by side, and the wall as two lines, at its lowest and highest x3 at the x2 of the last centroid. On
+    `across`: sections normal to x1, inside the outline of the wall. Lengths are divided by R_T."""
     across.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
     place = 0.0
     for shot, colour in shaded:

@@ -1,2 +1,3 @@
-"""Studies of many runs: `sweep` over values of keys, `fit` to experiments with `outline` of pictures, `phases` and
-`critical` by bisection. Each module has a command: tanktread-sweep and so on."""
+"""Studies of many runs. `sweep` runs a deck for several values of keys. `fit` fits values of keys to experiments, and
+`outline` finds the outlines of particles in pictures. `phases` and `critical` find the borders between motions, and
+critical values, by bisection. Each of these modules has a command with its name, for example tanktread-sweep."""

@@ -102,8 +102,8 @@ def recorded(fit):
 
 def run(path, directory=None, jobs=None, laws=None):
     """Fits the laws of an experiment file, writes fit.txt, fit.yaml and fit.png, and returns the Fits, the best first.
-    `directory`: of these and runs/ (default: results/<experiment>). `jobs`: runs at a time (default: the number of
-    cores). `laws`: names of the laws that are fitted (default: all)."""
+    `directory`: folder for these files and runs/ (default: results/<experiment>). `jobs`: number of simultaneous runs
+    (default: the number of cores). `laws`: names of the laws that are fitted (default: all)."""
     directory = pathlib.Path(directory or f"results/{pathlib.Path(path).stem}")
     fits, text = load(path, Study(directory=directory / "runs", jobs=os.cpu_count() if jobs is None else jobs))
     known = [fit.law for fit in fits]

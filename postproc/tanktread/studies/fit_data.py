@@ -100,7 +100,7 @@ class OutlineData(Datum):
         self.scale_error = error = given.get("scale error") or 0
         if error:
             self.scale_error = numpy.inf if error == "free" else positive(error, f"{name}: scale error")
-        self.count, self.places = len(self.points), 2 + bool(error)  # places: length of its part of x (shift, scale)
+        self.count, self.places = len(self.points), 2 + bool(error)  # places: number of components of x (shift, scale)
 
     length = property(lambda self: self.count + (0 < self.scale_error < numpy.inf),
                       doc="The number of residuals: one per point, and one of a scale with an error.")
@@ -143,7 +143,7 @@ class SeriesData(Datum):
                f"{name}: `origin: free` is of a curve, and there is no other origin")
         if "curve" in given:
             self.times, self.values = self.columns(folder / str(given["curve"])).T
-            self.span = float(numpy.ptp(self.times)) or 1.0  # unit of the start of the curve in the fit
+            self.span = float(numpy.ptp(self.times)) or 1.0  # unit of the time shift in the fit
         else:
             self.times, self.values = self.at, numpy.array([number(given["value"], f"{name}: value")])
         self.count = len(self.values)

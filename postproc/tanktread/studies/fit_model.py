@@ -12,7 +12,7 @@ STEP = 0.01     # step of the one-sided differences by an unknown during the ite
                 # value divided by its start)
 TELLS = 0.02    # step of the central differences at the solution, from which the standard errors follow
 TINY = 1e-6     # step of the differences by a position
-FAILED = 1e6    # every residual if a run failed
+FAILED = 1e6    # value of every residual if a run failed
 MISSED = 1e-3   # if a chi square as large as that of the fit has a smaller probability, the stated errors of the data
                 # do not explain the residuals
 SETTLED = 1e-2  # the iteration ends if the next step would lower chi square by less than this fraction of chi square
@@ -22,7 +22,7 @@ SERIES = 8      # smallest number of points of a datum for the runs test of the 
 
 
 class Settled(Exception):
-    """Ends the iteration, because the next step is small compared with the standard errors. Its argument is x."""
+    """Ends the iteration, because the next step is small compared with the standard errors. Argument: the vector x."""
 
 
 def parts(sizes):
@@ -119,8 +119,8 @@ class Fit:
         return numpy.reshape(rows, (len(sides), n, self.length)).transpose(0, 2, 1), by_position[:, n:]
 
     def begin(self):
-        """Returns a start vector x for which no run fails: the user's start values, or the first that works of those in
-        which one unknown is multiplied by 3, 1/3, 10 or 1/10."""
+        """Returns a start vector x for which no run fails. Tries the user's start values, and then vectors in which one
+        unknown is multiplied by 3, 1/3, 10 or 1/10."""
         start = numpy.array([one.number(one.start_value) for one in self.unknowns])
         units = numpy.diag([float(one.logarithmic) for one in self.unknowns])
         tries = [start, *(start + shift * unit for shift in numpy.log([3, 1 / 3, 10, 1 / 10]) for unit in units)]

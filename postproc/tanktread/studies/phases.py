@@ -176,7 +176,7 @@ class Diagram:
                      doc="Whether there is anything to draw.")
 
     def draw(self, axes=None):
-        """Returns a figure of the borders, with those of the literature."""
+        """Returns a figure of the borders between the motions, with the borders published in the literature."""
         from matplotlib.ticker import LogLocator, NullLocator
 
         from ..figures import style

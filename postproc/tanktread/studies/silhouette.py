@@ -80,7 +80,7 @@ def _outermost(points):
     wide, far = numpy.concatenate([angle - 2 * numpy.pi, angle, angle + 2 * numpy.pi]), numpy.tile(radius, 3)
     first, last = numpy.searchsorted(wide, angle - window), numpy.searchsorted(wide, angle + window)
     top = numpy.array([far[a:b].max() for a, b in zip(first, last)])
-    # points of inner curves are removed: within the window, the radius of the outline decreases less than this
+    # removes points of inner curves; the radius of the outline decreases by less than this within the window
     points = points[radius > top * (1 - 3 * window)]
     spacing = numpy.linalg.norm(points - numpy.roll(points, 1, axis=0), axis=1).sum() / len(points)
     kept = [0]

@@ -257,7 +257,7 @@ def plot(directory, column, key, axes=None):
             axis.plot(x.T, y.T, color=color)[0].set_label(label)
             continue
         order = numpy.arange(len(x)) if text else numpy.argsort(x)
-        # another dash when the colours repeat
+        # another line style when the colours repeat
         dash = ("-", "--", ":")[k // len(style.RUNS)] if few and not text else ""
         axis.plot(x[order], y[order], "o", linestyle=dash, ms=3.5, color=color if few else style.RUNS[0],
                   label=label if few else None)
