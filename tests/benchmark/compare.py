@@ -88,9 +88,10 @@ def rows_of(old, new):
 
 
 def conditioning(prefix, name, series):
-    """Returns the factor by which the difference of a series is multiplied: 1, but for a direction the relative
-    difference of the axes that determine it, because a direction amplifies round-off if the axes are equally long.
-    Returns None if no series has the axes. This is the inclination of a rigid body, whose quaternion is compared."""
+    """Returns the factor by which the difference of a series is multiplied. The factor of a direction is the relative
+    difference of the two axes that determine it, because round-off is amplified if these axes are nearly equally long.
+    All other factors are 1. Returns None if the axes are not recorded, as for the inclination of a rigid body, whose
+    quaternion is compared instead."""
     if name == "inclination" and prefix + "taylor_inertia" in series:
         return numpy.minimum(1, 2 * series[prefix + "taylor_inertia"])
     if name == "inclination" or name.startswith("axis_1_x"):
@@ -100,7 +101,7 @@ def conditioning(prefix, name, series):
 
 def scaled(name, old, new, unit):
     """Returns the difference of a series in every row; infinity where only one is NaN."""
-    with numpy.errstate(invalid="ignore"):  # inf - inf, of values that are equal
+    with numpy.errstate(invalid="ignore"):  # equal infinite values: inf - inf
         change = abs(new - old)
     if name == "inclination":
         change = numpy.minimum(change, abs(180 - change))  # -90 and 90 degrees are the same direction
@@ -120,7 +121,7 @@ def differences_of(old, new):
         skipped = base in WORK or old.units[name] == "s" or (base in ("time_step", "step_error") and remark)
         if not skipped and factor is not None:
             change = scaled(base, old.series[name][i], new.series[name][j], natural_unit(old.units[name], old))
-            # where the axes are equal, only one of the programs may write NaN for that
+            # NaN from only one of the programs is allowed if the axes are equal up to rounding
             change[numpy.isinf(change) & (factor[i] < 2e-6)] = 0
             found[name] = float(numpy.max(numpy.where(change > 0, change * factor[i], 0.0), initial=0.0))
     first, second = ((run.summary or {}).get("final", {}) for run in (old, new))

@@ -63,8 +63,8 @@ def onset(study, deck, settings):
 
 
 def waist_mode(outcome):
-    """Returns angle (degrees) and radial part of the first changing mode at the nodes of the plane across the axis, and
-    its number of crests, the degree of the largest Fourier coefficient."""
+    """Returns the angle (degrees) and the radial component of the leading mode that changes the shape, at the nodes in
+    the plane normal to the axis, and its number of crests: the degree of the largest Fourier coefficient."""
     shot = outcome.run.snapshots()[-1]
     rates = {k: outcome.series[f"rate_{k}"][-1] for k, kind in outcome.run.summary["modes"].items() if kind == "shape"}
     waist = numpy.flatnonzero(abs(shot.points[:, 2]) < 1e-9)

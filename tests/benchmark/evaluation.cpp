@@ -1,5 +1,5 @@
-// Kernel evaluations per second: the bare far-field sum; the single layer and a whole velocity evaluation at n = 6, 12, 24 split into their
-// parts, each relative to the bare sum of the same run.
+// Measures the kernel evaluations per second of the bare far-field sum, and the parts of the single layer and of a whole velocity evaluation at
+// n = 6, 12, 24, each relative to the bare sum of the same run.
 
 #include <benchmark/benchmark.h>
 

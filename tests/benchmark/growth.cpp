@@ -1,5 +1,5 @@
-// How a whole velocity evaluation grows with the mesh: seconds by phase and bytes at n = 12, 24, 48, 96, and the error of its far sum against
-// the dense one on a sample of targets. tests/benchmark/growth.py runs this, fits exponents and draws.
+// Measures how the cost of a velocity evaluation grows with the mesh: the seconds of each phase and the bytes at n = 12, 24, 48, 96, and the error of
+// the far sum by clusters, compared with the direct sum at a sample of targets. tests/benchmark/growth.py runs this benchmark and draws the figure.
 
 #include <benchmark/benchmark.h>
 #include <malloc.h>
@@ -106,7 +106,7 @@ void growth(benchmark::State& state) {
   counter("far interactions", static_cast<double>(far));
   counter("bytes kept", bytes() - before);
   counter("bytes peak", peak(false));
-  const auto split = [&](const Phases& all, const Phases& earlier, const char* prefix) {  // divides `best` in the ratio of the wall times
+  const auto split = [&](const Phases& all, const Phases& earlier, const char* prefix) {  // distributes `best` in proportion to the wall times
     for (const Phases::Phase& p : all.all()) counter(prefix + p.name + " s", best * (p.seconds - earlier.seconds(p.name)) / wall);
   };
   split(phases, first, "");

@@ -4,9 +4,9 @@
     tests/benchmark/mesh_motion.py [speed ...]
 
 The speeds are 0.1, 0.3, 1 and 3 by default. Each scene of scenes/mesh_motion.yaml runs with 5 elements per side and
-`Time/tolerance` 3e-4. The error is the largest of six series, of each the largest deviation at ten times from a run with 12
-elements per side, `Time/tolerance` 2e-5 and speed 0.3, divided by the largest value of the series. Runs are kept under
-results/mesh_motion.
+`Time/tolerance` 3e-4. The error of a series is its largest deviation, at ten times, from a run with 12 elements per
+side, `Time/tolerance` 2e-5 and speed 0.3, divided by the largest value of the series. The largest error of six series
+is printed. Runs are kept under results/mesh_motion.
 """
 
 from package import SIDE, answer, command_line, expect, interpolation, numpy, scenes_of, table, tanktread

@@ -39,11 +39,11 @@ def exact(scene, l):
 
 
 def modes(study, scene, n, odd):
-    """Returns the rates of the modes nearest to the middle of the harmonics', without rigid motions and the volume."""
+    """Returns the rates of modes near the middle of the exact rates, without rigid motions and the volume mode."""
     membrane = {"Membrane/law": "surface tension", "Membrane/surface tension": 1.0} if SPHERES[scene] else {
         "Membrane/shear modulus": 1.0}
     rates = [exact(scene, l) for l in HARMONICS]
-    number = 5 * n  # slow bending modes of higher harmonics have rates between those of these harmonics
+    number = 5 * n  # slow bending modes of higher harmonics have rates in the same range
     spectrum = {"Spectrum/number": number, "Spectrum/near": (min(rates) + max(rates)) / 2}
     outcome = study.run(SCENES / "relaxation_rates.yaml", membrane | spectrum | {RATIO: SPHERES[scene] or 1.0, SIDE: n}
                         | ({"Spectrum/parity": [1, 1, -1]} if odd else {}))

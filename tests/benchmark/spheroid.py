@@ -93,7 +93,7 @@ def figure_10(found):
         for cell, values in zip(points[near], error[near]):
             mesh = axes.pcolormesh(cell[..., 0], cell[..., 2], values, shading="gouraud", cmap=style.FIELD,
                                    norm=plt.matplotlib.colors.LogNorm(1e-7, 1e-2), rasterized=True)
-            # outlines would cover the narrow pieces of transformed elements
+            # edges are left out where the Bezier transformation makes cells so narrow that the lines would cover them
             if numpy.linalg.norm(numpy.cross(cell[-1, -1] - cell[0, 0], cell[-1, 0] - cell[0, -1])) > 4e-4:
                 edge = numpy.concatenate([cell[0], cell[:, -1], cell[-1, ::-1], cell[::-1, 0]])
                 axes.plot(edge[:, 0], edge[:, 2], color="white", linewidth=0.25, alpha=0.6)

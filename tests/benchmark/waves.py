@@ -7,9 +7,9 @@ SMOOTH = 8  # largest degree of the smooth part of the load, which balances the 
 
 
 def spectrum(snapshot, largest=40):
-    """Returns the power of the load by degree (largest + 1,), the sum over orders and components of the squared
-    coefficients, and the wavelengths 2 pi R/sqrt(l (l + 1)) of the degrees l from 1 (largest,). R: radius of the
-    unstressed sphere."""
+    """Returns the power of the load at the degrees 0 to `largest`, and the wavelengths 2 pi R/sqrt(l (l + 1)) of the
+    degrees l = 1 to `largest`. The power of a degree is the sum of the squared coefficients over its orders and over
+    the components of the load. R: radius of the unstressed sphere."""
     radius, (x, y, z), weights, values = _on_the_sphere(snapshot)
     degrees, power = numpy.arange(1, largest + 1), numpy.zeros(largest + 1)
     # orthonormal harmonics by the stable recursion in the degree; scipy.special.sph_harm takes a hundred times as long
@@ -32,8 +32,8 @@ def share_of_waves(power):
 
 
 def _on_the_sphere(snapshot, gauss=6):
-    """Returns the mean radius of the unstressed surface, and at Gauss points of its cells directions (3, n), weights of
-    the unit sphere (n,) and values of the load (n, 3)."""
+    """Returns the mean radius of the unstressed surface, and three arrays at the Gauss points of its cells: directions
+    (3, n), quadrature weights on the unit sphere (n,), and values of the load (n, 3)."""
     nodes = snapshot.points - snapshot.fields["displacement"]
     nodes = nodes - nodes.mean(0)
     points, weights = numpy.polynomial.legendre.leggauss(gauss)

@@ -24,7 +24,7 @@ from tanktread.files import parsed as read
 from tanktread.files import table
 
 COSTS = {"seconds": "processor seconds", "kernels": "kernel evaluations"}
-# A run that came to its end. Points are compared by identity.
+# A completed run as a point of the figure. Points are compared by identity.
 Point = dataclasses.make_dataclass("Point", "picked label error kind seconds kernels evaluations".split(), eq=False)
 
 
@@ -35,7 +35,7 @@ class Scene:
         vars(self).update({"base": {}, "levels": [1e-3, 1e-4, 1e-5], "pairs": None} | read(path))
         self.name, self.curves = pathlib.Path(path).stem, curves
         self.default = {choice: next(iter(options)) for choice, options in self.choices.items()}
-        # the choice that is shown by colours: the one with most options, where those of `time` count twice
+        # colours show the choice with the most options; the options of the choice `time` count twice
         self.shape = max(self.choices, key=lambda choice: len(self.choices[choice]) * (1 if choice == "time" else 0.5))
 
     def combinations(self, differences, only):
@@ -162,7 +162,7 @@ def main():
     colors = dict(zip(kinds, style.RUNS if len(kinds) <= len(style.RUNS) else shades))
     on_front = sorted({*front(points, "seconds"), *front(points, "kernels")}, key=lambda one: -one.error)
     numbers = {point: number for number, point in enumerate(on_front, 1)}
-    # of a study with two choices, lines join the runs with the same option of the one that colours stand for
+    # if the study has two choices, lines join the runs with equal options of the choice that colours show
     options = dict.fromkeys(one.picked[scene.shape] for one in points) if len(scene.choices) == 2 else ()
     families = [[one for one in points if one.picked[scene.shape] == option] for option in options]
     figure, axes = plt.subplots(1, 3, figsize=(11.5, 5.2), width_ratios=[1, 1, 0.42])

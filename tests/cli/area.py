@@ -15,8 +15,8 @@ Tanktread:
 
 
 def an_area_modulus_of_10000_needs_at_most_twice_the_evaluations_of_10():
-    """Measured: 1.5 times the evaluations and 1.3 times the steps. If the iteration of a stage started from
-    extrapolated slopes only (see Dynamics::improve_start), the step size would decrease without limit."""
+    """Measured: the larger modulus takes 1.5 times the evaluations and 1.3 times the steps. If the iteration of a stage
+    started from extrapolated slopes only (see Dynamics::improve_start), the step size would decrease without limit."""
     counts = []
     for c in 10, 10000:
         run(deck(DECK), "--set", f"Membrane/area dilatation={c}", "--output", f"c_{c}", "--quiet")

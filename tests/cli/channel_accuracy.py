@@ -27,8 +27,8 @@ OF_PASSAGE = "velocity_x1", "velocity_x2", "disturbed_pressure_drop", "channel_p
 
 def _empty(name, *lines, half_length=2.0, depth=0.5, ends=4.0):
     """Returns the extra pressure drop of an empty constriction, and the flow rates through ten cross-sections divided
-    by the flow rate at the inlet. A particle is required; it is held far from the constriction, where it changes
-    neither."""
+    by the flow rate at the inlet. The deck must have a particle. It is held far from the constriction, where
+    it changes neither the pressure drop nor the flow rates."""
     reach = half_length + ends
     scene = f"""
 Tanktread:

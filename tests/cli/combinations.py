@@ -75,7 +75,7 @@ NO_DECK = {*(("kind", kind, "law", "surface tension") for kind in ("capsule", "r
            *(("kind", kind, "law", "none") for kind in FACTORS["kind"] if kind not in RIGID)}
 RANK = {factor: k for k, factor in enumerate(FACTORS)}
 # Known defects: cases in which a resumed run is not bitwise equal. A function of the choices, the differences and the
-# names of the counters.
+# names of the counters returns true if the defect explains the differences.
 OPEN = {
     "a resumed run counts an evaluation less": lambda c, off, counts: off and len(counts) == len(off),
     "a resumed run differs by rounding": lambda c, off, counts: off and (c["medium"] != "unbounded" or c["adaptation"] == "yes") and
@@ -199,7 +199,8 @@ class Scene:
         if c["surfactant"] == "yes":
             lists["Interface"] = {"surfactant": {"elasticity number": 0.3, "diffusivity": 0.1 * self.a**2}}
         if c["adaptation"] == "yes":
-            lists["Adaptation"] = {"enabled": True, "surface tolerance": 5e-6 * self.a, "levels": 1}  # to 218 points, after a step or two
+            # the mesh has 218 points after a step or two
+            lists["Adaptation"] = {"enabled": True, "surface tolerance": 5e-6 * self.a, "levels": 1}
             lists["Surface"]["extraordinary points"] = "catmull-clark"
         return lists
 
@@ -284,8 +285,9 @@ def reason(pair, said):
 class Cover:
     """Decks that cover all pairs that the program accepts, and a deck of each pair that it rejects.
 
-    Greedy: each deck starts from an uncovered pair and takes the values that cover most other pairs, as far as no pair of them is known to be
-    rejected. If the program rejects it, the pairs that its messages name are tested separately.
+    Greedy algorithm: each deck starts from an uncovered pair and adds the choices that cover most other pairs, without
+    pairs that are known to be rejected. If the program rejects the deck, the pairs that the messages name are tested
+    separately.
     """
 
     def __init__(self):

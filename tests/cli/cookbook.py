@@ -8,8 +8,8 @@ A page is tested as it stands, in a copy:
 - The commands of the blocks ```sh are run from the root of the copy and end with exit code 0. `Expect` in the decks holds the values that are expected.
 - Each line of a block ```text is printed by these commands, in this order. Numbers agree to 1e-3, or to two units of the last digit. A line may end
   early, with an ellipsis.
-- A picture ![...](name.png) is made by them as results/name.png, and the committed one has at most 60 kB.
-- Numbers with a decimal point in the text are those of a block, rounded. Numbers in code style are quoted from elsewhere.
+- The commands make the picture ![...](name.png) as results/name.png. The committed picture has at most 60 kB.
+- A number with a decimal point in the text is a rounded number of a block. Numbers in code style are not checked.
 - What the text gives as `--set '...'` is accepted on top of the page's deck, and each command of the package that it names exists.
 - Relative links lead to a file.
 

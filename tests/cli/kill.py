@@ -62,7 +62,7 @@ def the_files_of_a_killed_run_contain_every_completed_step():
         end = time.monotonic() + moments.uniform(0.02, 1) * duration
         seen = 0
         while time.monotonic() < end and process.poll() is None:
-            seen = max(seen, _rows(results))  # also: a run that goes on can be watched
+            seen = max(seen, _rows(results))  # tests also that the record can be read during the run
         process.send_signal(signal.SIGKILL)
         process.communicate()
         rows = _rows(results)

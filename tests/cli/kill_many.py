@@ -2,7 +2,8 @@
 # label: long
 # ranks: 2
 # Tests that a run with 64 capsules, killed at any moment, is resumed from its last checkpoint: bitwise equal on the
-# same number of ranks, equal up to rounding on other numbers. The third argument is the number of kills (20).
+# same number of ranks, equal up to rounding on other numbers. The third argument is the number of kills (default:
+# 20).
 import pathlib
 import random
 import signal

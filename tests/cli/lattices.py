@@ -223,7 +223,7 @@ Tanktread:
 
 
 def the_relative_viscosity_is_undefined_when_an_oscillating_flow_pauses():
-    """The amplitude of the sine is 1e-16 there, not exactly 0."""
+    """At the final time, rounding gives the amplitude sin(pi) the value 1e-16 instead of 0."""
     deck("""
 Tanktread:
   Flow: {type: simple shear, history: {type: sine, frequency: 1}}

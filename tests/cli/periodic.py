@@ -85,7 +85,8 @@ def floquet_exponents_in_a_weakly_pulsating_flow_are_growth_rates_of_the_steady_
         run(deck(text), "--output", "periodic", "--quiet", "--overwrite")
         run(deck(steady), "--output", "steady", "--quiet", "--overwrite")
         rate = series("steady", "leading_rate")[-1]
-        # errors of the time steps change the multiplier exp(rate) by some Time/tolerance divided by Periodic/difference, 1e-4
+        # errors of the time steps change the multiplier exp(rate) by about Time/tolerance divided by
+        # Periodic/difference, 1e-4
         close(series("periodic", "leading_rate")[-1], rate, 5e-4 * math.exp(-rate), f"leading rate, {interface}")
         rates = [series("periodic", f"rate_{k}")[-1] for k in range(1, 9)]
         check(not any(rate < math.log(1e-4) for rate in rates), "hidden modes are not reported", rates)
@@ -93,14 +94,14 @@ def floquet_exponents_in_a_weakly_pulsating_flow_are_growth_rates_of_the_steady_
 
 
 def a_drop_in_pulsating_shear_has_a_periodic_motion():
-    """Its mesh points slide along the interface, so that they do not return. Shape, surfactant and growth rates do."""
+    """The mesh points slide along the interface and do not return. The shape, surfactant and growth rates return."""
     surfactant = "Interface: {surfactant: {equation of state: Langmuir, elasticity number: 0.2, coverage: 0.5, Peclet number: 10}}"
     for interface, names in ("", ["taylor_inertia", "area"]), (surfactant, ["taylor_inertia", "area", "largest_concentration"]):
         text = PULSATING % ("simple shear", "0.5", "Particle: {shape: sphere}", "5.0", interface, 6, "1.0e-4", "%s", "%s")
         run(deck(text % ("", "Periodic: {period: 1.0, tolerance: 1.0e-5}")), "--output", "found", "--quiet", "--overwrite")
         run(deck(text % (", final time: 8", "Output: {interval: 8.0}")), "--output", "run", "--quiet", "--overwrite")
         for name in names:
-            close(series("found", name)[-1], series("run", name)[-1], 1e-3, name)  # the mesh points are at other places of the interface
+            close(series("found", name)[-1], series("run", name)[-1], 1e-3, name)  # other mesh points
         check(abs(series("found", "volume_error")[-1]) < 1e-12, "the volume is not that of the deck")
     slow = PULSATING % ("simple shear", "1.0e-3", "Particle: {shape: sphere}", "5.0", "", 4, "1.0e-6", "", "Spectrum: {number: 3}\n  %s")
     run(deck(slow % "Periodic: {period: 1.0, tolerance: 1.0e-5}"), "--output", "slow", "--quiet")
@@ -111,7 +112,8 @@ def a_drop_in_pulsating_shear_has_a_periodic_motion():
 
 
 def the_mesh_of_a_drop_in_an_oscillating_flow_returns():
-    """The relaxation restores the mesh after every cycle; without it (`normal`), D changes by 0.7 % from the fourth to the sixteenth cycle."""
+    """The relaxation restores the mesh after every cycle. With the motion `normal`, D changes by 0.7 % from the fourth
+    to the sixteenth cycle."""
     run(deck("""
 Tanktread:
   Flow: {type: simple shear, history: {type: sine, frequency: 0.25}}

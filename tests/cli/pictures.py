@@ -286,7 +286,7 @@ Tanktread:
     _command("shape", "pair")
     upper, lower = next(axis for axis in figures.meshes("pair", times=[0.2]).axes if axis.name == "polar").lines
     check([upper.get_label(), lower.get_label()] == ["upper", "lower"], "a curve for each particle")
-    (angle, variation), (other_angle, other) = upper.get_data(), lower.get_data()  # equal to each other, turned by 180 degrees
+    (angle, variation), (other_angle, other) = upper.get_data(), lower.get_data()  # equal after half a turn
     turned = numpy.interp(angle, other_angle + numpy.pi, other, period=2 * numpy.pi)
     close(abs(variation - turned).max() / variation.max(), 0, 0.02, "difference of two equal particles")
     check("two particles" in _command("encounter", _alone(), code=2), "an encounter of one")

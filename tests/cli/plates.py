@@ -48,7 +48,7 @@ def _first(name, text, *settings, names, ranks=1):
 
 
 def the_force_and_torque_on_a_sphere_midway_between_plates_are_exact():
-    """The exact Green's function of the slit and point sources."""
+    """The expected values were computed with the exact Green's function of the slit and with point sources."""
     across = _first("across", SPHERE, "Particles/sphere/velocity=[0, 0, 1]", names=["sphere/drag_x3", "wall_force_x3", "second_wall_force_x3"])
     close(across[0] / (-6 * math.pi), 2.789204, 5e-4, "drag across")
     close(across[1] + across[2] + across[0], 0, 1e-6 * abs(across[0]), "sum of the forces across")

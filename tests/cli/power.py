@@ -150,7 +150,7 @@ def after_a_change_of_the_mesh_the_power_uses_the_new_velocity():
     run("spindle.yaml", "--output", "spindle", "--quiet")
     points, lacks = series("spindle", "n_control_points"), numpy.abs(series("spindle", "power_residual"))
     check(points[-1] > points[0], "no refinement to look at", points)
-    # if the velocity of the previous mesh were used: 5e-3
+    # it would be 5e-3 with the velocity of the previous mesh
     check(lacks.max() < 1e-3, "a row has the loads of one mesh and the velocity of another", lacks)
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # ranks: 2
-"""Accuracy on request: levels, estimated errors, their files, resumption, and the message if a request is not met."""
+"""Tests of requested accuracy: levels, estimated errors and their files, resumption, messages about missed requests."""
 import math
 import os
 import pathlib

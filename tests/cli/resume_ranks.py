@@ -2,7 +2,7 @@
 # ranks: 3
 # Tests that a run resumed on another number of ranks gives the result of one rank: far sum by clusters, refinement,
 # tube, drop.
-# A third argument `all`: every number from one to four, and a table of the largest differences.
+# With the third argument `all`, tests every number of ranks from one to four, and prints the largest differences.
 import shutil
 import sys
 

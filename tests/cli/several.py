@@ -95,7 +95,7 @@ def the_order_of_particles_does_not_matter():
     a, b = _all("one"), _all("other")
     for name in a:
         if name.startswith(("first", "second")):
-            continue  # numbers in the order of the deck
+            continue  # numbers of particles, in the order of the deck
         off = difference(a[name], b[name], name)
         check(off <= 1e-10, name, "is off by", off)
 
@@ -333,7 +333,7 @@ Tanktread:
 """)
     run("deck.yaml", "--output", "fine", "--quiet")
     run("deck.yaml", "--output", "coarse", "--quiet", "--set", "Particles/defaults/Adaptation/enabled=false")
-    exact = -4.03209888 * 6 * numpy.pi  # ../shared: multipole solution, X^A_11 of Jeffrey & Onishi at distance 2.1
+    exact = -4.03209888 * 6 * numpy.pi  # own multipole solution: X^A_11 of Jeffrey & Onishi at the distance 2.1
     by_tractions = ["--set", "Solvers/rigid bodies=first kind", "--set", "Quadrature/tolerance=1.0e-6"]
     run("deck.yaml", "--output", "tractions", "--quiet", *by_tractions)
     run("deck.yaml", "--output", "ranks", "--quiet", *by_tractions, ranks=2)

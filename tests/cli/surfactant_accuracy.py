@@ -48,7 +48,8 @@ def implicit_schemes_have_their_orders_and_agree_with_the_explicit_one():
             off = _difference(free, explicit, k, times)
             order = numpy.log2(_difference(fixed[0], explicit, k, times) / _difference(fixed[1], explicit, k, times))
             check(off < 1e-6, f"{k} of {scheme} differs by {off}")
-            # Both have order 3, tr-bdf2 by extrapolation. Measured here: 2.9, and 2.5 to 2.8, which rises to 2.9 with the next halving.
+            # Both have order 3, tr-bdf2 by extrapolation. Measured: 2.9 (tr-bdf2), and 2.5 to 2.8 (bdf3), which becomes
+            # 2.9 if the steps are halved again.
             check(order > (2.7 if scheme == "tr-bdf2" else 2.4), f"{k} of {scheme} falls with order {order}")
         mass = abs(series(free, "surfactant_mass") - 1).max()
         check(mass < 1e-12, f"the mass of {scheme} is off by {mass}")
@@ -84,9 +85,10 @@ def branches_agree_with_separate_searches():
 
 
 def an_adaptive_mesh_has_the_accuracy_of_a_finer_one_with_fewer_points():
-    """Until D = 0.41, on a mesh with the motion `relaxed`. The points of the finer mesh move with the fluid, so that
-    they gather where the surfactant gathers. The estimated error is of one interpolation, 3e-5 of the mean
-    concentration. The measured errors of the largest concentration accumulate in time, up to 1.8e-4."""
+    """The drop is stretched until D = 0.41. The adaptive mesh has the motion `relaxed`. The points of the finer mesh
+    move with the fluid, so that they gather where the surfactant gathers. The estimated error, 3e-5 of the mean
+    concentration, is the error of one interpolation. The errors of the largest concentration accumulate in time.
+    Measured: up to 1.8e-4."""
     case = {"Flow": {"type": "uniaxial extension"}, "Membrane": {"capillary number": 0.15}, "Time": {"tolerance": 1e-6, "final time": 1.1},
             "Interface": {"surfactant": {"elasticity number": 0.2}}, "Output": {"interval": 0.1}}
     uniform = _run("uniform", _merged(case, {"Interface": {"motion": "material"}, "Surface": {"elements per side": 18}}))

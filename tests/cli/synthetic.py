@@ -21,7 +21,7 @@ def moduli_from_noisy_profiles_scatter_by_their_stated_errors():
     check(len(rows) == 4, result.stdout)
     for law, noise, bias, error, ratio, told, number, wrong in rows:
         check(abs(float(bias)) < 3.5 * float(error), law, noise, "bias", bias, error)
-        # the standard deviation of 40 samples is uncertain by 11 %; the bounds are three times this
+        # the standard deviation of 40 samples is uncertain by 11 %; the bounds allow for three times this uncertainty
         check(0.65 < float(ratio) < 1.4, law, noise, "spread over stated", ratio)
         check(int(wrong) == 0, law, noise, "another law is preferred", wrong)
     check(int(rows[0][5]) > 0.6 * int(rows[0][6]), "the law is not told at the smaller noise", rows[0])

@@ -178,7 +178,7 @@ def spheres_solved_for_by_tractions_agree_with_multipoles():
 
 
 def a_body_far_from_the_origin_moves_like_one_at_the_origin():
-    """Points at which the residual is computed coincide with nodes of the coarse quadrature, also after rounding."""
+    """Points at which the residual is computed coincide with nodes of the coarse quadrature, up to rounding errors."""
     text = SPHERES.replace("azimuthal elements: 16, axial elements: 16", "azimuthal elements: 8, axial elements: 6").replace("1.0e-5", "2.0e-3")
     text = text.replace("scheme: bs3, fixed step: 0.1, final time: 0.1", "final time: 1.0e-4")  # the first step is chosen from a trial
     found = {}

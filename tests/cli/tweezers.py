@@ -49,8 +49,9 @@ def _stretch(force, radius, degree=60):
 
 
 def _drift(force, radius):
-    """Returns the velocity of the centroid under one force, if both viscosities are 1. The single layer has the
-    eigenvalues 2/3 on Y r + grad Y and 1/15 on -2 Y r + grad Y."""
+    """Returns the velocity of the centroid of the unit sphere under one force, if both viscosities are 1. With the unit
+    normal r and a spherical harmonic Y of degree 1, the single layer has the eigenvalue 2/3 for the eigenfunction
+    Y r + grad Y and the eigenvalue 1/15 for -2 Y r + grad Y."""
     _, radial, tangential, _ = next(_harmonics(force, radius, 2))
     return 2 / 3 * (radial + 2 * tangential) / 3 - 2 / 15 * (tangential - radial) / 3
 

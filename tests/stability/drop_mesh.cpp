@@ -1,5 +1,5 @@
 // Mesh of a drop in an extensional flow. If the mesh is convected with the fluid, its elements are stretched until they fold. If it only moves across
-// the interface, or is relaxed along it, they are not. Map drop-mesh of tests/benchmark/atlas.py.
+// the interface, or is relaxed along it, they are not. See the map `drop-mesh` of tests/benchmark/atlas.py.
 
 #include <gtest/gtest.h>
 

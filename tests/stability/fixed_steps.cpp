@@ -1,5 +1,6 @@
 // Largest fixed time steps. Explicit steps and the sub-iteration of Crank-Nicolson are limited by the fastest mode of the mesh (4.5); the
-// quasi-Newton iteration of TR-BDF2 is not. Maps fixed-step, fixed-step-dilatation and fixed-step-mesh of tests/benchmark/atlas.py.
+// quasi-Newton iteration of TR-BDF2 is not. See the maps `fixed-step`, `fixed-step-dilatation` and `fixed-step-mesh` of
+// tests/benchmark/atlas.py.
 
 #include <cmath>
 #include <string>

@@ -1,5 +1,5 @@
 // Gaps. If the faces of a thin rigid disc are closer to each other than the points of a fixed quadrature rule, its integrals are wrong. Rules by
-// tolerance are not affected by the gap. Map gap of tests/benchmark/atlas.py.
+// tolerance are not affected by the gap. See the map `gap` of tests/benchmark/atlas.py.
 
 #include <cmath>
 #include <string>

@@ -1,5 +1,6 @@
-// Strong form on the structured mesh, Ca = 0.45 (section 4.2 of the paper, Figure 12): the step size goes to zero, earliest with the poles on x2. The
-// weak form completes the run. Map load-form of tests/benchmark/atlas.py.
+// Strong and weak form of the load on the structured mesh at Ca = 0.45 (section 4.2 and Figure 12 of Maestre et al. 2017). With the strong form the
+// step size goes to zero, earliest if the poles are on x2. With the weak form the run reaches its final time. The map `load-form` of
+// tests/benchmark/atlas.py shows both forms for other parameters.
 
 #include <string>
 

@@ -1,6 +1,6 @@
 // Planar hyperbolic flow at Ca = 0.8, in which a capsule's tips are sharper than the elements of a coarse mesh: valleys next to the tips and a
 // compression appear that are not physical. On the paper's 218 control points (section 4.3, Figures 17 and 18) the shape is right and the traction is
-// not. Maps hyperbolic and tip-traction of tests/benchmark/atlas.py.
+// not. See the maps `hyperbolic` and `tip-traction` of tests/benchmark/atlas.py.
 
 #include <algorithm>
 #include <limits>

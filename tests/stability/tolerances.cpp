@@ -1,5 +1,5 @@
-// Tolerances that are not met, or that cost more than they are worth. Maps step-tolerance, quadrature-tolerance and volume-drift of
-// tests/benchmark/atlas.py.
+// Tolerances that are not met, or that cost more than they are worth. See the maps `step-tolerance`, `quadrature-tolerance` and
+// `volume-drift` of tests/benchmark/atlas.py.
 
 #include <cmath>
 #include <string>

@@ -1,5 +1,5 @@
 // Viscosity ratios near 0 and up to 100. As lambda -> 0, the breathing mode nearly becomes a null vector of the system for the velocity, so volume is
-// lost without the flux constraint. Map viscosity-ratio of tests/benchmark/atlas.py.
+// lost without the flux constraint. See the map `viscosity-ratio` of tests/benchmark/atlas.py.
 
 #include <cmath>
 #include <string>

@@ -20,7 +20,7 @@ OWNERS = {
 }
 # Libraries that include others.
 BRINGS = {"TRILINOS": {"TRILINOS", "TEUCHOS", "MPI"}, "HDF5": {"HDF5", "MPI"}}
-# Files that alone may include a library: {(module, library): file}.
+# Only this file of a module may include the library: {(module, library): file}.
 ONLY_IN = {("membrane", "TRILINOS"): "direct_solver.cpp"}
 
 
@@ -77,7 +77,8 @@ def include_errors(source, modules):
 
 
 def kernel_errors(source):
-    """Yields kernel files whose functions are not in the namespace of their instruction set. The linker would choose one arbitrarily."""
+    """Yields kernel files whose functions are not in the namespace of their instruction set. Several instruction sets
+    define functions of the same name. In one namespace, the linker would choose one of them arbitrarily."""
     for path in sorted((source / "lib").rglob("*_kernel.cpp")):
         if not re.search(r"^(inline )?namespace (\w+::)*INSTRUCTIONS {$", path.read_text(), re.MULTILINE):
             yield f"{path}: a file *_kernel.cpp has its functions in the namespace INSTRUCTIONS (base/kernel.hpp)"

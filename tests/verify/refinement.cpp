@@ -55,9 +55,9 @@ TEST(Refinement, SequencesOnSurfacesWithPolesStayNested) {
     for (unsigned seed = 0; seed < 30; ++seed) run_sequence(base[seed % 2], seed, options, found);
     expect_nested(found);
     EXPECT_EQ(found.finest, 1);
-    // Measured with `c1`: 12.3, scaled 11.1. With `plain`, one function per pole replaces a whole row. The norm of its column grows with the number
-    // of points of that row: the condition is 14 (8 x 4) to 19 (32 x 16) without refinement and 24 here; the cube has 9. With columns scaled to
-    // length one, which is what matters for a direct solver, it is at most 9.4.
+    // Measured with `c1`: 12.3, and 11.1 with columns scaled to length one. With `plain`, one function per pole replaces a whole row of functions.
+    // The norm of its column grows with the number of points of this row. The condition number is therefore 14 (8 x 4) to 19 (32 x 16) without
+    // refinement, and 24 here; on the cube it is 9. With scaled columns, which matter for a direct solver, it is at most 9.4.
     EXPECT_LT(found.condition, poles == PoleRule::c1 ? 15 : 25);
     EXPECT_LT(found.scaled, 15);
   }

@@ -1,5 +1,5 @@
-// Interface with viscosity ratio lambda that keeps the shape of a sphere and bears no load. The pressure drop is computed in three ways. With the
-// sign of (2.7) as printed in the paper, that equation contradicts the other two.
+// Interface with viscosity ratio lambda that keeps the shape of a sphere and bears no load. The pressure drop is computed in three ways. With
+// the sign that is printed in the paper, (2.7) contradicts the other two ways.
 
 #include <cmath>
 

@@ -76,8 +76,8 @@ TEST(RigidSphereInATube, OffTheAxisMovesAsOnOtherMeshes) {
 }
 
 TEST(RigidSphereInATube, OffTheAxisAddsTheAsymptoticPressureDrop) {
-  // Asymptotically dp R/(mu V) = (160/3) a^3 b^2 + ... At b = 0.3 the next term is about 3 a^2 times this one, so it is four times as large for twice
-  // the radius.
+  // Asymptotically dp R/(mu V) = (160/3) a^3 b^2 + ..., with the radius a and the distance b from the axis. At b = 0.3 the next term is about 3 a^2
+  // times the first term. The ratio of the two terms is therefore four times as large for twice the radius.
   double ratio[2];
   int k = 0;
   for (const double a : {0.05, 0.1}) {

@@ -1,5 +1,5 @@
 // Tubes that are not round, for which no exact solution is known: compared with values to which results on finer and finer wall meshes converged,
-// with spherical harmonics on the sphere. Also the empty tube.
+// with spherical harmonics on the sphere. The empty tube is tested as well.
 
 #include <cmath>
 #include <numbers>
@@ -72,7 +72,7 @@ TEST(TubeSections, SphereInASquareWithFourCorners) {
 
 TEST(TubeSections, EmptyTubeIsPoiseuilleAndSampson) {
   // With unit pressure drop and without equation (2.7): Q/dp = pi/(8 (L + 3 pi/8)) to 2 %, where 3 pi/8 accounts for the end losses of an orifice at
-  // each end; compared also with results on other meshes.
+  // each end. The results are also compared with those on other meshes.
   const double lengths[] = {4, 2 * pi}, known[] = {0.077170, 0.053449};
   for (const int k : {0, 1}) {
     const coupling::Wall wall(circular_duct(21, 17, lengths[k]).wall, {});

@@ -116,7 +116,7 @@ TEST(Levels, AreBalancedByTheSharesOfTheirParts) {
   EXPECT_EQ(balanced(3, 0, 0), (Level{3, 2, 2}));  // no looser than level 2
   EXPECT_EQ(balanced(4, 0.03, 0.03), (Level{4, 3, 3}));
   EXPECT_EQ(balanced(4, 0, 1e-6), (Level{4, 2, 2}));
-  EXPECT_EQ(balanced(4, 1, 1), (Level{4, 6, 5}));  // the error of time falls more slowly than that of the mesh
+  EXPECT_EQ(balanced(4, 1, 1), (Level{4, 6, 5}));  // per level, the time error falls more slowly than the mesh error
 }
 
 TEST(Levels, LeaveOutASectionOfADeck) {

@@ -44,8 +44,9 @@ TEST(Errors, AreThoseOfATrustedRequestForAnyOrderOfTheRequests) {
   }
 }
 
-/// The error of the mesh is positive, that of the time integration negative. Level 3 has a much smaller time tolerance, so that the two parts of the
-/// difference between the levels 2 and 3 nearly cancel. Errors of the levels 0 and 1 only make the differences fall regularly.
+/// The error of the mesh is positive, and the error of the time integration is negative. Level 3 has a much smaller time tolerance, so that the two
+/// parts of the difference between the levels 2 and 3 nearly cancel. The errors of the levels 0 and 1 are chosen such that the differences fall
+/// regularly.
 TEST(Errors, OfMeshAndTimeThatCancelInTheDifferenceAreNotTooSmall) {
   const auto of_mesh = [](int k) { return expected_error({k, k, k}); };
   const double of_time = -0.75 * of_mesh(2);  // on level 2

@@ -74,7 +74,7 @@ TEST(StrainEnergy, LoadAndTangentAreTheDifferencesOfTheEnergy) {
   }
 }
 
-/// The strong form of the load (equation 3 of Maestre et al. 2017) uses dual numbers; compares with a built-in law.
+/// Compares the strong form of the load (equation 3 of Maestre et al. 2017), which uses dual numbers, with the load of a built-in law.
 TEST(StrainEnergy, TheStrongLoadIsThatOfTheBuiltInLaw) {
   const Sphere& s = sphere(3);
   const Net x = deformed(s.net);

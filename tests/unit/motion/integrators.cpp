@@ -192,7 +192,7 @@ TEST(Integrators, SecantsSaveEvaluationsWithoutChangingTheResult) {
   }
 }
 
-// The extrapolation (4.30) needs no exact Jacobian: the neglected part changes only the error of fourth order.
+// The extrapolation (4.30) needs no exact Jacobian: the part that the Jacobian neglects changes the error only at fourth order.
 TEST(Integrators, TrBdf2IsOfThirdOrderForAnIncompleteJacobian) {
   const auto error = [](double step) {
     TimeOptions options = with("tr-bdf2");
@@ -239,7 +239,7 @@ TEST(QuasiNewton, TheErrorOfAStageIsMeasuredAndBounded) {
   }
 }
 
-/// Returns the distance to the slow solution after steps of 0.1 that start far from it.
+/// Returns the distance from the slow solution after `steps` steps of 0.1. The first step starts far from this solution.
 double transient(const std::string& scheme, double rate, int steps) {
   TimeOptions options = with(scheme);
   options.fixed_step = 0.1;

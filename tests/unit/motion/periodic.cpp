@@ -74,7 +74,7 @@ TEST(Periodic, AMotionThatStartsAtRestNeedsNoFinalTime) {
     double time_ = 0;
   } motion;
   TimeOptions time = explicit_steps();
-  time.final_time = std::numeric_limits<double>::quiet_NaN();  // not in the deck of a search
+  time.final_time = std::numeric_limits<double>::quiet_NaN();  // decks of searches have no final time
   PeriodicOptions options;
   options.driven = true, options.period = 2 * std::numbers::pi;
   const Net x = Net::Constant(1, 3, 0.5);

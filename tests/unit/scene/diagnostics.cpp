@@ -106,7 +106,7 @@ TEST(FlowPlanes, AreThoseInWhichALinearFlowMovesAndChanges) {
   EXPECT_LT((plane.axes * plane.axes.transpose() - Mat3::Identity()).norm(), 1e-14);
 }
 
-// The first normal stress difference is that along the flow minus that along the gradient, whichever axes the deck gives them.
+// The first normal stress difference is the normal stress along the flow minus the normal stress along its gradient, for any directions of the two.
 TEST(FlowPlanes, HaveTheDirectionsOfAShearFlow) {
   const Mat3 stress = (Mat3() << 3, 0.2, 0.5, 0.2, -1, 0.1, 0.5, 0.1, -2).finished();  // shear along x1 with the gradient along x3
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();

@@ -42,7 +42,7 @@ TEST(Drift, AParticleInShearIsNotHeld) {
   for (const double angle : {0.3, 1.1, 2.5}) {
     ParticleScene s = scene("linear");
     const Mat3 turn = Eigen::AngleAxisd(angle, Vec3(1, 2, -1).normalized()).toRotationMatrix();
-    s.flow.gradient = turn.col(0) * turn.col(2).transpose();  // its eigenvalues are 0, but up to 1e-5 by rounding
+    s.flow.gradient = turn.col(0) * turn.col(2).transpose();  // the exact eigenvalues are 0; rounding makes them up to 1e-5
     EXPECT_FALSE(holds_centre(s)) << angle;
   }
 }

@@ -107,7 +107,7 @@ TEST(Knots, MirrorAtAnExtraordinaryPoint) {
 }
 
 TEST(Knots, UniformSplineOnOneSpan) {
-  // Source: the four functions on one span of a uniform cubic spline, 1/6, 2/3, 1/3, 1/6.
+  // The Bernstein coefficients of the four uniform cubic B-splines that are not zero on a span are known: 0, 1/6, 1/3 and 2/3.
   const std::array<double, 5> k{-2, -1, 0, 1, 2};
   const double expected[4][4] = {{0, 0, 0, 1. / 6}, {1. / 6, 1. / 3, 2. / 3, 2. / 3}, {2. / 3, 2. / 3, 1. / 3, 1. / 6}, {1. / 6, 0, 0, 0}};
   for (int span = 0; span < 4; ++span) {

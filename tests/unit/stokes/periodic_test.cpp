@@ -158,7 +158,7 @@ TEST(PeriodicKernel, StressletsOverASphereAreThoseOfItsVolumeFraction) {
   EXPECT_LT((over_sphere(one, {0.02, 0.05, -0.03}, a) + 8 * pi * Mat3::Identity()).norm(), 1e-8);
 }
 
-/// T = -p I + grad G + grad G^T is compared with differences of the Stokeslet, except for the pressure, whose part is a multiple of I.
+/// Compares T = -p I + grad G + grad G^T with finite differences of the Stokeslet G. The pressure term, a multiple of I, is not compared.
 TEST(PeriodicKernel, StressletsAreDifferencesOfStokeslets) {
   constexpr int number[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}, stress[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const Vec3 r(0.21, -0.17, 0.3);

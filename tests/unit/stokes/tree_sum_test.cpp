@@ -97,7 +97,7 @@ TEST(Clusters, HaveNodesOnlyWhereTheseAreFewerThanTheirPoints) {
   EXPECT_GT(nodes, 0);
 }
 
-// Ranks round differently. Equally good clusters must not be chosen by these errors: in a scene with mirror planes there are many.
+// Rounding errors differ between ranks. They must not decide between equally good clusters, of which there are many in a scene with mirror planes.
 TEST(Clusters, OfMirroredPointsDoNotDependOnRounding) {
   const Cloud half(2000, 0, 1);
   std::vector<double> x[3], moved[3];

@@ -119,7 +119,7 @@ TEST(Channel, HasCreasesWhereItsCurvatureJumps) {
     for (const auto& sites : wall.space.collocation)
       for (const spline::Site& site : sites)
         EXPECT_LT((value(wall.space, wall.net, site) - value(wall.space, wall.net, sites.front())).norm(), 1e-12);
-    for (int e = 0; e + 12 < static_cast<int>(wall.space.elements.size()); ++e)  // the normal of the surface is continuous there
+    for (int e = 0; e + 12 < static_cast<int>(wall.space.elements.size()); ++e)  // the normal is continuous between e and e + 12
       EXPECT_LT((point(wall.space, wall.net, {e, 1, 0.5}).n - point(wall.space, wall.net, {e + 12, 0, 0.5}).n).norm(), 1e-7);
   }
   EXPECT_EQ(Channel(step()).knots(40).size(), 41u) << "the sides of a step would have many points at one place";

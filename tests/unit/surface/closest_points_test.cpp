@@ -120,7 +120,8 @@ TEST(ClosestPoints, OfSurfacesThatMeetHaveNoGap) {
   EXPECT_LT(closest(shape, shape.sphere, other).gap, 1e-7);
 }
 
-/// Elements on the far side of a thin body are behind a point in front of it, and are no film of width 0, in whichever order they are visited.
+/// A point in front of a thin body is behind the tangent planes of the elements on the far side of the body. In whatever order the elements are
+/// visited, these elements must not give a film of width 0.
 TEST(FilmWidths, InFrontOfAThinBody) {
   const Shape shape;
   const Net disc = shape.sphere.array().rowwise() * Eigen::RowVector3d(1, 1, 0.15).array();

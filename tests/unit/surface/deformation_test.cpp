@@ -108,8 +108,8 @@ TEST(Deformation, ExtremesOfAnIrregularSurfaceAgreeWithDenseSampling) {
 }
 
 TEST(Deformation, ExtremesDoNotDependOnWhereElementsMeetThePlane) {
-  // Aligned, the section runs along element edges; rotated about x2, through the elements. The section of an ellipsoid of revolution about x2 with
-  // circular section stays the same circle. Here the surface itself is rotated, so values agree to round-off.
+  // The mesh is rotated about x2 together with the ellipsoid. The section x2 = centre_2 is therefore the same curve on the surface, and the values
+  // agree to round-off.
   const CubeMesh cube(6);
   ParticleShape shape;
   shape.shape = "ellipsoid";

@@ -48,7 +48,7 @@ TEST(ChannelFlow, HasTheSameFlowRateInEverySection) {
   EXPECT_GT(flow.extra_pressure_drop(), 0);
 }
 
-// A shared wall has the flow of the first channel. That of a channel with another mean velocity and viscosity is proportional to it.
+// A shared wall has the flow of the first channel. The flow of a channel with another mean velocity and viscosity is proportional to this flow.
 TEST(ChannelFlow, OfASharedWallIsThatOfAWallOfItsOwn) {
   for (const double period : {0., 5.6}) {
     surface::TubeOptions options = channel("constriction", 12);

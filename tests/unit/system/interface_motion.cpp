@@ -236,8 +236,8 @@ TEST(InterfaceMotion, TheJacobianIncludesTheRigidMotionOfTheMesh) {
   }
 }
 
-// Includes the changes of the normals and of the motion of the shape, which here also rotates if `delta` is not symmetric about the axes. Without
-// tension the change of the fluid velocity is known.
+// The Jacobian includes the changes of the normals and of the rigid motion of the shape. The change `delta` is not symmetric about the axes, so that
+// the shape also rotates. The interface has almost no tension, so that the change of the fluid velocity is known.
 TEST(InterfaceMotion, TheJacobianIncludesTheRotationOfNormalsAndTheMotionOfTheShape) {
   Drop drop;
   drop.flow.type = "linear";

@@ -77,7 +77,7 @@ Mat3 some_gradient() {
   return l;
 }
 
-/// The two equations are of different kinds and share only the body.
+/// The integral equations of the first and the second kind share nothing but the body.
 TEST(RigidParticles, OneMovesAsByTheFirstKindEquation) {
   const Vec3 centre(0.3, -0.1, 0.2), axes(1.3, 0.8, 1);
   const RigidDrive driven{false, {}, Vec3(1, -2, 3), Vec3(2, 1, -1)};
@@ -108,7 +108,7 @@ TEST(RigidParticles, ForcesOfAPrescribedMotionCauseThisMotion) {
                {away, Vec3::Ones(), RigidDrive{false, {}, forced.force(1), forced.torque(1)}}}, 4, some_gradient());
   Capsule other = free.system();
   const RigidParticles moved = other.evaluate(free.rest)->rigid();
-  // The residuals of both problems between the collocation sites differ.
+  // Between the collocation sites, the residuals of the two problems differ.
   EXPECT_LT((moved.motion(0).velocity - told.motion.velocity).norm(), 5e-4);
   EXPECT_LT((moved.motion(0).angular_velocity - told.motion.angular_velocity).norm(), 5e-4);
   EXPECT_LT(moved.motion(1).velocity.norm() + moved.motion(1).angular_velocity.norm(), 1e-3);
@@ -316,7 +316,7 @@ void expect_agreement(const BesideDrop& fine, double viscosity_ratio) {
     return (other.of_body - fine.of_body).norm() / fine.of_body.norm() + (other.of_drop - fine.of_drop).norm();
   };
   EXPECT_LT(error(coarse), 2e-3);  // 1e-4 to 7e-4
-  EXPECT_LT(error(finer), 2e-5);   // 1e-5, of which the double layers have a part
+  EXPECT_LT(error(finer), 2e-5);   // measured: 1e-5, partly due to the double layers
 }
 
 TEST(RigidTractions, MoveNextToADropAsWithDoubleLayers) {
