@@ -43,8 +43,8 @@ struct Group {
 };
 
 /// Packs the given elements (any order, no repetition) into one group per material and degree, sorted by material, then by degree. The rule of a
-/// group has quadrature::gauss_order(order, degree) points per direction. `material`: material of each element of the space; if
-/// empty, all are 0.
+/// group has quadrature::gauss_order(order, degree) points per direction. `material`: index of the material of each element of
+/// the space; if empty, all elements have the material 0.
 std::vector<Group> pack(const spline::Space& space, std::span<const int> elements, int order, std::span<const int> material = {});
 
 /// Evaluates the tangents of a net at the Gauss points of a batch: a[6 q + c] is component c of x_,s, and a[6 q + 3 + c] is component c of x_,t.

@@ -12,7 +12,7 @@ COMMANDS = {"figure": ("figures", "command"), "sweep": ("studies.sweep", "main")
 
 
 def main():
-    """Runs the command that the name of the program, or else its first argument, states."""
+    """Runs the command whose name is the name of the program or, otherwise, the first argument."""
     name = pathlib.Path(sys.argv[0]).name.removeprefix("tanktread-")
     if name not in COMMANDS:
         if len(sys.argv) < 2 or sys.argv[1] not in COMMANDS:

@@ -46,7 +46,8 @@ def implicit_and_explicit_steps_agree():
         for scheme in "tr-bdf2", "bdf3":
             for name in names:
                 off = abs(series(scheme, name)[-1] / series("bs3", name)[-1] - 1)
-                # relative to the energy, which is still small, this is about thirty times the tolerance
+                # The difference is about thirty times the tolerance, because the energy, to which it is relative, is
+                # still small.
                 check(off < 1e-4, f"{name} of {scheme} differs by {off}")
             if particle is DROP:
                 mass = series(scheme, "surfactant_mass")

@@ -16,8 +16,8 @@ struct ReflexOptions {
   }
 };
 
-/// Field with one coefficient q: dq/dt = (A/A0 - 1 - q)/T, where A is the area and A0 the unstressed area. Its load t q dA/dx is the load of a
-/// surface tension t q.
+/// Field with one coefficient q: dq/dt = (A/A0 - 1 - q)/T, where A is the area, A0 the unstressed area and T the response time. The load of the field
+/// is t q dA/dx, the load of a surface tension t q with the key `tension` t.
 class Reflex : public membrane::Field {
  public:
   Reflex(const ReflexOptions& options, const membrane::ParticleSurface& surface)

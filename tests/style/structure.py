@@ -11,7 +11,8 @@ import re
 import sys
 
 LIMITS = {"files": 25, "lines": 400, "members": 25, "function": 60, "collectives": 0}
-# Files that may make collective calls: they define them, exchange unknowns (layout, block system), sum contributions, or record results.
+# Files that may make collective calls, because they define these calls, exchange unknowns (layout, block system), sum
+# contributions, or record results.
 MAY_CALL = {"ranks", "agreement", "layout", "thyra_blocks", "system", "results", "record"}
 COLLECTIVE = re.compile(r"\branks_?(?:\(\))?(?:\.|->)(?:replicate|add|add_all|any|first|own)\(|\bdo(?:Import|Export)\(|\bcoupling::largest\("
                         r"|\b(?:error_of_any|take_first|of_first)\(|\bTeuchos::(?:reduceAll|gatherAll|broadcast|scan|barrier)\("

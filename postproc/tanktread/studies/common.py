@@ -14,8 +14,8 @@ from ..runs import PROGRAM, SOURCE, Study, quoted, shared, text_of
 def edge(holds, low, high, factor=1.05):
     """Returns the largest value for which holds(value) was found true, the smallest value for which it was found false,
     and how the search ended: `edge`, `holds to here` (true up to `high`) or `fails from here` (false from `low` on). A
-    value that was not found is NaN. If the search ended with `edge`, the two values differ by at most a factor. The
-    search bisects the logarithm of the value. It assumes that holds(value) is true below the edge and false above
+    value that was not found is NaN. If the search ended with `edge`, the ratio of the two values is at most `factor`.
+    The search bisects the logarithm of the value. It assumes that holds(value) is true below the edge and false above
     it."""
     if not holds(low):
         return numpy.nan, low, "fails from here"

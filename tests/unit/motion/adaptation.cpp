@@ -69,7 +69,7 @@ TEST(Adaptation, AnErrorAboveItsToleranceDividesElementsInItsDirection) {
   const std::vector<Resolved> elements = {
       {along(0.2, 1.1e-3), along(0.2, 0.9e-3)}, {along(0.04, 1), along(0.04, 1)}, {along(0.2, 0, 0.5), along(0.2, 0)}};
   const auto found = marks(elements, o);
-  ASSERT_EQ(found.size(), 1u);  // the second is at the minimum length, and the load of the third is not checked
+  ASSERT_EQ(found.size(), 1u);  // the second element has the minimum length; the load of the third is not checked
   EXPECT_EQ(found[0].element, 0);
   EXPECT_TRUE(found[0].s);
   EXPECT_FALSE(found[0].t);

@@ -1,4 +1,4 @@
-// Transfer of a particle to a refined mesh, and from a checkpoint.
+// Tests of the transfer of a particle to a refined mesh and from a checkpoint.
 
 #include "scene/particles/adaptation.hpp"
 

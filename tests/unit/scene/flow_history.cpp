@@ -1,4 +1,4 @@
-// Runs in flows that change in time, compared with closed forms and with the same run in a steady flow.
+// Tests of runs in flows that change in time, compared with closed forms and with the same run in a steady flow.
 
 #include <cmath>
 #include <functional>

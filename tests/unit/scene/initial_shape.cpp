@@ -1,4 +1,4 @@
-// Runs whose initial shape differs from the resting shape.
+// Tests of runs whose initial shape differs from the resting shape.
 
 #include <cmath>
 

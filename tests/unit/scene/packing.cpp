@@ -1,4 +1,4 @@
-// Spheres packed at random in a periodic cell.
+// Tests of spheres that are packed at random in a periodic cell.
 
 #include <numbers>
 

@@ -1,4 +1,4 @@
-// Spheres in unbounded parabolic flow, compared with Faxen's laws.
+// Tests of spheres in unbounded parabolic flow, compared with Faxen's laws.
 
 #include <cmath>
 #include <numbers>

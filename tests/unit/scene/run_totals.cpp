@@ -1,4 +1,4 @@
-// Totals of a run, written to a checkpoint and read from it.
+// Tests that the totals of a run are written to a checkpoint and read from it without change.
 
 #include "scene/series/run_totals.hpp"
 

@@ -1,4 +1,4 @@
-// Number of rigid motions that a steady search leaves free, for one particle and for several.
+// Tests of the rigid motions that the search for a steady shape leaves free, for one particle and for several.
 
 #include <string>
 

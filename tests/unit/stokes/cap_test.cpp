@@ -1,4 +1,4 @@
-// The open ends of a tube: line integrals compared with area integrals.
+// Tests of the open ends of a tube: line integrals are compared with area integrals.
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-// Layers of one surface at points off it: identities, and agreement of all ways to evaluate them.
+// Tests of the layers of a surface at points off the surface: identities, and agreement of all ways to evaluate the layers.
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-// Layers of surfaces that repeat on a lattice.
+// Tests of the layers of surfaces that repeat on a lattice.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Sums over lattices, compared with our own multipole solutions (lib/README.md, section on lattices) and with identities.
+// Tests of sums over lattices, compared with our own multipole solutions (lib/README.md, section on lattices) and with identities.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Layers in front of a plane wall.
+// Tests of layers in front of a plane wall.
 
 #include <gtest/gtest.h>
 

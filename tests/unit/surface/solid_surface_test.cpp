@@ -1,4 +1,4 @@
-// Surfaces of plates and posts, and periodic densities on them.
+// Tests of the surfaces of plates and posts, and of periodic densities on these surfaces.
 
 #include "surface/walls/solid_surface.hpp"
 

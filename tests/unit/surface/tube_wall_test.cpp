@@ -1,4 +1,4 @@
-// The wall as a spline surface: regular space, normal into the fluid, and shape accurate to the order of the splines.
+// Tests of the wall as a spline surface: a regular space, a normal into the fluid, and a shape that is accurate to the order of the splines.
 
 #include <cmath>
 #include <numbers>

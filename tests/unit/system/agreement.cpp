@@ -1,4 +1,4 @@
-// Agreement of ranks on outcomes and decisions.
+// Tests that the ranks agree on outcomes and decisions.
 
 #include "system/agreement.hpp"
 

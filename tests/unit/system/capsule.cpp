@@ -1,4 +1,4 @@
-// The coupled capsule: properties of fluid and membrane together that hold on any mesh.
+// Tests of the coupled capsule: properties of fluid and membrane together that hold on any mesh.
 
 #include <cmath>
 #include <numbers>
@@ -102,7 +102,7 @@ TEST(Capsule, MeasuresOfTheLoadAgreeUpToTheMesh) {
   const Net v0 = f.capsule().velocity(x);
   f.parameters.particles.front().measure = stokes::Measure::current;
   const Net v = f.capsule().velocity(x);
-  EXPECT_LT((v - v0).norm(), 0.05 * v.norm());  // two projections of one load on a mesh of 56 points
+  EXPECT_LT((v - v0).norm(), 0.05 * v.norm());  // the measures project the load differently, on only 56 points
   EXPECT_GT((v - v0).norm(), 0);
 }
 

@@ -1,4 +1,4 @@
-// A capsule in a tube: the forms of the block system, the Jacobian, and translation along the tube.
+// Tests of a capsule in a tube: the forms of the block system, the Jacobian, and translation along the tube.
 
 #include <numbers>
 #include <optional>
@@ -47,7 +47,7 @@ struct Confined {
     flow.viscosity = 1.3;
     flow.mean_velocity = 1;
     CapsuleParameters parameters;
-    parameters.solvers.frozen_operator = "assembled";  // the sum over nodes has an error of 3 per cent on so few points
+    parameters.solvers.frozen_operator = "assembled";  // on so few points, the sum over nodes would err by 3 per cent
     parameters.viscosity = 1.3;
     parameters.particles.front().viscosity_ratio = viscosity_ratio;
     parameters.particles.front().radius = 0.6;
@@ -156,7 +156,7 @@ TEST(CapsuleInTube, ResultsDoNotDependOnThePositionAlongTheTube) {
   for (const double ratio : {1.0, 4.0}) {
     Confined scene(ratio, "schur");
     const Net v = scene.capsule->velocity(scene.x), there = scene.capsule->velocity(scene.x.rowwise() + Eigen::RowVector3d(17, 0, 0));
-    EXPECT_LT((there - v).norm(), 1e-6 * v.norm());  // quadrature of tolerance 1e-7 with other rules
+    EXPECT_LT((there - v).norm(), 1e-6 * v.norm());  // other quadrature rules, with the tolerance 1e-7
     Net along = Net::Zero(v.rows(), 3);
     along.col(0).setConstant(3);
     EXPECT_TRUE(scene.capsule->evaluated_about(scene.x + along, 1e-12)) << "operators of the shape are used again further along the tube";

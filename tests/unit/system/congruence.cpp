@@ -1,4 +1,5 @@
-// Rotations and reflections that map the wall of a duct to itself, and the operator of a wall: they map its rows to rows, and split it into parities.
+// Tests of the rotations and reflections that map the wall of a duct to itself. They map rows of the wall's operator to other rows, and divide the
+// operator into parts of different parity.
 
 #include <cmath>
 #include <memory>

@@ -1,4 +1,4 @@
-// Contact forces between close particles: solution of the complementarity problem; equal and opposite forces.
+// Tests of contact forces between close particles: they solve the complementarity problem, and they are equal and opposite.
 
 #include <random>
 

@@ -1,4 +1,4 @@
-// Frozen layer operators rotate with the particle for which they were assembled.
+// Tests that frozen layer operators rotate with the particle for which they were assembled.
 
 #include "system/solvers/frozen_operator.hpp"
 

@@ -1,4 +1,4 @@
-// The frozen operator of the Jacobian with 16 bits per entry.
+// Tests of the frozen operator of the Jacobian, which is stored with 16 bits per entry.
 
 #include <gtest/gtest.h>
 

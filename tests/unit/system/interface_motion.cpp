@@ -1,4 +1,4 @@
-// Control points of a drop: the normal motion is determined by physics, the tangential motion is a choice.
+// Tests of the motion of control points of a drop. The normal motion is determined by physics, the tangential motion is a choice.
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-// Belos through one interface, and replicated rows, on any number of ranks.
+// Tests of the interface to the solvers of Belos, and of replicated rows, on any number of ranks.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Rotations of the unstressed surface onto itself: they move the material points of a membrane at no cost of energy.
+// Tests of rotations of the unstressed surface onto itself, which move the material points of a membrane without changing its energy.
 
 #include <cmath>
 #include <numeric>

@@ -1,4 +1,4 @@
-// The frozen operator by one node per control point.
+// Tests of the frozen operator that has one quadrature node per control point.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Fixed-point iterations by NOX.
+// Tests of fixed-point iterations by NOX.
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-// Free rigid bodies in affine flows: Jeffery's motion, and properties of every free body.
+// Tests of free rigid bodies in affine flows: Jeffery's motion, and properties of every free body.
 
 #include <cmath>
 #include <memory>

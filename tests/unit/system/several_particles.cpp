@@ -1,4 +1,4 @@
-// Several capsules and drops in one system: their interactions, and properties that each particle keeps.
+// Tests of several capsules and drops in one system: their interactions, and properties that each particle keeps.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The rigid surface: tractions, forces and the null space, compared with exact solutions.
+// Tests of one rigid surface: tractions, forces and the null space are compared with exact solutions.
 
 #include <cmath>
 #include <functional>
@@ -135,7 +135,7 @@ TEST(SingleBody, MatrixIsSymmetric) {
     matrix.col(k) << s.integrals(push).force, s.integrals(push).torque;
     matrix.col(3 + k) << s.integrals(turn).force, s.integrals(turn).torque;
   }
-  EXPECT_LT((matrix - matrix.transpose()).norm() / matrix.norm(), 1e-5);  // collocation is not symmetric; error of the fitted surface
+  EXPECT_LT((matrix - matrix.transpose()).norm() / matrix.norm(), 1e-5);  // collocation is not symmetric, and the fitted surface is not exact
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues().minCoeff(), 0);
 }
 

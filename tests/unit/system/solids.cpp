@@ -1,4 +1,4 @@
-// Plates and posts in a lattice without particles: exact solutions, and the balance of forces.
+// Tests of plates and posts in a lattice without particles: exact solutions, and the balance of forces.
 
 #include "system/solids/solids.hpp"
 
@@ -58,7 +58,7 @@ TEST(Solids, VelocitiesAtAPlateDoNotDependOnEarlierTargets) {
   u.row(5) << 0.3, -0.1, 0.2;
   const Solids::Flow flow = fresh.solve(u, Vec3(1, 0.5, 0));
   const int rows[] = {0};
-  for (const double height : {0.5, 2.7}) {  // inside and outside of the initial range of targets, one period of length 2
+  for (const double height : {0.5, 2.7}) {  // inside and outside of the initial range of targets; a period has the length 2
     const Net at = Vec3(0.4, 0.1, height).transpose(), far = Vec3(0.4, 0.1, 9).transpose();
     Net by_fresh(1, 3), by_used(1, 3);
     fresh.reach(at), used.reach(far), used.reach(at);

@@ -1,4 +1,4 @@
-// The solver of the fundamental part of a symmetric system gives the solution of the whole system.
+// Tests that the solver of the fundamental part of a symmetric system gives the solution of the whole system.
 
 #include "membrane/symmetric_solver.hpp"
 

@@ -1,4 +1,4 @@
-// Only the fundamental part of a symmetric scene is evaluated and solved for, and the result is that of the whole scene.
+// Tests that only the fundamental part of a symmetric scene is evaluated and solved for, and that the result is the result of the whole scene.
 
 #include <gtest/gtest.h>
 

@@ -180,7 +180,7 @@ TEST(BoundedFreeBody, IsInvariantUnderRotationAndTranslation) {
   Net there = here;
   there.row(0) += Eigen::RowVector3d(-4, 0, 0);
   there(2, 0) = std::cos(pi / 4), there(1, 0) = std::sin(pi / 4);  // rotation by 90 degrees about x1, which maps the cube mesh onto itself
-  const double rules = 1e-5;  // quadrature of tolerance 1e-6 with other rules; a change of mesh would give 1e-3
+  const double rules = 1e-5;  // other quadrature rules, with the tolerance 1e-6; another mesh would give 1e-3
   EXPECT_LT((body.motion(there).velocity - motion.velocity).norm(), rules);
   EXPECT_LT((body.motion(there).angular_velocity - motion.angular_velocity).norm(), rules);
   EXPECT_NEAR(body.pressure_drop(there) / drop, 1, rules);
