@@ -130,7 +130,7 @@ def _set(settings):
     return [word for key, value in settings.items() for word in ("--set", f"{key}={text_of(value)}")]
 
 
-STOPS = signal.SIGTERM, signal.SIGINT, signal.SIGHUP  # a second signal would kill a run that is writing its checkpoint
+STOPS = signal.SIGTERM, signal.SIGINT, signal.SIGHUP  # a second one kills a run even if it is writing its checkpoint
 
 
 def _signal(code):

@@ -1,6 +1,6 @@
 // Strong and weak form of the load on the structured mesh at Ca = 0.45 (section 4.2 and Figure 12 of Maestre et al. 2017). With the strong form the
 // step size goes to zero, earliest if the poles are on x2. With the weak form the run reaches its final time. The map `load-form` of
-// tests/benchmark/atlas.py shows both forms for other parameters.
+// tests/benchmark/atlas.py shows both forms for several meshes and capillary numbers.
 
 #include <string>
 
