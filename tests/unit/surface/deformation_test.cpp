@@ -107,7 +107,7 @@ TEST(Deformation, ExtremesOfAnIrregularSurfaceAgreeWithDenseSampling) {
   }
 }
 
-TEST(Deformation, ExtremesDoNotDependOnWhereElementsMeetThePlane) {
+TEST(Deformation, TurnsWithTheEllipsoid) {
   // The mesh is rotated about x2 together with the ellipsoid. The section x2 = centre_2 is therefore the same curve on the surface, and the values
   // agree to round-off.
   const CubeMesh cube(6);
