@@ -65,7 +65,20 @@ class Run:
 
     @property
     def particles(self):
-        """The names of the particles in the order of the deck; ["particle"] if the deck has the section Particle."""
+        """The names of the particles in the order of the deck, without posts; ["particle"] if the deck has the section
+        Particle."""
+        return [name for name in self.bodies if self._kind(name).get("shape") != "cylinder"]
+
+    def _kind(self, name):
+        """Returns the section of the deck that describes a body: `cell` for `cell 3`."""
+        if not self.several:
+            return self.deck.get("Particle", {})
+        kinds = self.deck.get("Particles", {})
+        return kinds.get(name) or kinds.get(re.sub(r" \d+$", "", name), {})
+
+    @property
+    def bodies(self):
+        """The names of particles and posts in the order of the deck; ["particle"] if it has the section Particle."""
         if not self.several:
             return ["particle"]
         names = sorted({name.split("/")[0] for name in self.series if "/" in name}, key=lambda name: (len(name), name))
@@ -77,8 +90,13 @@ class Run:
         """Returns the series `name` (rows,) of one particle. `particle`: its name in `particles`."""
         return self.series[f"{particle}/{name}" if self.several else name]
 
+    def expect_particles(self):
+        """Raises Mistake if the scene has posts only."""
+        expect(self.particles, f"{self.directory} has no particles, only posts")
+
     def control_points(self):
         """Returns the number of control points of all particles (rows,)."""
+        self.expect_particles()
         return sum(self.of(particle, "n_control_points") for particle in self.particles)
 
     def _split(self):
@@ -103,7 +121,7 @@ class Run:
             return found
         own, _ = self._split()
         parts = [pandas.DataFrame({"time": self.series["time"], "particle": one} | {
-            name: values[one] for name, values in own.items() if one in values}) for one in self.particles]
+            name: values[one] for name, values in own.items() if one in values}) for one in self.bodies]
         return pandas.concat(parts, ignore_index=True)
 
     def dataset(self):
@@ -115,11 +133,11 @@ class Run:
         time, variables = scene.pop("time"), {}
         about = {name: {"units": self.units[name], "long_name": self.descriptions[name]} for name in self.series}
         for name, values in own.items():
-            rows = numpy.array([values.get(one, numpy.full(len(time), numpy.nan)) for one in self.particles])
+            rows = numpy.array([values.get(one, numpy.full(len(time), numpy.nan)) for one in self.bodies])
             variables[name] = ("particle", "time"), rows, about[f"{min(values)}/{name}" if self.several else name]
         for name, values in scene.items():
             variables[f"scene_{name}" if name in own else name] = ("time",), values, about[name]
-        coordinates = {"time": ("time", time, about["time"]), "particle": self.particles}
+        coordinates = {"time": ("time", time, about["time"]), "particle": self.bodies}
         return xarray.Dataset(variables, coordinates, {"deck": self.deck_text, "name": self.name} | self.provenance)
 
     def in_units(self, dimension):
@@ -180,7 +198,9 @@ class Run:
 
     @property
     def radius(self):
-        """R_C: radius of the sphere with the volume of the first particle."""
+        """R_C: radius of the sphere with the volume of the first particle; without particles, of the first post."""
+        if not self.particles:
+            return float(self.values_of("Particle/radius")[0])
         numbers = (self.summary or {}).get("numbers") or {}
         if "radius" in numbers and not self.several:
             return float(numbers["radius"])

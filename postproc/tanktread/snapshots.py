@@ -41,7 +41,7 @@ class Snapshot:
     cells = property(lambda self: self._content[1])
     fields = property(lambda self: self._content[2])
 
-    positions = property(lambda self: self.points if self.cell is None else self.points + self.fields["into cell"],
+    positions = property(lambda self: self.points + (0 if self.cell is None else self.fields.get("into cell", 0)),
                          doc="Positions of the nodes (n, 3) as they are drawn: `points`, or in a lattice those in the "
                          "cell at the origin.")
 

@@ -304,6 +304,24 @@ Tanktread:
     check([axis.get_ylabel() for axis in figures.animation("one", frame=0).axes[2:]] == ["D", "control points"], "panels of an animation")
 
 
+def posts_are_drawn_and_are_no_particles():
+    cell = ("Tanktread:\n  Flow: {type: quiescent, pressure gradient: [-1, 0, 0]}\n  Domain: {periodic: x1 x2 x3, side lengths: [4, 4, 1]}\n"
+            "  Time: {fixed step: 0.01, final time: 0.01}\n  Quadrature: {tolerance: 1e-2}\n")
+    post, mesh = "shape: cylinder, axis: x3, radius: 0.5, center: [1, 1, 0]", "Surface: {azimuthal elements: 8, axial elements: 4}"
+    ball = "{radius: 0.3, center: [-1, 0, 0], Membrane: {law: neo-Hookean, shear modulus: 1}, Surface: {elements per side: 3}}"
+    scenes = {"one": f"  Particle: {{{post}}}\n  {mesh}\n", "with": f"  Particles:\n    post: {{{post}, {mesh}}}\n    ball: {ball}\n"}
+    for name, particles in scenes.items():
+        run(deck(cell + particles), "--output", name, "--quiet")
+        _command("shape", name, "-o", f"{name}.png")
+        _command("report", name, "-o", f"{name}.html")
+    alone, both = (tanktread.run(name) for name in scenes)
+    check(alone.particles == [] and both.particles == ["ball"], "particles", alone.particles, both.particles)
+    check(alone.radius == 0.5, "R_C of the post", alone.radius)
+    close(both.radius, 0.3, 1e-6, "R_C of the ball")
+    check("no particles, only posts" in _command("meshes", "one", code=2), "no reason is given")
+    check(not numpy.isnan(both.frame(tidy=True).query("particle == 'post'")["post_force_x1"]).any(), "the force on the post is missing")
+
+
 def _alone():
     deck(DECK, "alone.yaml")
     run("alone.yaml", "--output", "alone", "--quiet")

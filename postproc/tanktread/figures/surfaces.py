@@ -134,6 +134,7 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
     frame: time of one frame; only this frame is drawn, as a picture"""
     expect(width >= 100 and rate > 0,
            f"--width must be at least 100 and --rate positive, but they are {width} and {rate:g}")
+    run.expect_particles()
     shots = [shot.scaled(run) for shot in run.snapshots()]
     expect(shots, f"{run.directory} holds no snapshots")
     # all frames have the same scale, window and colours
