@@ -138,21 +138,16 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
 }
 
 /// Returns v_inf - (1/mu) R^-1 A f of (4.2), with the ambient velocity v_inf, the collocation matrix R and the single layer A. Adds the velocity that
-/// plates and posts cause in response to the load f and, if given, to the velocity of the particles. In a tube whose wall unknowns are eliminated,
-/// adds the response of the wall in the same way. Stores this response in `answer`, if given, unless a linear system for the velocity follows,
-/// because the solution changes the response.
+/// walls cause (add_walls) in response to the load f and, if given, to the velocity of the particles. Stores the response of a tube in `answer`, if
+/// given, unless a linear system for the velocity follows, because the solution changes the response.
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer) {
   Net u = layers_.apply_single(x, f);
   if (flow_at_targets()) {
     const bool known = duct_.tube && surroundings_.flow.duct();
     const stokes::AmbientFlow& flow = surroundings_.flow;
     u = (known ? flow.amplitude() * duct_.tube->ambient() : flow.velocities(targets_.values() * x)) - u / parameters_.viscosity;
-    if (solids()) add_solids(x, f, particle_velocity, true, u);
-    if (duct_.tube && eliminates_walls()) {
-      Tube::Response response = duct_.tube->respond(f, particle_velocity);
-      u += response.velocity;
-      if (answer && !has_velocity_system()) *answer = std::move(response);
-    }
+    Tube::Response response = add_walls(x, f, particle_velocity, true, u);
+    if (answer && duct_.tube && !has_velocity_system()) *answer = std::move(response);
     const auto clock = phases_.time("projection");
     return targets_.control_values(std::move(u));
   }

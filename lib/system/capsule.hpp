@@ -210,8 +210,7 @@ class Capsule : public Dynamics {
   void set_tube_shape(const Net& x);
   void make_solid_response();
   void set_solid_shape(const Net& x);
-  void add_solids(const Net& x, const Net& f, const Net& particle_velocity, bool with_empty, Net& u);
-  Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
+  Tube::Response add_walls(const Net& x, const Net& f, const Net& v, bool with_empty, Net& u);
   // Linear systems (capsule_unknowns.cpp).
   Net velocity_load(const Net& x, const Net& v);
   Net velocity_product(const Net& x, const Net& v, const Net& load);

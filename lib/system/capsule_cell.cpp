@@ -53,26 +53,24 @@ Vec3 Capsule::cell_origin(const Net& x) const {
   return x.col(0).mean() * Vec3::UnitX();
 }
 
-/// Adds to the rank-owned rows of u the velocity (2.47) that the solids cause at the targets in response to the load f and the velocity of the
-/// particles. If `with_empty`, also adds the velocity that the solids cause without particles.
-void Capsule::add_solids(const Net& x, const Net& f, const Net& particle_velocity, bool with_empty, Net& u) {
-  const auto clock = phases_.time("wall");
-  set_solid_shape(x);
-  Solids::Flow flow = surroundings_.solids->respond(f, particle_velocity);
-  if (with_empty) flow = flow + surroundings_.solids->empty();
-  Net part = targets_.zero();
-  surroundings_.solids->velocities(flow, part);
-  targets_.gather(false, part);
-  u += part;
-}
-
-/// Returns the control values of the velocity that the tube, or otherwise the solids, cause in response to the load f and the velocity v of the
-/// particles.
-Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
-  if (duct_.tube) return targets_.collocation().solve(duct_.tube->respond(f, v).velocity);
-  Net u = targets_.zero();
-  add_solids(x, f, v, false, u);
-  return targets_.serial_control_values(u);
+/// Adds to u, a velocity at the targets, the velocity that plates and posts (2.47), or a tube whose wall traction is eliminated (2.5), cause in
+/// response to the load f and the velocity v of the particles. If `with_empty`, also adds the velocity that the solids cause without particles.
+/// Returns the response of the tube.
+Tube::Response Capsule::add_walls(const Net& x, const Net& f, const Net& v, bool with_empty, Net& u) {
+  if (solids()) {
+    const auto clock = phases_.time("wall");
+    set_solid_shape(x);
+    Solids::Flow flow = solids()->respond(f, v);
+    if (with_empty) flow = flow + solids()->empty();
+    Net part = targets_.zero();
+    solids()->velocities(flow, part);
+    targets_.gather(false, part);
+    u += part;
+  }
+  if (!duct_.tube || !eliminates_walls()) return {};
+  Tube::Response response = duct_.tube->respond(f, v);
+  u += response.velocity;
+  return response;
 }
 
 /// Creates the object that computes the flow caused by plates and posts, if there are any.
