@@ -24,25 +24,25 @@ bool Capsule::deform_cell(double time) {
   return true;
 }
 
-std::vector<CellShift> Capsule::move_into_cell(Net& x, Net* v) {
-  std::vector<CellShift> shifts;
-  if (!surroundings_.cell) return shifts;
+Capsule::CellMove Capsule::move_into_cell(Net& x, Net* v) const {
+  CellMove move;
+  if (!surroundings_.cell) return move;
   const Vec3 middle = cell_origin(x);
-  if (duct_.tube && !duct_.tube->fixed()) duct_.origin = middle[0];
+  if (duct_.tube && !duct_.tube->fixed()) move.origin = middle[0];
   for (const Particle& particle : particles()) {
     auto rows = particle.block.rows(x);
-    CellShift& shift = shifts.emplace_back(surroundings_.cell->shift(rows.colwise().mean().transpose() - middle));
+    CellShift& shift = move.shifts.emplace_back(surroundings_.cell->shift(rows.colwise().mean().transpose() - middle));
     if (!duct_.tube) shift.velocity = surroundings_.flow.cell_gradient() * shift.position;
     rows.rowwise() -= shift.position.transpose();
     if (v && v->size() > 0) particle.block.rows(*v).rowwise() -= shift.velocity.transpose();
   }
-  return shifts;
+  return move;
 }
 
-void Capsule::set_tube_shape(const Net& x) {
-  if (same(duct_.net, x) && duct_.origin == duct_.origin_of_net) return;
-  duct_.tube->set_shape(x, duct_.origin);
-  duct_.net = x, duct_.origin_of_net = duct_.origin;
+void Capsule::set_tube_shape(const Net& x, std::optional<double> origin) {
+  if (same(duct_.net, x) && duct_.origin == origin) return;
+  duct_.tube->set_shape(x, origin);
+  duct_.net = x, duct_.origin = origin;
 }
 
 /// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is on the x1 axis, at the mean x1 of all control
@@ -88,11 +88,11 @@ void Capsule::set_solid_shape(const Net& x) {
 /// Evaluates the shape with each particle replaced by its image in the cell of a lattice. Converts the velocities of the images
 /// to velocities of the particles.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
-  if (!surroundings_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), guess);
+  if (!surroundings_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), {}, guess);
   Net x = e.x(), v = guess;
-  const std::vector<CellShift> shifts = move_into_cell(x, &v);
+  const auto [shifts, origin] = move_into_cell(x, &v);
   bodies_.rigid.move_into_cell(shifts);
-  v = solve_in_cell(e, std::move(x), v);
+  v = solve_in_cell(e, std::move(x), origin, v);
   for (std::size_t p = 0; p < shifts.size(); ++p)
     for (Net* net : {&v, &e.fluid_})
       if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += shifts[p].velocity.transpose();

@@ -36,7 +36,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& r
       volumes_(space, resting, particles(), layout_, phases),
       layers_(space, unstressed, parameters_, layout_, targets_, phases),
       frozen_(space, membranes_.unstressed(), parameters_, layout_, targets_, membranes_.mass_matrix(), layers_),
-      duct_{std::move(tube), {}, {}, {}},
+      duct_{std::move(tube), {}, {}},
       bodies_{RigidParticles(particles(), resting, parameters.viscosity, parameters.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
