@@ -172,7 +172,7 @@ bool Capsule::inside_tube(const Net& x, std::optional<double> origin) {
 
 /// Returns whether all collocation sites are in the medium, or in front of plates and outside posts, if there are any.
 bool Capsule::in_fluid(const Net& x) {
-  if (solids()) return solids()->inside(targets_.at_sites() * x);
+  if (solids()) return solids()->scene().solids->outside(targets_.at_sites() * x);
   return stokes::contains(parameters_.medium.get(), targets_.at_sites() * x);
 }
 
