@@ -211,7 +211,6 @@ class Capsule : public Dynamics {
   Vec3 cell_origin(const Net& x) const;
   Net in_cell(Evaluation& e, const Net& guess);
   void set_tube_shape(const Net& x, std::optional<double> origin);
-  void make_solid_response();
   void set_solid_shape(const Net& x);
   Tube::Response add_walls(const Net& x, const Net& f, const Net& v, bool with_empty, Net& u);
   // Linear systems (capsule_unknowns.cpp).

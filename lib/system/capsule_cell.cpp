@@ -73,14 +73,6 @@ Tube::Response Capsule::add_walls(const Net& x, const Net& f, const Net& v, bool
   return response;
 }
 
-/// Creates the object that computes the flow caused by plates and posts, if there are any.
-void Capsule::make_solid_response() {
-  if (!parameters_.solids) return;
-  surroundings_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, surroundings_.flow);
-  surroundings_.solids->particles().set(membranes_.unstressed(), particles());
-  if (bodies_.tractions) bodies_.tractions->set_solids(*surroundings_.solids);
-}
-
 void Capsule::set_solid_shape(const Net& x) {
   surroundings_.solids->set_shape(x, targets_.values() * x, targets_.own());
 }

@@ -144,7 +144,7 @@ Net PowerBalance::residual_velocity(Evaluation& e, Net v, const RigidParticles& 
   if (const auto& cell = capsule_.cell(); cell && !capsule_.tube()) layers_.repeat(*cell);
   capsule_.move_into_cell(x, &v);
   const Net inside = density(v, rigid);
-  const FluidWalls walls{capsule_.tube(), capsule_.solids(), {}};
+  const FluidWalls walls{capsule_.tube(), capsule_.solids()};
   const Tube::Response response = walls.tube ? e.response() : Tube::Response();
   const Solids::Flow by_solids = walls.solids ? e.solid_flow().flow : Solids::Flow();
   const Net at = values_ * x;
