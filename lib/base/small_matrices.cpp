@@ -19,4 +19,8 @@ Mat3 nearest_rotation(const Mat3& a) {
   return svd.matrixU() * right;
 }
 
+Mat3 rotation_between(const Net& from, const Net& to) {
+  return nearest_rotation((to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean()));
+}
+
 }  // namespace tanktread

@@ -18,4 +18,7 @@ double largest_stretch(const Mat3& a);
 /// to the positions y in the least-squares sense (Kabsch 1976).
 Mat3 nearest_rotation(const Mat3& a);
 
+/// Returns the rotation that best maps the points `from`, relative to their mean, to the points `to`, relative to their mean.
+Mat3 rotation_between(const Net& from, const Net& to);
+
 }  // namespace tanktread

@@ -90,7 +90,7 @@ struct WallLine {
 };
 
 WallLine along_wall(const coupling::ChannelFlow& flow) {
-  const surface::TubeWall& wall = *flow.surface();
+  const surface::TubeWall& wall = *flow.fixed_wall();
   WallLine line;
   for (int e = 0; e < static_cast<int>(wall.space.elements.size()); ++e)
     for (const double s : {0.125, 0.375, 0.625, 0.875}) {

@@ -1,7 +1,11 @@
 #include "scene/solids.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+
+#include <Eigen/Geometry>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -28,9 +32,20 @@ std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell
   for (const stokes::PlaneWall& wall : scene.wall.planes()) {
     const Vec3 middle = wall.normal().dot(wall.point()) * wall.normal();
     const std::array<int, 2> elements = scene.wall.elements(cell, scene.least_radius());
-    all.push_back({surface::plate(middle, lattice_vector(cell, 0), lattice_vector(cell, 1), elements), flow.velocity(wall.point()), {}});
+    all.push_back({surface::plate(middle, lattice_vector(cell, 0), lattice_vector(cell, 1), elements), flow.velocity(wall.point()),
+                   [wall](const Vec3& x) { return wall.contains(x); }});
   }
   return all;
+}
+
+Vec3 center_in_cell(const Post& post, const stokes::PeriodicCell& cell) { return post.center - cell.shift(post.center); }
+
+/// Returns the condition that a point is outside of a post and its images.
+std::function<bool(const Vec3& x)> outside_of(const Post& post, const stokes::PeriodicCell& cell) {
+  return [=, center = center_in_cell(post, cell), images = cell.around({1, 1, 1})](const Vec3& x) {
+    const Vec3 apart = x - center, near = apart - cell.shift(apart);
+    return std::ranges::none_of(images, [&](const Vec3& image) { return (near - image).cross(Vec3::Unit(post.axis)).norm() <= post.radius; });
+  };
 }
 
 /// Returns the free directions of (2.46), in which the walls do not determine the mean velocity.
@@ -55,9 +70,8 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
                                                   : scene.flow.pressure_gradient.value_or(Vec3::Zero());
   for (const Post& post : scene.posts) {
     const Vec3 period = period_of(post, cell);
-    const Vec3 center = post.center - cell.shift(post.center);
-    all.push_back({surface::cylinder(center, period, post.radius, post.around, elements_along(post, period)), Vec3::Zero(),
-                   coupling::Rod{center, Vec3::Unit(post.axis), post.radius}});
+    all.push_back({surface::cylinder(center_in_cell(post, cell), period, post.radius, post.around, elements_along(post, period)), Vec3::Zero(),
+                   outside_of(post, cell)});
   }
   const Solids::Parameters parameters{cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature};
   return coupling::SolidScene{
@@ -65,9 +79,13 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
       scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(), pressure_gradient, scene.quadrature};
 }
 
-void check_outside_of_posts(const coupling::SolidScene& solids, const std::vector<Member>& members) {
-  for (const Member& member : members)
-    if (!solids.solids->outside(member.body->initial)) throw UserError(member.scene.path() + " crosses a post at the start: give it another center.");
+void check_outside_of_posts(const Scene& scene, const std::vector<Member>& members) {
+  for (const Post& post : scene.posts) {
+    const auto outside = outside_of(post, *scene.domain.cell());
+    for (const Member& member : members)
+      for (const auto row : member.body->initial.rowwise())
+        if (!outside(row.transpose())) throw UserError(member.scene.path() + " crosses a post at the start: give it another center.");
+  }
 }
 
 std::string solids_line(const Scene& scene, int ranks) {

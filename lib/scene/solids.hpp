@@ -18,7 +18,7 @@ namespace tanktread {
 std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases);
 
 /// Throws UserError if a particle crosses a post at the start.
-void check_outside_of_posts(const coupling::SolidScene& solids, const std::vector<Member>& members);
+void check_outside_of_posts(const Scene& scene, const std::vector<Member>& members);
 
 /// Returns the line that describes plates and posts in the plan that is printed before a run.
 std::string solids_line(const Scene& scene, int ranks);

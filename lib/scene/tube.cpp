@@ -44,8 +44,7 @@ void check_fits_channel(const ParticleScene& scene, const Body& body, const surf
 }
 
 void check_fits(const ParticleScene& scene, const Body& body) {
-  if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get()))
-    return check_fits_channel(scene, body, *channel->surface());
+  if (const auto wall = body.duct->fixed_wall()) return check_fits_channel(scene, body, *wall);
   const surface::Outline& outline = body.duct->outline();
   const Vec3& centre = scene.particle.shape.center;
   const double from_axis = outline.distance({centre[1], centre[2]});
@@ -64,15 +63,12 @@ void check_fits(const ParticleScene& scene, const Body& body) {
                   where.c_str(), nearest.gap, scene.tube.contact_gap, least));
 }
 
-/// Adds the flow rate to the row, and in a channel also the pressure drops of the empty channel. They are 0 if `flow` is not a duct flow.
+/// Adds the flow rate and the pressure drops of the empty duct to the row. They are 0 if `flow` is not a duct flow.
 TubeRow with_channel(const coupling::Tube& tube, const stokes::AmbientFlow& flow, TubeRow now) {
   const double amplitude = flow.duct() ? flow.amplitude() : 0;
   now.flow_rate = tube.flow_rate(now.pressure_drop, amplitude);
-  const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
-  if (channel) {
-    now.channel_pressure_drop = amplitude * channel->pressure_drop();
-    now.channel_extra_pressure_drop = amplitude * channel->extra_pressure_drop();
-  }
+  now.channel_pressure_drop = amplitude * tube.flow().pressure_drop(tube.wall().length());
+  now.channel_extra_pressure_drop = amplitude * tube.flow().extra_pressure_drop();
   return now;
 }
 
@@ -121,7 +117,7 @@ std::shared_ptr<const stokes::DuctFlow> duct(const ParticleScene& scene) {
 
 std::shared_ptr<const surface::TubeWall> wall(const SharedOptions& scene, const Body& body) {
   if (!scene.tube.present) return {};
-  if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get())) return channel->surface();
+  if (auto fixed = body.duct->fixed_wall()) return fixed;
   const surface::Outline& outline = body.duct->outline();
   double first = 0, last = 0;  // smallest and largest x1, relative to the centroid, in the resting and the initial shape
   for (const Net* net : {&body.rest, &body.initial}) {

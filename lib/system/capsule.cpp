@@ -107,10 +107,10 @@ std::shared_ptr<Evaluation> Capsule::evaluate_on_demand(const Net& x, const Net&
 
 /// Computes (4.2) step by step: the load (membrane_load and rigid bodies), the velocity that this load causes plus the ambient velocity
 /// (explicit_velocity), the projection onto constant volumes (constrain), and the solution of the linear system for the velocity (solve_velocity), if
-/// one is needed (has_velocity_system).
-Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
+/// one is needed (has_velocity_system). `origin`: see CellMove.
+Net Capsule::solve_in_cell(Evaluation& e, Net x, std::optional<double> origin, const Net& guess) {
   bodies_.rigid.fit_to(x);
-  if (!admits(x)) return not_a_number(x);
+  if (!admits(x, origin)) return not_a_number(x);
   push_bodies(x);
   const bool deforms = !bodies_.tractions || !bodies_.tractions->all_rigid();
   VolumeConstraint volume;
@@ -138,21 +138,16 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, const Net& guess) {
 }
 
 /// Returns v_inf - (1/mu) R^-1 A f of (4.2), with the ambient velocity v_inf, the collocation matrix R and the single layer A. Adds the velocity that
-/// plates and posts cause in response to the load f and, if given, to the velocity of the particles. In a tube whose wall unknowns are eliminated,
-/// adds the response of the wall in the same way. Stores this response in `answer`, if given, unless a linear system for the velocity follows,
-/// because the solution changes the response.
+/// walls cause (add_walls) in response to the load f and, if given, to the velocity of the particles. Stores the response of a tube in `answer`, if
+/// given, unless a linear system for the velocity follows, because the solution changes the response.
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer) {
   Net u = layers_.apply_single(x, f);
   if (flow_at_targets()) {
     const bool known = duct_.tube && surroundings_.flow.duct();
     const stokes::AmbientFlow& flow = surroundings_.flow;
     u = (known ? flow.amplitude() * duct_.tube->ambient() : flow.velocities(targets_.values() * x)) - u / parameters_.viscosity;
-    if (solids()) add_solids(x, f, particle_velocity, true, u);
-    if (duct_.tube && eliminates_walls()) {
-      Tube::Response response = duct_.tube->respond(f, particle_velocity);
-      u += response.velocity;
-      if (answer && !has_velocity_system()) *answer = std::move(response);
-    }
+    Tube::Response response = add_walls(x, f, particle_velocity, true, u);
+    if (answer && duct_.tube && !has_velocity_system()) *answer = std::move(response);
     const auto clock = phases_.time("projection");
     return targets_.control_values(std::move(u));
   }
@@ -163,8 +158,8 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& particle_v
 }
 
 /// Sets the tube to the shape x. Returns whether all collocation sites of the shape are inside the tube.
-bool Capsule::inside_tube(const Net& x) {
-  set_tube_shape(x);
+bool Capsule::inside_tube(const Net& x, std::optional<double> origin) {
+  set_tube_shape(x, origin);
   const Net at_sites = targets_.at_sites() * x;
   if (duct_.tube->fixed()) return !layout_.any(!duct_.tube->inside(at_sites, layout_.points()));
   const surface::Outline& outline = duct_.tube->wall().outline;
@@ -177,51 +172,49 @@ bool Capsule::inside_tube(const Net& x) {
 
 /// Returns whether all collocation sites are in the medium, or in front of plates and outside posts, if there are any.
 bool Capsule::in_fluid(const Net& x) {
-  if (solids()) return solids()->inside(targets_.at_sites() * x);
+  if (solids()) return solids()->scene().solids->outside(targets_.at_sites() * x);
   return stokes::contains(parameters_.medium.get(), targets_.at_sites() * x);
 }
 
 /// Moves the tube to the particles. Returns whether the shape is finite, and in the fluid.
-bool Capsule::admits(const Net& x) { return x.allFinite() && (!duct_.tube || inside_tube(x)) && in_fluid(x); }
+bool Capsule::admits(const Net& x, std::optional<double> origin) {
+  return x.allFinite() && (!duct_.tube || inside_tube(x, origin)) && in_fluid(x);
+}
 
 /// Returns whether defect() uses (3.14), which does not require a solve for the velocity.
 bool Capsule::defect_spares_system() const { return jacobian_.flows_by_system() && eliminates_walls(); }
 
-Net Capsule::defect(const Net& x, const Net& u) {
-  if (!defect_spares_system()) return velocity(x) - u;
-  ++counts_.evaluations;
-  Net inside = x, v = u;
-  if (x.allFinite()) move_into_cell(inside, &v);
-  return defect_here(inside, v);
-}
-
 /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14). P is the volume projection (2.8). B v = w is the linear system for the
 /// velocity v at x (see solve_velocity). Adds the viscous load due to u to the elastic load, so that one evaluation of the single layer is enough.
-Net Capsule::defect_here(const Net& x, const Net& u) {
-  if (!admits(x)) return not_a_number(x);
+Net Capsule::defect(const Net& at, const Net& given) {
+  if (!defect_spares_system()) return velocity(at) - given;
+  ++counts_.evaluations;
+  if (!at.allFinite()) return not_a_number(at);
+  Net x = at, u = given;
+  if (const std::optional<double> origin = move_into_cell(x, &u).origin; !admits(x, origin)) return not_a_number(x);
   VolumeConstraint volume;
-  Net inside = u;
+  Net projected = u;
   Evaluation e(*this, x);
   Net f = membrane_load(e, x, &volume);
-  volumes_.constrain(inside, volume);
-  if (viscous()) f += membranes_.viscous_load(x, inside);
-  Net residual = explicit_velocity(x, f, layers_.has_double() ? inside : Net(), nullptr) - inside;
+  volumes_.constrain(projected, volume);
+  if (viscous()) f += membranes_.viscous_load(x, projected);
+  Net residual = explicit_velocity(x, f, layers_.has_double() ? projected : Net(), nullptr) - projected;
   if (layers_.has_double()) {
     const auto clock = phases_.time("velocity system");
-    residual += targets_.control_values(layers_.apply_double(x, inside));
+    residual += targets_.control_values(layers_.apply_double(x, projected));
   }
   volumes_.constrain(residual, volume);
-  return symmetric(residual - (u - inside));
+  return symmetric(residual - (u - projected));
 }
 
 void Capsule::freeze(const Net& at) {
   Net x = at;
-  move_into_cell(x);
+  const std::optional<double> origin = move_into_cell(x).origin;
   const auto clock = phases_.time("assembly");
   ++counts_.assemblies;
   frozen_.assemble(at, x);
   if (!duct_.tube) return;
-  set_tube_shape(x);
+  set_tube_shape(x, origin);
   duct_.tube->freeze();
 }
 

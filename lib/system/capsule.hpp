@@ -146,11 +146,16 @@ class Capsule : public Dynamics {
   const stokes::AmbientFlow& flow() const { return surroundings_.flow; }  ///< flow at the time set by `set_time`
   const std::optional<stokes::PeriodicCell>& cell() const { return surroundings_.cell; }  ///< cell at the time set by `set_time`
 
+  /// Result of move_into_cell(). `shifts`: what was subtracted for each particle; empty without a lattice. `origin`: x1 of the origin of the frame of
+  /// a straight periodic wall, which moves with the particles; not set for other walls.
+  struct CellMove {
+    std::vector<CellShift> shifts;
+    std::optional<double> origin;
+  };
   /// Replaces every particle in the net x by its image whose mean control point is in the cell, and converts the velocity v of the control points, if
-  /// given, to the velocity of the image. Returns what was subtracted for each particle. Without a lattice, does nothing and returns an empty vector.
-  /// The cell is centred on the origin; in a channel, on the middle of the channel; and in a straight tube, whose wall moves with the particles, on
-  /// the mean of the particles.
-  std::vector<CellShift> move_into_cell(Net& x, Net* v = nullptr);
+  /// given, to the velocity of the image. Without a lattice, does nothing. The cell is centred on the origin; in a channel, on the middle of the
+  /// channel; and in a straight tube, whose wall moves with the particles, on the mean of the particles.
+  CellMove move_into_cell(Net& x, Net* v = nullptr) const;
 
   stokes::Evaluations kernel_evaluations() const;  ///< kernel evaluations of all layers
   const Targets& targets() const { return targets_; }
@@ -171,12 +176,11 @@ class Capsule : public Dynamics {
     std::optional<stokes::PeriodicCell> cell;
     std::unique_ptr<SolidResponse> solids;
   };
-  /// Tube or channel. `net`: net of the particles for which the tube was set up last. `origin`: current x1 of the origin of the frame of a straight
-  /// periodic wall, which moves with the particles. `origin_of_net`: value of `origin` when `net` was set.
+  /// Tube or channel. `net`, `origin`: arguments of the latest call of set_tube_shape().
   struct Duct {
     std::unique_ptr<Tube> tube;
     Net net;
-    std::optional<double> origin, origin_of_net;
+    std::optional<double> origin;
     double inner_radius = 0;  ///< radius of the largest circle about the centroid that fits in the cross-section of a straight tube
   };
   /// Rigid bodies among the particles. `tractions`: set if the unknowns on the bodies are their tractions. `isolated`: inverses of the system (2.23)
@@ -194,24 +198,21 @@ class Capsule : public Dynamics {
   bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // true if all unknowns are velocities of control points
   bool has_forces() const { return forces_.contacts.size() > 0 || forces_.fields.size() > 0; }
   // Evaluation of a shape (capsule.cpp).
-  Net solve_in_cell(Evaluation& e, Net x, const Net& guess);
-  bool admits(const Net& x);
-  bool inside_tube(const Net& x);
+  Net solve_in_cell(Evaluation& e, Net x, std::optional<double> origin, const Net& guess);
+  bool admits(const Net& x, std::optional<double> origin);
+  bool inside_tube(const Net& x, std::optional<double> origin);
   bool in_fluid(const Net& x);
   void push_bodies(const Net& x);
   Net work_of_loads(const Net& x, std::vector<Net>& sums);
   Net membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume = nullptr);
   Net explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer);
-  Net defect_here(const Net& x, const Net& u);
   // Cells of lattices, tubes, plates and posts (capsule_cell.cpp).
   bool deform_cell(double time);
   Vec3 cell_origin(const Net& x) const;
   Net in_cell(Evaluation& e, const Net& guess);
-  void set_tube_shape(const Net& x);
-  void make_solid_response();
+  void set_tube_shape(const Net& x, std::optional<double> origin);
   void set_solid_shape(const Net& x);
-  void add_solids(const Net& x, const Net& f, const Net& particle_velocity, bool with_empty, Net& u);
-  Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
+  Tube::Response add_walls(const Net& x, const Net& f, const Net& v, bool with_empty, Net& u);
   // Linear systems (capsule_unknowns.cpp).
   Net velocity_load(const Net& x, const Net& v);
   Net velocity_product(const Net& x, const Net& v, const Net& load);

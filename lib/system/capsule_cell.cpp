@@ -24,25 +24,25 @@ bool Capsule::deform_cell(double time) {
   return true;
 }
 
-std::vector<CellShift> Capsule::move_into_cell(Net& x, Net* v) {
-  std::vector<CellShift> shifts;
-  if (!surroundings_.cell) return shifts;
+Capsule::CellMove Capsule::move_into_cell(Net& x, Net* v) const {
+  CellMove move;
+  if (!surroundings_.cell) return move;
   const Vec3 middle = cell_origin(x);
-  if (duct_.tube && !duct_.tube->fixed()) duct_.origin = middle[0];
+  if (duct_.tube && !duct_.tube->fixed()) move.origin = middle[0];
   for (const Particle& particle : particles()) {
     auto rows = particle.block.rows(x);
-    CellShift& shift = shifts.emplace_back(surroundings_.cell->shift(rows.colwise().mean().transpose() - middle));
+    CellShift& shift = move.shifts.emplace_back(surroundings_.cell->shift(rows.colwise().mean().transpose() - middle));
     if (!duct_.tube) shift.velocity = surroundings_.flow.cell_gradient() * shift.position;
     rows.rowwise() -= shift.position.transpose();
     if (v && v->size() > 0) particle.block.rows(*v).rowwise() -= shift.velocity.transpose();
   }
-  return shifts;
+  return move;
 }
 
-void Capsule::set_tube_shape(const Net& x) {
-  if (same(duct_.net, x) && duct_.origin == duct_.origin_of_net) return;
-  duct_.tube->set_shape(x, duct_.origin);
-  duct_.net = x, duct_.origin_of_net = duct_.origin;
+void Capsule::set_tube_shape(const Net& x, std::optional<double> origin) {
+  if (same(duct_.net, x) && duct_.origin == origin) return;
+  duct_.tube->set_shape(x, origin);
+  duct_.net = x, duct_.origin = origin;
 }
 
 /// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is on the x1 axis, at the mean x1 of all control
@@ -53,34 +53,24 @@ Vec3 Capsule::cell_origin(const Net& x) const {
   return x.col(0).mean() * Vec3::UnitX();
 }
 
-/// Adds to the rank-owned rows of u the velocity (2.47) that the solids cause at the targets in response to the load f and the velocity of the
-/// particles. If `with_empty`, also adds the velocity that the solids cause without particles.
-void Capsule::add_solids(const Net& x, const Net& f, const Net& particle_velocity, bool with_empty, Net& u) {
-  const auto clock = phases_.time("wall");
-  set_solid_shape(x);
-  Solids::Flow flow = surroundings_.solids->respond(f, particle_velocity);
-  if (with_empty) flow = flow + surroundings_.solids->empty();
-  Net part = targets_.zero();
-  surroundings_.solids->velocities(flow, part);
-  targets_.gather(false, part);
-  u += part;
-}
-
-/// Returns the control values of the velocity that the tube, or otherwise the solids, cause in response to the load f and the velocity v of the
-/// particles.
-Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
-  if (duct_.tube) return targets_.collocation().solve(duct_.tube->respond(f, v).velocity);
-  Net u = targets_.zero();
-  add_solids(x, f, v, false, u);
-  return targets_.serial_control_values(u);
-}
-
-/// Creates the object that computes the flow caused by plates and posts, if there are any.
-void Capsule::make_solid_response() {
-  if (!parameters_.solids) return;
-  surroundings_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, surroundings_.flow);
-  surroundings_.solids->particles().set(membranes_.unstressed(), particles());
-  if (bodies_.tractions) bodies_.tractions->set_solids(*surroundings_.solids);
+/// Adds to u, a velocity at the targets, the velocity that plates and posts (2.47), or a tube whose wall traction is eliminated (2.5), cause in
+/// response to the load f and the velocity v of the particles. If `with_empty`, also adds the velocity that the solids cause without particles.
+/// Returns the response of the tube.
+Tube::Response Capsule::add_walls(const Net& x, const Net& f, const Net& v, bool with_empty, Net& u) {
+  if (solids()) {
+    const auto clock = phases_.time("wall");
+    set_solid_shape(x);
+    Solids::Flow flow = solids()->respond(f, v);
+    if (with_empty) flow = flow + solids()->empty();
+    Net part = targets_.zero();
+    solids()->velocities(flow, part);
+    targets_.gather(false, part);
+    u += part;
+  }
+  if (!duct_.tube || !eliminates_walls()) return {};
+  Tube::Response response = duct_.tube->respond(f, v);
+  u += response.velocity;
+  return response;
 }
 
 void Capsule::set_solid_shape(const Net& x) {
@@ -90,11 +80,11 @@ void Capsule::set_solid_shape(const Net& x) {
 /// Evaluates the shape with each particle replaced by its image in the cell of a lattice. Converts the velocities of the images
 /// to velocities of the particles.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
-  if (!surroundings_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), guess);
+  if (!surroundings_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), {}, guess);
   Net x = e.x(), v = guess;
-  const std::vector<CellShift> shifts = move_into_cell(x, &v);
+  const auto [shifts, origin] = move_into_cell(x, &v);
   bodies_.rigid.move_into_cell(shifts);
-  v = solve_in_cell(e, std::move(x), v);
+  v = solve_in_cell(e, std::move(x), origin, v);
   for (std::size_t p = 0; p < shifts.size(); ++p)
     for (Net* net : {&v, &e.fluid_})
       if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += shifts[p].velocity.transpose();

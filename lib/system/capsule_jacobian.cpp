@@ -164,16 +164,10 @@ CapsuleJacobian::RateChange CapsuleJacobian::step_change(const Net& dx, double s
   return {dx - shift * change.rate, std::move(change.slip)};
 }
 
-void CapsuleJacobian::prepare_step(double shift) {
-  latest_shift_ = shift;
-  if (area_) area_->factor(shift);
-}
-
 Net CapsuleJacobian::solve(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   const auto apply = [&](const Net& delta) -> Net { return step_change(delta, shift, {}).rate - shift * secants(delta); };
-  prepare_step(shift);
   const Apply precondition = area_ ? on_nets(rhs.rows(), [this](const Net& r) { return step_preconditioner(r); }) : Apply();
-  return parameters_.symmetry.completed(solve_step(on_nets(rhs.rows(), apply), precondition, rhs, tolerance));
+  return parameters_.symmetry.completed(solve_step(shift, on_nets(rhs.rows(), apply), precondition, rhs, tolerance));
 }
 
 /// Returns the factor of the relative residual at high viscosity ratios. B weighs deformation by about lambda/2 but rigid rotation by 1, so that a
@@ -188,7 +182,9 @@ double CapsuleJacobian::tolerance_factor() const {
   return ratio > least && ratio <= most ? least / ratio : 1;
 }
 
-Net CapsuleJacobian::solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance) {
+Net CapsuleJacobian::solve_step(double shift, const Apply& product, const Apply& precondition, const Net& rhs, double tolerance) {
+  latest_shift_ = shift;
+  if (area_) area_->factor(shift);
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(rhs.size());
   const LinearSystem system{{{"displacement", rhs.size()}}, product, precondition};
   const SolveReport report = step_solver_.solve(system, flat(rhs), solution, tolerance * tolerance_factor());

@@ -50,13 +50,13 @@ class CapsuleJacobian {
   /// is the same as of velocity_change(dx, added_work). If no control points slide, applies each layer only once.
   RateChange step_change(const Net& dx, double shift, const Net& added_work);
 
-  void prepare_step(double shift);  ///< prepares step_preconditioner() for implicit steps with this shift gamma dt
-  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< applies an approximate inverse of the matrix of `solve`
+  /// Applies an approximate inverse of the matrix of `solve`, for the shift of the latest call of solve_step().
+  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }
 
-  /// Solves the linear system of an implicit step to the relative residual `tolerance`, and counts the solve. The tolerance is multiplied by
-  /// 10/lambda if the largest viscosity ratio lambda of the deformable particles is between 10 and 2e4 and no control points slide. `rhs` may have
-  /// any number of rows.
-  Net solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
+  /// Solves the linear system of an implicit step with the shift gamma dt to the relative residual `tolerance`, and counts the solve. The tolerance
+  /// is multiplied by 10/lambda if the largest viscosity ratio lambda of the deformable particles is between 10 and 2e4 and no control points slide.
+  /// `rhs` may have any number of rows.
+  Net solve_step(double shift, const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
 
   /// Solves the system of an implicit step for the displacement delta, with the secant correction E (4.13) of J. If all control points move with the
   /// fluid, the system is (B - shift (B J + E)) delta = rhs (4.3), which does not require the inverse of B. If control points slide along an

@@ -36,17 +36,20 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& r
       volumes_(space, resting, particles(), layout_, phases),
       layers_(space, unstressed, parameters_, layout_, targets_, phases),
       frozen_(space, membranes_.unstressed(), parameters_, layout_, targets_, membranes_.mass_matrix(), layers_),
-      duct_{std::move(tube), {}, {}, {}},
+      duct_{std::move(tube), {}, {}},
       bodies_{RigidParticles(particles(), resting, parameters.viscosity, parameters.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
       jacobian_(parameters_, surroundings_.flow, flow_at_targets(), targets_, membranes_, volumes_, frozen_, duct_.tube.get(), interface_.get(),
                 counts_) {
+  if (parameters_.solids) {
+    surroundings_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, surroundings_.flow);
+    solids()->particles().set(membranes_.unstressed(), particles());
+  }
   if (std::ranges::any_of(particles(), &Particle::by_traction))
-    bodies_.tractions =
-        std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, duct_.tube.get(), layout_.points(), ranks);
+    bodies_.tractions = std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, FluidWalls{duct_.tube.get(), solids()},
+                                                         layout_.points(), ranks);
   if (parameters_.cell) deform_cell(0);
-  make_solid_response();
   if (!duct_.tube) return;
   if (!duct_.tube->fixed()) duct_.inner_radius = duct_.tube->wall().outline.distance(duct_.tube->wall().outline.centroid());
   duct_.tube->particles().set(unstressed, particles());

@@ -66,7 +66,11 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const VolumeConstraint& 
     volumes_.constrain(v, volume);
     const Net load = velocity_load(x, v);
     Net bv = velocity_product(x, v, load);
-    if (duct_.tube || solids()) bv -= velocity_by_walls(x, load, v);
+    if (duct_.tube || solids()) {
+      Net u = targets_.zero();
+      add_walls(x, load, v, false, u);
+      bv -= targets_.serial_control_values(u);
+    }
     volumes_.constrain(bv, volume);
     return bv;
   };
@@ -125,8 +129,7 @@ Net Capsule::traction_product(const Net& x, const VolumeConstraint& volume, cons
   if (viscous() && caused.size() > 0) clear_rigid(particles(), other);
   Net u = layers_.apply(x, v, other);
   if (caused.size() > 0) u += caused;
-  if (duct_.tube) u += duct_.tube->respond(load, v).velocity;
-  if (solids()) add_solids(x, load, v, false, u);
+  add_walls(x, load, v, false, u);
   if (bodies_.tractions->all_rigid()) return u;
   Net all = v - targets_.serial_control_values(u);
   volumes_.constrain(all, volume);

@@ -160,7 +160,6 @@ Eigen::VectorXd CoupledMotion::field_rate(std::size_t k, const Net& delta, const
 
 /// Solves step(delta) - shift secants(delta) = rhs for the change of state delta.
 Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
-  capsule_.jacobian().prepare_step(shift);
   const auto apply = [&](const Net& delta) -> Net { return step(delta, shift) - shift * secants(delta); };
   const auto precondition = [&](Net delta) {
     delta = with_shape(std::move(delta), capsule_.jacobian().step_preconditioner(shape(delta)));
@@ -176,7 +175,7 @@ Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const 
     }
     return delta;
   };
-  Net delta = capsule_.jacobian().solve_step(on_nets(rows_, apply), on_nets(rows_, precondition), rhs, tolerance);
+  Net delta = capsule_.jacobian().solve_step(shift, on_nets(rows_, apply), on_nets(rows_, precondition), rhs, tolerance);
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     Eigen::VectorXd q = coefficients(delta, k);
     blocks_[k].field->conserve(coefficients(rhs, k), q);

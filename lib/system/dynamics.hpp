@@ -14,7 +14,7 @@ namespace tanktread::coupling {
 inline Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::numeric_limits<double>::quiet_NaN()); }
 
 /// The system dx/dt = v(x) (4.2) of the control net x. Nets are replicated on all ranks, and every call is collective. If the motion depends on time,
-/// all calls refer to the time passed to set_time() last.
+/// all calls refer to the time passed to set_time() last. By default the Jacobian is 0, as for motions that are not stiff.
 class Dynamics {
  public:
   virtual ~Dynamics() = default;
@@ -30,7 +30,7 @@ class Dynamics {
   virtual Net velocity(const Net& x) = 0;
 
   /// Assembles the layer operators that the Jacobian keeps frozen (4.3) at x.
-  virtual void freeze(const Net& x) = 0;
+  virtual void freeze(const Net& /*x*/) {}
 
   /// Returns true if freeze() uses a periodic lattice that changes in time. The time set by set_time() must then be the time of the shape passed to
   /// freeze().
@@ -40,10 +40,10 @@ class Dynamics {
   virtual double frozen_bytes() const { return 0; }
 
   /// Evaluates the membrane tangent H of the Jacobian (4.3) at x.
-  virtual void linearise(const Net& x) = 0;
+  virtual void linearise(const Net& /*x*/) {}
 
   /// Solves delta = (I - shift J)^{-1} r to the relative residual `tolerance`, with the Jacobian J (4.3) corrected by `secants`. `shift` is gamma dt.
-  virtual Net solve(double shift, const Net& r, double tolerance, const Secants& secants) = 0;
+  virtual Net solve(double /*shift*/, const Net& r, double /*tolerance*/, const Secants& /*secants*/) { return r; }
 
   /// Returns the defect B (v - u) of a velocity u, where v is the velocity at x and B an operator that may depend on x. B is the identity by default.
   /// If v is the solution of a linear system B v = w, the defect is w - B u, which takes one sum over the surface and no linear solve. `correction`
@@ -62,7 +62,7 @@ class Dynamics {
   /// Returns B (dv - J delta), the error of the Jacobian J of the last linearisation. Here dv is the change of the velocity due to the displacement
   /// delta, and B is the operator of `defect`. Used by Secants. `change`: change of the defect B (v - u) due to delta, where u = (x - c)/shift with a
   /// constant net c. If B is the identity, `change` is dv - delta/shift.
-  virtual Net jacobian_error(const Net& change, const Net& delta, double shift) = 0;
+  virtual Net jacobian_error(const Net& change, const Net& delta, double shift) { return change + delta / shift; }
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
   /// there are any, and otherwise a finite difference of velocities, which takes one evaluation.

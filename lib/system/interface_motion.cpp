@@ -71,11 +71,6 @@ Net normal_part_change(const Net& normals, const Net& change, Net field) {
   }
   return field;
 }
-
-/// Returns the rotation about the mean of the control points that fits `from` best to `to`.
-Mat3 rotation_between(const Net& from, const Net& to) {
-  return nearest_rotation((to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean()));
-}
 }  // namespace
 
 Net InterfaceMotion::normals_at(const Net& x) const {

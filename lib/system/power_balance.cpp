@@ -6,6 +6,7 @@
 #include "quadrature/gauss.hpp"
 #include "surface/geometry.hpp"
 #include "system/collocation.hpp"
+#include "system/solids/rigid_residual.hpp"
 
 namespace tanktread::coupling {
 
@@ -143,14 +144,14 @@ Net PowerBalance::residual_velocity(Evaluation& e, Net v, const RigidParticles& 
   if (const auto& cell = capsule_.cell(); cell && !capsule_.tube()) layers_.repeat(*cell);
   capsule_.move_into_cell(x, &v);
   const Net inside = density(v, rigid);
-  const Solids::Flow by_solids = capsule_.solids() ? e.solid_flow().flow : Solids::Flow();
+  const FluidWalls walls{capsule_.tube(), capsule_.solids()};
+  const Tube::Response response = walls.tube ? e.response() : Tube::Response();
+  const Solids::Flow by_solids = walls.solids ? e.solid_flow().flow : Solids::Flow();
   const Net at = values_ * x;
   layers_.set_shape(x);
   return values_ * v - flow.velocities(at) - ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
-    Net part = u;
     layers_.apply(load, inside, capsule_.parameters().viscosity, own, u);
-    if (SolidResponse* solids = capsule_.solids()) solids->velocity_at(at, own, by_solids, part), u(own, Eigen::all) += part(own, Eigen::all);
-    if (Tube* tube = capsule_.tube()) tube->velocity_at(values_, x, e.response(), own, part), u(own, Eigen::all) += part(own, Eigen::all);
+    walls.add_velocity_at(values_, x, response, by_solids, own, u);
   });
 }
 

@@ -89,7 +89,9 @@ struct RigidSphere {
     parameters.quadrature.tolerance = tolerance;
     solvers.tolerance = 1e-9;
     tube = std::make_unique<coupling::Tube>(duct.wall, *duct.flow, sphere.space, parameters, phases);
-    tractions = std::make_unique<coupling::RigidTractions>(sphere.space, sphere.net, radius, 1.0, parameters.quadrature, solvers, ranks, tube.get());
+    tractions = std::make_unique<coupling::RigidTractions>(
+        sphere.space, sphere.net, sphere.net, single_body(sphere.space, radius, 1.0, parameters.quadrature, solvers),
+        coupling::FluidWalls{tube.get()}, std::vector<int>(), ranks);
     body = std::make_unique<coupling::BoundedFreeBody>(*tractions, sphere.net, sphere.centre, radius, flow, 1.0);
   }
 

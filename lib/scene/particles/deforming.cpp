@@ -36,7 +36,7 @@ class Deforming : public ParticleSystem {
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)), solids_(solids(scene, phases)) {
     check_apart(members_, scene.domain.cell());
-    if (solids_) check_outside_of_posts(*solids_, members_);
+    check_outside_of_posts(scene_, members_);
     set_up();
     for (Member& member : members_) {
       const Body& body = *member.body;

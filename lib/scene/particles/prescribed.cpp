@@ -44,7 +44,8 @@ void PrescribedRow::add_columns(const ParticleScene& scene, Columns& to) const {
 }
 
 coupling::RigidTractions tractions_of(const ParticleScene& scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
-  return {body.space, body.rest, body.radius, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, tube, scene.medium()};
+  const auto single = coupling::single_body(body.space, body.radius, scene.flow.viscosity, scene.quadrature, scene.solvers, scene.medium());
+  return {body.space, body.rest, body.rest, single, {tube}, {}, ranks};
 }
 
 RigidSolution rigid_solution(const ParticleScene& scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases) {

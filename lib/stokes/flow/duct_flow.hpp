@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "base/types.hpp"
-#include "surface/walls/outline.hpp"
+#include "surface/walls/tube_wall.hpp"
 
 namespace tanktread::stokes {
 
@@ -29,7 +29,7 @@ std::unique_ptr<DuctProfile> duct_profile(const surface::TubeOptions& options, c
 
 /// Unidirectional flow v = (v_1(x2, x3), 0, 0) with  mu (v_1,22 + v_1,33) = p_,1 = -G  and v_1 = 0 on the wall (equation 33 of Maestre et al. 2017),
 /// with a given mean velocity in the cross-section. Only the pressure p = -G x1 depends on x1. For channels with varying cross-section, a derived
-/// class overrides the velocities; all other members then refer to the inlet.
+/// class overrides the virtual functions; all other members then refer to the inlet.
 class DuctFlow {
  public:
   DuctFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity);
@@ -44,6 +44,11 @@ class DuctFlow {
   Net tractions(const Net& x, const Net& n) const;  ///< returns tractions f_inf = (-p 1 + 2 mu E) n with the pressure p = -G x1 and the viscosity mu
                                                     ///< of the outer fluid
   virtual std::vector<Mat3> gradients(const Net& x) const;
+
+  /// Returns the pressure drop over a wall of this length; in a channel, between its ends or over one period.
+  virtual double pressure_drop(double length) const { return pressure_gradient_ * length; }
+  virtual double extra_pressure_drop() const { return 0; }  ///< pressure drop minus the pressure drop of a straight duct
+  virtual std::shared_ptr<const surface::TubeWall> fixed_wall() const { return {}; }  ///< wall of a channel; null for a wall that moves
 
   const surface::Outline& outline() const { return outline_; }
   double viscosity() const { return viscosity_; }

@@ -2,7 +2,6 @@
 // A plane no-slip wall.
 
 #include <memory>
-#include <span>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -41,12 +40,5 @@ class PlaneWall : public Medium {
   Vec3 point_, normal_;
   Mat3 axes_;
 };
-
-/// Returns whether all points are in front of all walls.
-inline bool in_front(std::span<const PlaneWall> walls, const Net& at) {
-  for (const PlaneWall& wall : walls)
-    if (!contains(&wall, at)) return false;
-  return true;
-}
 
 }  // namespace tanktread::stokes

@@ -60,16 +60,16 @@ class ChannelFlow : public stokes::DuctFlow {
   /// suffices only for Jacobians.
   std::vector<Mat3> gradients(const Net& x) const override;
 
-  double pressure_drop() const;        ///< pressure drop between the ends
-  double extra_pressure_drop() const;  ///< pressure drop minus the pressure drop of a straight duct with the inlet's cross-section and the length of
-                                       ///< the centre line
+  double pressure_drop() const;  ///< pressure drop between the ends
+  double pressure_drop(double /*length*/) const override { return pressure_drop(); }
+  double extra_pressure_drop() const override;  ///< refers to a straight duct with the length of the centre line
   const Net& wall_traction() const;    ///< control values of f
 
   /// Returns the flow rates through the cross-sections at the arc lengths s of the centre line. All velocities for them are evaluated in one call.
   std::vector<double> flow_rates_at(const std::vector<double>& s) const;
 
   const surface::Channel& channel() const { return *channel_; }
-  const std::shared_ptr<const surface::TubeWall>& surface() const { return surface_; }
+  std::shared_ptr<const surface::TubeWall> fixed_wall() const override { return surface_; }
 
   /// Returns the wall operator, which is constructed at the first call. If `phases` is given at the first call, it records the time of the operator's
   /// communication between ranks. Collective.

@@ -1,5 +1,6 @@
 #include "system/solids/plate_factors.hpp"
 
+#include <complex>
 #include <numbers>
 
 #include <Eigen/LU>
@@ -46,12 +47,9 @@ Eigen::MatrixXcd PlateFactors::transformed(const Net& u) const {
   const auto [n1, n2] = grid_;
   Complex all(3 * plates_, n1 * n2);
   for (int r = 0; r < 3 * plates_; ++r) {
-    Complex field(n1, n2);
-    for (int i = 0; i < n1; ++i)
-      for (int j = 0; j < n2; ++j) field(i, j) = u((r / 3) * n1 * n2 + i * n2 + j, r % 3);
+    const Complex field = u.col(r % 3).segment((r / 3) * n1 * n2, n1 * n2).reshaped<Eigen::RowMajor>(n1, n2).cast<std::complex<double>>();
     const Complex waves = waves_[0] * field * waves_[1];
-    for (int i = 0; i < n1; ++i)
-      for (int j = 0; j < n2; ++j) all(r, i * n2 + j) = waves(i, j);
+    all.row(r) = waves.reshaped<Eigen::RowMajor>().transpose();
   }
   return all;
 }
@@ -64,12 +62,10 @@ Net PlateFactors::solve(const Net& u, Net& uniform) const {
   for (int k = 0; k < n1 * n2; ++k) all.col(k) = (inverse_[static_cast<std::size_t>(k)] * all.col(k)).eval();
   Net f(u.rows(), 3);
   for (int r = 0; r < 3 * plates_; ++r) {
-    Complex field(n1, n2);
-    for (int i = 0; i < n1; ++i)
-      for (int j = 0; j < n2; ++j) field(i, j) = all(r, i * n2 + j);
+    const Eigen::VectorXcd row = all.row(r);  // contiguous, because Eigen 3.4 reshapes a row of a matrix incorrectly
+    const Complex field = row.reshaped<Eigen::RowMajor>(n1, n2);
     const Complex values = waves_[0].conjugate() * field * waves_[1].conjugate() / (n1 * n2);
-    for (int i = 0; i < n1; ++i)
-      for (int j = 0; j < n2; ++j) f((r / 3) * n1 * n2 + i * n2 + j, r % 3) = values(i, j).real();
+    f.col(r % 3).segment((r / 3) * n1 * n2, n1 * n2) = values.reshaped<Eigen::RowMajor>().real();
   }
   return f;
 }

@@ -48,11 +48,6 @@ class LoneRigidBody : public Dynamics {
   double next_kink(double time) const override { return flow_.next_kink(time); }
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< flow at the time set last
   Net velocity(const Net& position) override;
-  void freeze(const Net&) override {}
-  void linearise(const Net&) override {}
-  Net solve(double, const Net& r, double, const Secants&) override { return r; }  ///< returns r: the Jacobian is taken as 0, because the motion is
-                                                                                  ///< not stiff
-  Net jacobian_error(const Net& change, const Net& delta, double shift) override { return change + delta / shift; }
   void restore_constraints(Net& position) override;              ///< normalises the quaternion; the volume of a rigid body needs no correction
   double norm(const Net& displacement) const override;            ///< combines the displacement of the centre, divided by R_C, and the angle of
                                                                   ///< rotation

@@ -128,7 +128,7 @@ void RigidParticles::fit_to(Net& x) {
   for (Body& body : bodies_) {
     auto rows = body.block.rows(x);
     const Eigen::RowVector3d mean = rows.colwise().mean(), rest_mean = body.rest.colwise().mean();
-    body.turn = nearest_rotation((rows.rowwise() - mean).transpose() * (body.rest.rowwise() - rest_mean));
+    body.turn = rotation_between(body.rest, rows);
     body.centre = (mean - rest_mean * body.turn.transpose()).transpose();
     rows = (body.rest * body.turn.transpose()).rowwise() + body.centre.transpose();
   }

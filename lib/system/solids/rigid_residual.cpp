@@ -26,6 +26,13 @@ quadrature::Options for_residual(quadrature::Options options) {
 
 }  // namespace
 
+void FluidWalls::add_velocity_at(const Eigen::SparseMatrix<double>& values, const Net& x, const Tube::Response& response, const Solids::Flow& flow,
+                                 std::span<const int> own, Net& u) const {
+  Net part(u.rows(), 3);
+  if (tube) tube->velocity_at(values, x, response, own, part), u(own, Eigen::all) += part(own, Eigen::all);
+  if (solids) solids->velocity_at(values * x, own, flow, part), u(own, Eigen::all) += part(own, Eigen::all);
+}
+
 RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, Ranks& ranks)
     : viscosity_(parameters.viscosity),
       ranks_(ranks),
@@ -34,15 +41,11 @@ RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, 
 
 Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls) {
   layers_.set_shape(x);
-  const Net at = between_.values * x;
   const Tube::Response response = walls.tube ? walls.tube->respond(load, v) : Tube::Response();
   const Solids::Flow by_solids = walls.solids ? walls.solids->respond(load, v) + walls.solids->empty() : Solids::Flow();
-  flow += ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
+  flow += ranks_.divided<Net>(static_cast<int>(between_.values.rows()), 3, [&](std::span<const int> own, Net& u) {
     layers_.apply(load, v, viscosity_, own, u);
-    Net part(u.rows(), 3);
-    const auto add = [&] { u(own, Eigen::all) += part(own, Eigen::all); };
-    if (walls.tube) walls.tube->velocity_at(between_.values, x, response, own, part), add();
-    if (walls.solids) walls.solids->velocity_at(at, own, by_solids, part), add();
+    walls.add_velocity_at(between_.values, x, response, by_solids, own, u);
   });
   return between_.weights * (between_.values * v - flow);
 }

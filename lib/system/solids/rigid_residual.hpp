@@ -8,7 +8,6 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
-#include "stokes/medium/medium.hpp"
 #include "system/capsule_parameters.hpp"
 #include "system/collocation.hpp"
 #include "system/layer_pair.hpp"
@@ -17,11 +16,15 @@
 
 namespace tanktread::coupling {
 
-/// Boundaries of the fluid other than particles. A member is null or empty if there is no such boundary.
+/// Boundaries of the fluid that are meshed, other than particles. A member is null if there is no such boundary.
 struct FluidWalls {
   Tube* tube = nullptr;
   SolidResponse* solids = nullptr;
-  std::shared_ptr<const stokes::Medium> medium;
+
+  /// Adds to rows `own` of u the velocity that tube and solids cause at points on the particles. `values`: values of the basis functions at the
+  /// points. x: net of the particles. `response`, `flow`: responses of tube and solids. Collective if Tube::velocity_at() is.
+  void add_velocity_at(const Eigen::SparseMatrix<double>& values, const Net& x, const Tube::Response& response, const Solids::Flow& flow,
+                       std::span<const int> own, Net& u) const;
 };
 
 /// Residual of the velocity on rigid bodies at Gauss points between the collocation sites. With this residual, (2.11) corrects the forces for the

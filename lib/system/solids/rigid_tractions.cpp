@@ -33,18 +33,6 @@ std::vector<Particle> bodies_among(std::span<const Particle> particles) {
   return bodies;
 }
 
-/// Returns the parameters of a single body. The options of `Solvers/traction` replace the options of `Solvers/velocity`.
-CapsuleParameters single(const spline::Space& space, double radius, double viscosity, const quadrature::Options& quadrature,
-                         const SolverOptions& solvers, std::shared_ptr<const stokes::Medium> medium) {
-  CapsuleParameters parameters;
-  Particle& body = parameters.particles.front();
-  body.space = &space, body.block = spline::whole(space), body.radius = radius;
-  body.rigid.emplace(), body.by_traction = true;
-  parameters.viscosity = viscosity, parameters.quadrature = quadrature, parameters.medium = std::move(medium);
-  parameters.solvers = solvers, parameters.solvers.velocity = solvers.traction;
-  return parameters;
-}
-
 /// Returns the indices 6 p + k of the unit motions k = 0 .. 5 of all bodies p whose motion is not prescribed.
 std::vector<int> free_motions(std::span<const RigidDrive> driven) {
   std::vector<int> free;
@@ -83,22 +71,30 @@ Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& res
 
 }  // namespace
 
-RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, Tube* tube,
-                               const std::vector<int>& own, Ranks& ranks)
+CapsuleParameters single_body(const spline::Space& space, double radius, double viscosity, const quadrature::Options& quadrature,
+                              const SolverOptions& solvers, std::shared_ptr<const stokes::Medium> medium) {
+  CapsuleParameters parameters;
+  Particle& body = parameters.particles.front();
+  body.space = &space, body.block = spline::whole(space), body.radius = radius;
+  body.rigid.emplace(), body.by_traction = true;
+  parameters.viscosity = viscosity, parameters.quadrature = quadrature, parameters.medium = std::move(medium);
+  parameters.solvers = solvers, parameters.solvers.velocity = solvers.traction;
+  return parameters;
+}
+
+RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters,
+                               const FluidWalls& walls, const std::vector<int>& own, Ranks& ranks)
     : particles_(bodies_among(parameters.particles)),
-      walls_{tube, nullptr, parameters.medium},
+      walls_(walls),
+      medium_(parameters.medium),
       layer_(particles_, parameters, own, ranks),
       residual_(space, unstressed, rest, parameters, ranks),
       collocation_(collocation_matrix(space)),
       mass_(space, 8),  // mass matrix by eight Gauss points per direction, because the area element is not a polynomial
       krylov_(parameters.solvers.of(parameters.solvers.velocity)),
       tolerance_(parameters.solvers.tolerance),
-      bodies_(particles_.size()) {}
-
-RigidTractions::RigidTractions(const spline::Space& space, const Net& surface, double radius, double viscosity, const quadrature::Options& quadrature,
-                               const SolverOptions& solvers, Ranks& ranks, Tube* tube, std::shared_ptr<const stokes::Medium> medium)
-    : RigidTractions(space, surface, surface, single(space, radius, viscosity, quadrature, solvers, std::move(medium)), tube, {}, ranks) {
-  if (tube) tube->particles().set_reference(surface);
+      bodies_(particles_.size()) {
+  if (walls.tube) walls.tube->particles().set_reference(unstressed);
 }
 
 void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
@@ -250,7 +246,7 @@ bool RigidTractions::all_rigid() const {
 }
 
 bool RigidTractions::inside(const Net& x) const {
-  return (!walls_.tube || walls_.tube->gap() > 0) && stokes::contains(walls_.medium.get(), collocation_ * x);
+  return (!walls_.tube || walls_.tube->gap() > 0) && stokes::contains(medium_.get(), collocation_ * x);
 }
 
 Mat3 RigidTractions::moment(std::size_t p) {

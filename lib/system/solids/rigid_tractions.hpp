@@ -23,6 +23,11 @@
 
 namespace tanktread::coupling {
 
+/// Returns the parameters of a single body. The options of `Solvers/traction` replace the options of `Solvers/velocity`. `medium`: null if there is
+/// none.
+CapsuleParameters single_body(const spline::Space& space, double radius, double viscosity, const quadrature::Options& quadrature,
+                              const SolverOptions& solvers, std::shared_ptr<const stokes::Medium> medium = nullptr);
+
 /// The first-kind equation on the surfaces of all rigid bodies, with the force density f on the fluid:
 ///
 ///   (1/mu) sum_q A_pq f_q = U_p + Omega_p x r - v_inf   on body p,     int f_p dGamma = F_p,   int r x f_p dGamma = T_p          (2.40)
@@ -48,20 +53,14 @@ namespace tanktread::coupling {
 ///   error of v_inf (2.41).
 class RigidTractions {
  public:
-  /// `space`: common space of all particles. `unstressed`, `rest`: control nets of all particles, unstressed and at rest. `tube`: null if there is no
-  /// tube. `own`: collocation points whose rows this rank computes. References, except `parameters`, must outlive this object.
-  RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, Tube* tube,
+  /// `space`: common space of all particles. `unstressed`, `rest`: control nets of all particles, unstressed and at rest. `parameters`: see
+  /// single_body() for a body without other particles. `own`: collocation points whose rows this rank computes. References, except `parameters`, and
+  /// the walls must outlive this object.
+  RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, const FluidWalls& walls,
                  const std::vector<int>& own, Ranks& ranks);
-
-  /// Constructs the equation of a single body, in a tube or in a medium if they are given. `surface`: net of the body.
-  RigidTractions(const spline::Space& space, const Net& surface, double radius, double viscosity, const quadrature::Options& quadrature,
-                 const SolverOptions& solvers, Ranks& ranks, Tube* tube = nullptr, std::shared_ptr<const stokes::Medium> medium = nullptr);
 
   /// Sets the periodic cell of the particles, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
-
-  /// Sets the solids in the lattice. `solids` must outlive this object.
-  void set_solids(SolidResponse& solids) { walls_.solids = &solids; }
 
   /// Interactions of the bodies with deformable particles and with images on a lattice. Nets have one row per control point of all particles. The
   /// unknowns y are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
@@ -138,6 +137,7 @@ class RigidTractions {
 
   std::vector<Particle> particles_;  // the bodies
   FluidWalls walls_;
+  std::shared_ptr<const stokes::Medium> medium_;
   BodyLayer layer_;
   RigidResidual residual_;
   Eigen::SparseMatrix<double> collocation_;  // collocation matrix R

@@ -74,9 +74,6 @@ class SolidResponse {
   /// Returns the force of the particles on the fluid for a load f.
   Vec3 force(const Net& f) const { return -f.transpose() * areas_; }
 
-  /// Returns whether all points `at` are in the fluid, in front of plates and outside of posts.
-  bool inside(const Net& at) const { return stokes::in_front(scene_.planes, at) && scene_.solids->outside(at); }
-
   const SolidScene& scene() const { return scene_; }
   stokes::Evaluations evaluations() const { return particles_.evaluations(); }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 #include "surface/geometry.hpp"
 #include "system/collocation.hpp"
 
@@ -37,7 +35,7 @@ Solids::Solids(const std::vector<Solid>& solids, const Parameters& parameters, P
   for (const Solid& one : solids) {
     velocities_.middleRows(first_.back(), one.surface.n_points()).rowwise() = one.velocity.transpose();
     first_.push_back(first_.back() + one.surface.n_points());
-    if (one.rod) rods_.push_back(*one.rod);
+    if (one.outside) outside_.push_back(one.outside);
   }
   areas_ = moments([](const Vec3&) { return 1.; });
   flux_ = surface_.open_from_periodic.transpose() * surface::Geometry(surface_.space).volume_gradient(surface_.net);
@@ -101,13 +99,9 @@ void Solids::reach(const Net& x) {
 }
 
 bool Solids::outside(const Net& at) const {
-  const std::vector<Vec3> images = rods_.empty() ? std::vector<Vec3>() : cell().around({1, 1, 1});
-  for (const Rod& rod : rods_)
-    for (Eigen::Index i = 0; i < at.rows(); ++i) {
-      const Vec3 apart = at.row(i).transpose() - rod.point, near = apart - cell().shift(apart);
-      for (const Vec3& image : images)
-        if ((near - image).cross(rod.axis).norm() <= rod.radius) return false;
-    }
+  for (const auto& outside : outside_)
+    for (const auto row : at.rowwise())
+      if (!outside(row.transpose())) return false;
   return true;
 }
 

@@ -19,12 +19,6 @@
 
 namespace tanktread::coupling {
 
-/// Fixed cylinder in a cell: a point on its axis, the direction of the axis, and its radius.
-struct Rod {
-  Vec3 point, axis;
-  double radius;
-};
-
 /// Single layer of solids on a lattice, assembled and factored once. f is the force per area that the solids exert on the fluid. F is the given total
 /// force of the solids of one cell on the fluid. U is a uniform velocity:
 ///
@@ -43,7 +37,7 @@ class Solids {
   struct Solid {
     surface::SolidSurface surface;
     Vec3 velocity = Vec3::Zero();
-    std::optional<Rod> rod;  ///< set if the solid is a cylinder
+    std::function<bool(const Vec3& x)> outside;  ///< returns whether x is in front of a plate, or outside of a post and its images; empty: always
   };
 
   struct Parameters {
@@ -73,7 +67,7 @@ class Solids {
   /// Must be called before `velocity_at` and `layer`. Collective.
   void reach(const Net& x);
 
-  /// Returns whether all points `at` are outside of all cylinders and their images.
+  /// Returns whether all points `at` are outside of all solids (Solid::outside).
   bool outside(const Net& at) const;
 
   /// Returns the solution f, U of (2.46) for given right-hand sides: the velocity u at the collocation points, and the force F.
@@ -122,7 +116,7 @@ class Solids {
   std::vector<int> first_;  // index of the first collocation point of each solid; last entry: number of all collocation points
   Net normals_;                        // unit normals at the collocation points
   Net flux_;                           // int N_A n dGamma
-  std::vector<Rod> rods_;
+  std::vector<std::function<bool(const Vec3& x)>> outside_;  // Solid::outside of all solids that have it
   std::optional<PlateFactors> plates_;  // inverse of the operator by Fourier series; set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
                                         // each plate

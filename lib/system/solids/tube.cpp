@@ -124,10 +124,7 @@ Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correct
 }
 
 /// Returns the pressure drop of the empty duct over the modelled length, or over one period.
-double Tube::empty_pressure_drop() const {
-  const auto* channel = dynamic_cast<const ChannelFlow*>(flow_.get());
-  return channel ? channel->pressure_drop() : flow_->pressure_gradient() * wall().length();
-}
+double Tube::empty_pressure_drop() const { return flow_->pressure_drop(wall().length()); }
 
 /// Returns the fraction by which the particle reduces the flow rate if the pressure drop of the duct is prescribed, otherwise 0. `pressure_drop`: dp
 /// (2.7).

@@ -50,16 +50,10 @@ void FrozenOperator::apply(const Net& f, Net& u) const {
   }
 }
 
-namespace {
-
-Net centred(const Net& x) { return x.rowwise() - x.colwise().mean(); }
-
-}  // namespace
-
 Corotation::Corotation(std::span<const Particle> particles, const Net& from, const Net& to) {
   for (const Particle& particle : particles) {
     blocks_.push_back(particle.block);
-    rotations_.push_back(nearest_rotation(centred(particle.block.rows(to)).transpose() * centred(particle.block.rows(from))));
+    rotations_.push_back(rotation_between(particle.block.rows(from), particle.block.rows(to)));
   }
 }
 
@@ -77,8 +71,9 @@ Net Corotation::rotated(Net f, bool back) const {
 Net Corotation::deformation(std::span<const Particle> particles, const Net& from, const Net& to) {
   Net difference(to.rows(), 3);
   for (const Particle& particle : particles) {
-    const Net before = centred(particle.block.rows(from)), after = centred(particle.block.rows(to));
-    particle.block.rows(difference) = after - before * nearest_rotation(after.transpose() * before).transpose();
+    const auto before = particle.block.rows(from), after = particle.block.rows(to);
+    const Net start = before.rowwise() - before.colwise().mean();
+    particle.block.rows(difference) = (after.rowwise() - after.colwise().mean()) - start * rotation_between(before, after).transpose();
   }
   return difference;
 }

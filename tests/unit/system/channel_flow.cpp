@@ -86,7 +86,7 @@ TEST(SharedWalls, AreEqualAndCountedOnce) {
 /// oscillation.
 TEST(ChannelFlow, HasAShearStressWithoutOscillations) {
   const ChannelFlow flow(channel("constriction", 16), 1, 1, {});
-  const surface::TubeWall& wall = *flow.surface();
+  const surface::TubeWall& wall = *flow.fixed_wall();
   std::vector<double> shear;
   for (int e = 0; e < static_cast<int>(wall.space.elements.size()); e += 16)
     for (const double s : {0.2, 0.4, 0.6, 0.8}) {

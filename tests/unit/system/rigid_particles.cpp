@@ -86,7 +86,8 @@ TEST(RigidParticles, OneMovesAsByTheFirstKindEquation) {
   Net x = one.rest;
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   x = ((x.rowwise() - centre.transpose()) * turn.transpose()).rowwise() + centre.transpose();
-  RigidTractions tractions(one.space, one.rest, 1, viscosity, one.parameters.quadrature, one.parameters.solvers, one.ranks);
+  const CapsuleParameters alone = single_body(one.space, 1, viscosity, one.parameters.quadrature, one.parameters.solvers);
+  RigidTractions tractions(one.space, one.rest, one.rest, alone, {}, {}, one.ranks);
   FreeBody body(tractions, one.rest, centre, 1, one.flow, driven);
   Net place = placed(centre);
   const Eigen::Quaterniond q(turn);
@@ -201,7 +202,8 @@ struct ByTractions : Bodies {
 
 TEST(RigidTractions, AFailedSolveKeepsTheInitialGuess) {
   Bodies one({{Vec3::Zero(), Vec3::Ones(), RigidDrive{}}}, 3, Mat3::Zero());
-  RigidTractions tractions(one.space, one.rest, 1, viscosity, one.parameters.quadrature, one.parameters.solvers, one.ranks);
+  const CapsuleParameters alone = single_body(one.space, 1, viscosity, one.parameters.quadrature, one.parameters.solvers);
+  RigidTractions tractions(one.space, one.rest, one.rest, alone, {}, {}, one.ranks);
   const auto fails = [](const double*, double* out) { std::fill_n(out, 3, std::numeric_limits<double>::quiet_NaN()); };
   const LinearSystem system{{{"traction", 3}}, fails, {}};
   Eigen::VectorXd unknowns = Eigen::VectorXd::Ones(3);

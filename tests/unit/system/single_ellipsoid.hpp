@@ -25,7 +25,9 @@ struct SingleEllipsoid {
     rest = surface::resting_shape(space, mesh, shape);
     quadrature::Options quadrature;
     quadrature.tolerance = 1e-7;
-    tractions = std::make_unique<RigidTractions>(space, rest, shape.equivalent_radius(), viscosity, quadrature, SolverOptions(), ranks);
+    tractions = std::make_unique<RigidTractions>(
+        space, rest, rest, single_body(space, shape.equivalent_radius(), viscosity, quadrature, SolverOptions()), FluidWalls(), std::vector<int>(),
+        ranks);
   }
 };
 

@@ -168,7 +168,7 @@ TEST(BoundedFreeBody, IsInvariantUnderRotationAndTranslation) {
   solvers.tolerance = 1e-9;
   quadrature::Options quadrature;
   quadrature.tolerance = 1e-6;
-  RigidTractions tractions(s.space, s.x, 0.5, viscosity, quadrature, solvers, s.ranks, s.tube.get());
+  RigidTractions tractions(s.space, s.x, s.x, single_body(s.space, 0.5, viscosity, quadrature, solvers), {s.tube.get()}, {}, s.ranks);
   stokes::FlowOptions options;
   options.type = "duct", options.mean_velocity = 1.3;
   const BoundedFreeBody body(tractions, s.x, s.shape.center, 0.5, stokes::AmbientFlow(options, s.flow), viscosity);
