@@ -94,6 +94,10 @@ class Run:
         """Raises Mistake if the scene has posts only."""
         expect(self.particles, f"{self.directory} has no particles, only posts")
 
+    def expect_one_particle(self):
+        """Raises Mistake if the deck has the section Particles."""
+        expect(not self.several, f"{self.directory} has several particles, and this figure is of one particle")
+
     def control_points(self):
         """Returns the number of control points of all particles (rows,)."""
         self.expect_particles()

@@ -25,7 +25,7 @@ def surfactant(runs, cut, along, deformation, extremes):
     D is the Taylor parameter. Concentrations are divided by the initial concentration. If one of the runs is a drop
     without surfactant, its section and D are drawn for comparison."""
     for run in runs:
-        expect(not run.several, f"{run.directory} has several particles, and this figure is of one drop")
+        run.expect_one_particle()
     expect(any("surfactant_mass" in run.series for run in runs), f"{runs[0].directory} has no surfactant")
     for run, color in style.coloured(runs):
         last = run.snapshot_at(None)

@@ -159,6 +159,7 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
     figure, axes = style.panels(axes, len(heights), 1, 5.2, 3.4 + 1.8 * rated, sharex=True, height_ratios=heights)
     upper = axes[0]
     for run, color in style.coloured(runs):
+        expect("Continuation" in run.deck, f"{run.directory} is no branch: its deck has no Continuation")
         parameter, value, fold = run.series["parameter"], run.series[series], run.series["fold"] > 0
         draw_branch(upper, run, parameter, value, color, run.name)
         upper.plot(parameter[fold], value[fold], "o", color=color, markerfacecolor="white")

@@ -71,6 +71,9 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
 
     times: number of times that are drawn
     curve: file of a reference for the gap over time: CSV with two columns in the units of the figure"""
+    for run in runs:
+        wall(run)  # states if there is none
+        run.expect_one_particle()
     figure = style.canvas(axes, 7.2, 2.6 * len(runs) + 2.8)
     grid = figure.add_gridspec(len(runs) + 1, 2, height_ratios=[1] * len(runs) + [1.1])
     gap, speed = (figure.add_subplot(grid[-1, k]) for k in (0, 1))
@@ -87,8 +90,9 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
     if curve:
         gap.plot(*table(curve).T[:2], style.MARKS[0], color=style.INK, markersize=3, label="reference")
     speed.axhline(0, color=style.FAINT, linewidth=0.8)
-    style.finish(gap, yscale="log", xlabel=time_label(runs), ylabel="gap / R$_C$")
-    style.finish(speed, xlabel=time_label(runs), ylabel=runs[0].label("velocity", "{} of the centroid"))
+    low, high = gap.get_ylim()
+    style.finish(gap, yscale="log" if high > 3 * low > 0 else "linear", xlabel=time_label(runs), ylabel="gap / R$_C$")
+    style.finish(speed, xlabel=time_label(runs), ylabel=runs[0].label("velocity"))
     return figure
 
 
@@ -161,6 +165,7 @@ def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
     from_: strain at which averages begin
     blocks: number of blocks for the standard errors"""
     for run, color in style.coloured(runs):
+        expect("volume_fraction" in run.series, f"{run.directory} is no suspension: its deck has no Domain")
         strain, words, label = run.time, [], f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
         for (name, symbol), axis, line in zip(SYMBOLS.items(), (upper, lower, lower), ("-", "-", "--")):
             axis.plot(strain, run.series[name], color=color, linestyle=line,

@@ -86,6 +86,7 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
     times: simulated times of the shapes"""
     figure = style.canvas(axes, 11.5, 4.4 * len(runs))
     for part, run in zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs):
+        run.expect_one_particle()
         d = duct_of(run)
         reached = [run.snapshot_at(time) for time in times if time <= run.series["time"][-1] * (1 + 1e-9)]
         expect(reached, f"{run.directory} ends before the first of these times")
@@ -142,6 +143,7 @@ def tube_motion(runs, paths, distance, *others):
     R_T is the radius of the circle with the area of the tube's cross-section, vₘ the mean velocity of the empty tube.
     The pressure drop is the one that the particle adds to that of the empty tube."""
     for run, colour in style.coloured(runs):
+        run.expect_one_particle()
         d = duct_of(run)
         speed, maximum = d["mean_velocity"], d["maximum"][:2]
         paths.plot(*d["outline"].T, color=colour, linewidth=1)
