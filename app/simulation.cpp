@@ -45,15 +45,15 @@ motion::TimeOptions time_options(const Scene& scene) {
 class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), particle_(particle_system(scene, ranks_, phases_)),
-        results_(scene, request, particle_->body(), particle_->bezier(), ranks_),
+      : scene_(scene), request_(request), particles_(particle_system(scene, ranks_, phases_)),
+        results_(scene, request, particles_->body(), particles_->bezier(), ranks_),
         scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {
     ranks_.measure(phases_);
   }
 
   int go() {
     stop_where_told();
-    if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(plan(scene_, particle_->body(), ranks_.size())).c_str(), stdout);
+    if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(plan(scene_, particles_->body(), ranks_.size())).c_str(), stdout);
     begin();
     clock_.emplace(phases_, "time stepping");
     output::Progress progress(state_.time, scene_.time.final_time, request_.quiet || ranks_.rank() != 0);
@@ -80,9 +80,9 @@ class Run {
       return;
     }
     for (const Warning& warning : first_warnings(scene_)) warn(warning);
-    state_.x = particle_->start();
+    state_.x = particles_->start();
     prepare();
-    motion::GuardedDynamics motion(particle_->dynamics(), stop_requested);
+    motion::GuardedDynamics motion(particles_->dynamics(), stop_requested);
     motion::begin(motion, state_);
     if (!motion.failure().empty()) throw RunFailure("the evaluation of the velocity of the initial shape failed: " + motion.failure());
     state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(motion, state_, scene_.time);
@@ -94,11 +94,11 @@ class Run {
   /// Adapts the initial mesh to thin films between particles, and between particles and a wall.
   void prepare() {
     if (!scene_.has_gaps() && !scene_.wall.present) return;
-    for (int k = 0; k < 8 && particle_->adapt(state_, totals_); ++k) results_.remesh(particle_->body(), particle_->bezier());
+    for (int k = 0; k < 8 && particles_->adapt(state_, totals_); ++k) results_.remesh(particles_->body(), particles_->bezier());
   }
 
   void resume(Resumed& resumed) {
-    if (particle_->resume(resumed)) results_.remesh(particle_->body(), particle_->bezier());
+    if (particles_->resume(resumed)) results_.remesh(particles_->body(), particles_->bezier());
     state_ = resumed.state;
     if (scene_.time.final_time < state_.time)
       results_.warn(formatted("Time/final time %g is before the time %g that the run has reached: nothing was computed", scene_.time.final_time,
@@ -129,10 +129,10 @@ class Run {
     within_step_.reset();
     const std::string undone = error_of([&] {
       if (!adapting_) return;
-      particle_->undo_adapt(state_.x);
-      results_.remesh(particle_->body(), particle_->bezier());
+      particles_->undo_adapt(state_.x);
+      results_.remesh(particles_->body(), particles_->bezier());
     });
-    particle_->set_contacts(totals_.contacts);
+    particles_->set_contacts(totals_.contacts);
     if (!error.empty()) fail(error);
     if (!undone.empty()) fail(undone);
     return by_signal;
@@ -161,20 +161,20 @@ class Run {
     if (!lands && snapshot_due_ && state_.time > snapshot) interpolate_within(before);
     if (within_step_ && scene_.adapts()) {
       within_step_->sampled = sample();
-      particle_->dynamics().set_time(state_.time, began_);
+      particles_->dynamics().set_time(state_.time, began_);
     }
     adapting_ = true;
     adapt();
-    for (const Warning& remark : particle_->remarks()) warn(remark);
+    for (const Warning& remark : particles_->remarks()) warn(remark);
     record();
   }
 
   /// Adapts the mesh if the adaptation criterion requires it. Then computes the velocity again: the loads on the new mesh differ, and steps that used
   /// the velocity of the old mesh were ten times shorter.
   void adapt() {
-    if (!particle_->adapt(state_, totals_)) return;
-    results_.remesh(particle_->body(), particle_->bezier());
-    motion::GuardedDynamics motion(particle_->dynamics(), stop_requested);
+    if (!particles_->adapt(state_, totals_)) return;
+    results_.remesh(particles_->body(), particles_->bezier());
+    motion::GuardedDynamics motion(particles_->dynamics(), stop_requested);
     state_.history.clear();
     motion::begin(motion, state_);
   }
@@ -182,7 +182,7 @@ class Run {
   /// Makes a step of the time scheme that ends at the time `limit` or earlier. If the motion is not smooth at the start of the step (a kink), the
   /// scheme restarts there, and `before` becomes the state after the kink.
   void integrate(double limit, motion::State& before) {
-    motion::GuardedDynamics motion(particle_->dynamics(), stop_requested);
+    motion::GuardedDynamics motion(particles_->dynamics(), stop_requested);
     try {
       if (motion::cross_kink(motion, state_)) before = state_;
       if (!state_.history.front().allFinite()) throw RunFailure("the evaluation of the velocity failed at the start of a step");
@@ -201,7 +201,7 @@ class Run {
     for (int rejected = 0;; ++rejected) {
       report_ = scheme_->advance(motion, state_, limit);
       report_.rejected += rejected;
-      if (particle_->enforce_gaps(state_, report_.step)) return;
+      if (particles_->enforce_gaps(state_, report_.step)) return;
       if (scene_.time.fixed_step)
         throw RunFailure(
             "after a step of fixed length particles are too close for Contact/limiter to hold them apart: set a smaller Time/fixed step");
@@ -215,13 +215,13 @@ class Run {
   }
 
   /// Returns the kernel evaluations of this part of the run on all ranks. Collective.
-  stokes::Evaluations kernel_evaluations() const { return ranks_.of_all(particle_->kernel_evaluations() + scene_.walls->evaluations()); }
+  stokes::Evaluations kernel_evaluations() const { return ranks_.of_all(particles_->kernel_evaluations() + scene_.walls->evaluations()); }
 
   /// Collects the totals of the run after a finished step, for a checkpoint: counts of operations, phase angle, contacts and warnings.
   void collect_totals() {
-    totals_.counts = particle_->counts();
-    totals_.phase_angle = particle_->phase_angle();
-    totals_.contacts = particle_->contacts();
+    totals_.counts = particles_->counts();
+    totals_.phase_angle = particles_->phase_angle();
+    totals_.contacts = particles_->contacts();
     totals_.kernel = earlier_kernel_ + kernel_evaluations();
     totals_.warnings = warnings_.memory();
 #ifndef NDEBUG
@@ -254,8 +254,8 @@ class Run {
 
   void record() {
     const auto clock = phases_.time("diagnostics");
-    particle_->dynamics().set_time(state_.time, began_);
-    row_ = particle_->row(state_, {.step = report_, .wall_seconds = earlier_wall_seconds_ + seconds_here()});
+    particles_->dynamics().set_time(state_.time, began_);
+    row_ = particles_->row(state_, {.step = report_, .wall_seconds = earlier_wall_seconds_ + seconds_here()});
     {
       const auto output = phases_.time("output");
       results_.record(row_);
@@ -267,13 +267,13 @@ class Run {
   void check_mesh() {
     if (first_.particle.rigid()) return;
     const auto clock = phases_.time("soundness");
-    quality_ = soundness(particle_->bezier(), state_.x, ranks_);
+    quality_ = soundness(particles_->bezier(), state_.x, ranks_);
   }
 
   /// Prints a warning for each limit of validity that the last step has come close to.
   void warn_of_limits() {
     if (first_.particle.rigid()) return;
-    const auto n_elements = static_cast<int>(particle_->body().space.elements.size());
+    const auto n_elements = static_cast<int>(particles_->body().space.elements.size());
     for (const std::string& sentence : warnings_.sentences({first_, row_, quality_, n_elements})) results_.warn(sentence);
   }
 
@@ -285,16 +285,16 @@ class Run {
     // sample() has evaluated the velocity at the time of the snapshot; the totals are collected again to include this evaluation.
     if (within_step_) collect_totals();
     output::Checkpoint checkpoint;
-    particle_->store(checkpoint);
+    particles_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, snapshot);
-    particle_->forget_recycled();
+    particles_->forget_recycled();
   }
 
   /// Evaluates and returns the snapshot that is due, at the end of the last step or at a time within the step.
   Results::Sampled sample() {
     const motion::State& shown = within_step_ ? within_step_->state : state_;
-    particle_->dynamics().set_time(shown.time, began_);
-    return results_.sample(particle_->snapshot(shown), shown.time);
+    particles_->dynamics().set_time(shown.time, began_);
+    return results_.sample(particles_->snapshot(shown), shown.time);
   }
 
   void save_or_fail() {
@@ -322,7 +322,7 @@ class Run {
   /// wall.
   std::string reason_to_stop() {
     if (scene_.tube.present) end_at_wall(scene_.tube.list(), scene_.tube.contact_gap);
-    if (const std::string coarse = coarse_wall(scene_, particle_->body(), row_); !coarse.empty()) warn({"coarse wall", coarse});
+    if (const std::string coarse = coarse_wall(scene_, particles_->body(), row_); !coarse.empty()) warn({"coarse wall", coarse});
     if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
     if (scene_.has_gaps()) end_at_contact();
     if (coupling::any_stop_requested(stop_requested())) return by_signal;
@@ -330,17 +330,17 @@ class Run {
     const auto tolerance = scene_.time.steady_tolerance;
     const bool flow_changes = scene_.flow.history && scene_.flow.history->lasts(state_.time);
     if (tolerance && !flow_changes && row_.largest("shape_velocity") < *tolerance) return steady;
-    if (scene_.time.end_when_past && least_axial_position(scene_, particle_->body(), row_) > *scene_.time.end_when_past) return past;
+    if (scene_.time.end_when_past && least_axial_position(scene_, particles_->body(), row_) > *scene_.time.end_when_past) return past;
     return {};
   }
 
   Account account(const std::string& status) const {
-    return {plan(scene_, particle_->body(), ranks_.size()), counts(totals_), status, {}, false, earlier_seconds_, {}, {}};
+    return {plan(scene_, particles_->body(), ranks_.size()), counts(totals_), status, {}, false, earlier_seconds_, {}, {}};
   }
 
   /// Closes the results and returns the exit code. `reason` is the reason for an early end, or empty.
   int end(const std::string& reason) {
-    if (scene_.output.surface_text) results_.write_surface(particle_->snapshot(state_).surface);
+    if (scene_.output.surface_text) results_.write_surface(particles_->snapshot(state_).surface);
     Account last = account(reason.empty() ? "done" : reason);
     last.whole = reason.empty() || reason == steady || reason == past;
     if (!reason.empty() && !request_.of_ladder) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
@@ -356,7 +356,7 @@ class Run {
   Phases phases_ = started();
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // timer of the phase `set-up`, later of `time stepping`
   coupling::Ranks ranks_;
-  std::unique_ptr<ParticleSystem> particle_;
+  std::unique_ptr<ParticleSystem> particles_;
   Results results_;
   std::unique_ptr<motion::Integrator> scheme_;
   motion::State state_;

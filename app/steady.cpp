@@ -16,12 +16,12 @@
 #include "record/results.hpp"
 #include "scene/particles/particle_system.hpp"
 #include "scene/particles/warnings.hpp"
-#include "scene/searches.hpp"
+#include "scene/searches/searches.hpp"
 #include "scene/series/run_totals.hpp"
 #include "scene/series/series.hpp"
-#include "scene/shape_modes.hpp"
-#include "scene/steady_system.hpp"
-#include "scene/system_pool.hpp"
+#include "scene/searches/shape_modes.hpp"
+#include "scene/searches/steady_system.hpp"
+#include "scene/searches/system_pool.hpp"
 #include "scene/tube.hpp"
 #include "system/agreement.hpp"
 
@@ -34,10 +34,10 @@ class SteadyRun {
  public:
   SteadyRun(const Scene& scene, const RunRequest& request)
       : scene_(scene), request_(request), pool_(scene, request.changed, ranks_, phases_, stop_requested_), system_(pool_.latest()),
-        chosen_(plan(scene, system_->particle->body(), ranks_.size())),
-        results_(scene, request, system_->particle->body(), system_->particle->bezier(), ranks_) {
+        chosen_(plan(scene, system_->particles->body(), ranks_.size())),
+        results_(scene, request, system_->particles->body(), system_->particles->bezier(), ranks_) {
     ranks_.measure(phases_);
-    state_.x = system_->particle->start();
+    state_.x = system_->particles->start();
   }
   virtual ~SteadyRun() = default;
 
@@ -68,16 +68,16 @@ class SteadyRun {
   /// Adapts the mesh to the shape. Returns whether the mesh has changed. If the mesh has been coarsened at the same point of a branch, does nothing,
   /// because refinement and coarsening could alternate forever.
   bool adapt() {
-    if (totals_.coarsenings > earlier_coarsenings_ || !system_->particle->adapt(state_, totals_)) return false;
-    results_.remesh(system_->particle->body(), system_->particle->bezier());
+    if (totals_.coarsenings > earlier_coarsenings_ || !system_->particles->adapt(state_, totals_)) return false;
+    results_.remesh(system_->particles->body(), system_->particles->bezier());
     system_->begin(state_.x);
     return true;
   }
 
   /// Makes this system the current one. The results then refer to its mesh; the previous system and its mesh may be deleted.
-  void use(std::shared_ptr<System> system) {
+  void use(std::shared_ptr<SteadySystem> system) {
     system_ = std::move(system);
-    results_.remesh(system_->particle->body(), system_->particle->bezier());
+    results_.remesh(system_->particles->body(), system_->particles->bezier());
   }
 
   /// Finds the steady shape of the current system by approach_steady(), after the search from `start` has failed with the report `failed` and the
@@ -121,27 +121,27 @@ class SteadyRun {
   void record() {
     const auto clock = phases_.time("diagnostics");
     pool_.count(totals_);
-    totals_.phase_angle = system_->particle->phase_angle();
-    Columns row = system_->particle->row(state_, {.step = report_, .wall_seconds = seconds(), .evaluations = totals_.counts.evaluations});
+    totals_.phase_angle = system_->particles->phase_angle();
+    Columns row = system_->particles->row(state_, {.step = report_, .wall_seconds = seconds(), .evaluations = totals_.counts.evaluations});
     found_.add_columns(scene_, row);
     row.check();
     results_.record(row);
-    if (const std::string coarse = coarse_wall(scene_, system_->particle->body(), row); !coarse.empty()) results_.warn_once("coarse wall", coarse);
+    if (const std::string coarse = coarse_wall(scene_, system_->particles->body(), row); !coarse.empty()) results_.warn_once("coarse wall", coarse);
   }
 
   void save() {
     const auto clock = phases_.time("output");
     output::Checkpoint checkpoint;
-    system_->particle->store(checkpoint);
+    system_->particles->store(checkpoint);
     for (int k = 0; const motion::Mode& mode : found_.modes) checkpoint.arrays["mode " + std::to_string(++k)] = mode.real;
-    SurfaceSnapshot snapshot = system_->particle->snapshot(state_);
+    SurfaceSnapshot snapshot = system_->particles->snapshot(state_);
     if (scene_.output.surface_text) results_.write_surface(snapshot.surface);
     snapshot.fields = [this, of_shape = snapshot.fields](const output::Nodes& nodes) {
       std::vector<output::Field> fields = of_shape(nodes);
       int k = 0;
       for (const motion::Mode& mode : found_.modes) {
         const std::string name = "mode " + std::to_string(++k);
-        const Eigen::Index n = system_->particle->capsule()->n_points();
+        const Eigen::Index n = system_->particles->capsule()->n_points();
         fields.push_back({name, nodes.values(mode.real.topRows(n))});
         if (mode.rate.imag() != 0) fields.push_back({name + " imaginary", nodes.values(mode.imaginary.topRows(n))});
       }
@@ -180,7 +180,7 @@ class SteadyRun {
   const RunRequest& request_;
   coupling::Ranks ranks_;
   SystemPool pool_;
-  std::shared_ptr<System> system_;  // system of the current shape; results_ refers to its mesh
+  std::shared_ptr<SteadySystem> system_;  // system of the current shape; results_ refers to its mesh
   output::Entries<std::string> chosen_;
   Results results_;
   const Warn warn_once_ = [this](const Warning& warning) { results_.warn_once(warning.kind, warning.sentence); };
@@ -227,13 +227,13 @@ class PeriodicSearch : public SteadyRun {
 
   void search() override {
     motion::PeriodicOptions options = scene_.periodic;
-    const Body& body = system_->particle->body();
-    options.drifts = free_motions(scene_, body.flow, body.radius, system_->particle->capsule()->particles(), 3);
+    const Body& body = system_->particles->body();
+    options.drifts = free_motions(scene_, body.flow, body.radius, system_->particles->capsule()->particles(), 3);
     state_.x = motion::after_periods(*system_->motion, time_, scene_.solvers.nox, options, state_.x);
     motion::PeriodicReport found;
     do {
       returns_.emplace(*system_->motion, time_, scene_.solvers.nox, options, state_.x);
-      found = motion::find_periodic(*returns_, scene_.solvers.nox, std::bind_front(&System::without_sliding, system_.get()), state_.x);
+      found = motion::find_periodic(*returns_, scene_.solvers.nox, std::bind_front(&SteadySystem::without_sliding, system_.get()), state_.x);
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     found_.period = returns_->period(), found_.mean_velocity = returns_->mean_velocity();
@@ -290,7 +290,7 @@ class BranchSearch : public SteadyRun {
 }  // namespace
 
 int find_steady(const Scene& scene, const RunRequest& request) {
-  if (request.resume) throw UserError("--resume continues a run in time: Steady and Spectrum have no time steps to continue.");
+  if (request.resume) throw UserError("--resume continues a run in time: " + scene.sought().here + " has no time steps to continue.");
   if (scene.continuation.present) return BranchSearch(scene, request).go();
   if (scene.periodic.present) return PeriodicSearch(scene, request).go();
   if (scene.steady.present) return SteadySearch(scene, request).go();

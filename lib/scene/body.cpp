@@ -148,7 +148,7 @@ Body body(const ParticleScene& scene, const Member* similar, std::shared_ptr<con
   if (before && scene.adaptation.enabled) {
     first = b;
     lay_out(scene, stored_mesh(b.mesh, *before), b);
-    b.rest = before->arrays.at("initial");
+    b.rest = before->arrays.at(stored_rest);
   }
   b.initial = initial_shape(scene, b, before ? &*before : nullptr);
   const Vec3& center = scene.particle.shape.center;

@@ -101,6 +101,9 @@ void check_in_medium(const ParticleScene& scene, const Body& body);
 /// wall of the tube, or null.
 coupling::LoadList loads(const ParticleScene& scene, const Body& body, const surface::TubeWall* wall);
 
+/// Name in checkpoints of the net Body::rest. The name is that of the first versions. Body::initial is not stored.
+constexpr const char* stored_rest = "initial";
+
 /// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and if the
 /// load is computed in the strong form.
 stokes::Measure load_measure(const ParticleScene& scene);

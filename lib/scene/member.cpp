@@ -199,7 +199,7 @@ void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
   for (const Member& member : members) {
     const Body& body = *member.body;
     checkpoint.arrays[member.label("unstressed")] = body.unstressed;
-    checkpoint.arrays[member.label("initial")] = body.rest;
+    checkpoint.arrays[member.label(stored_rest)] = body.rest;
     checkpoint.numbers[member.label("initial volume")] = body.volume;
     checkpoint.numbers[member.label("refit error")] = body.refit_error;
     if (member.scene.surfactant) checkpoint.numbers[member.label("initial area")] = body.surfactant_mass;
@@ -227,7 +227,7 @@ bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members)
     another = true;
     lay_out(member.scene, stored_mesh(member.body->mesh, checkpoint, member.label("")), *member.body);
     member.body->unstressed = checkpoint.arrays.at(member.label("unstressed"));
-    member.body->rest = member.body->initial = checkpoint.arrays.at(member.label("initial"));
+    member.body->rest = member.body->initial = checkpoint.arrays.at(member.label(stored_rest));
     member.body->refit_error = checkpoint.numbers.at(member.label("refit error"));
   }
   return another;

@@ -4,7 +4,7 @@
 
 #include "base/rejections.hpp"
 #include "scene/scene.hpp"
-#include "scene/searches.hpp"
+#include "scene/searches/searches.hpp"
 #include "scene/tube.hpp"
 
 namespace tanktread {

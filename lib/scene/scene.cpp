@@ -10,7 +10,7 @@
 #include "deck/units.hpp"
 #include "deck/words.hpp"
 #include "scene/memory.hpp"
-#include "scene/searches.hpp"
+#include "scene/searches/searches.hpp"
 #include "scene/tube.hpp"
 #include "system/solids/shared_walls.hpp"
 
@@ -325,17 +325,21 @@ double SharedOptions::next_snapshot(double now) const {
   return next < time.final_time * (1 - 1e-12) ? next : time.final_time;
 }
 
+ParticleScene Scene::of(const ParticleKind& kind) const {
+  ParticleScene scene(*this, kind);
+  scene.solvers.rigid_bodies = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
+  return scene;
+}
+
 std::vector<ParticleScene> Scene::particle_scenes() const {
   std::vector<ParticleScene> scenes;
-  for (const ParticleKind& kind : particles) scenes.emplace_back(*this, kind);
-  const auto equation = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
-  for (ParticleScene& one : scenes) one.solvers.rigid_bodies = equation;
+  for (const ParticleKind& kind : particles) scenes.push_back(of(kind));
   return scenes;
 }
 
 ParticleScene Scene::first_deforming() const {
   const auto found = std::ranges::find_if(particles, [](const ParticleKind& kind) { return !kind.particle.rigid(); });
-  return {*this, found == particles.end() ? particles.front() : *found};
+  return of(found == particles.end() ? particles.front() : *found);
 }
 
 /// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for several bodies of

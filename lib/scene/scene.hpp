@@ -214,10 +214,10 @@ struct Scene : SharedOptions {
 
   bool named() const { return !particles.front().name.empty(); }  ///< returns true if the deck has the section Particles
 
-  /// Returns the scenes of all particles. In them, Solvers/rigid bodies is not `auto`.
+  /// Return the scenes of all particles, and of the first one. In them, Solvers/rigid bodies is not `auto`.
   std::vector<ParticleScene> particle_scenes() const;
-  ParticleScene first() const { return {*this, particles.front()}; }
-  /// Returns the first particle that deforms, or the first particle if all are rigid.
+  ParticleScene first() const { return of(particles.front()); }
+  /// Returns the scene of the first particle that deforms, or the first particle if all are rigid.
   ParticleScene first_deforming() const;
   bool by_tractions() const;  ///< returns true if the unknowns of rigid bodies are tractions, by the integral equation of the first kind (2.40)
 

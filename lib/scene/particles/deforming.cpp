@@ -9,7 +9,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "scene/searches.hpp"
+#include "scene/searches/searches.hpp"
 #include "scene/member.hpp"
 #include "scene/particles/adaptation.hpp"
 #include "scene/particles/gaps.hpp"

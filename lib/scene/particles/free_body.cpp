@@ -36,7 +36,7 @@ class Free : public ParticleSystem {
   }
   void store(output::Checkpoint& checkpoint) const override {
     checkpoint.arrays["unstressed"] = body_.unstressed;
-    checkpoint.arrays["initial"] = body_.rest;
+    checkpoint.arrays[stored_rest] = body_.rest;
     if (const Eigen::VectorXd start = free_->unknowns(); start.size() > 0) checkpoint.arrays["start unknowns"] = start;
   }
   void forget_recycled() override { tractions_.forget_recycled(); }

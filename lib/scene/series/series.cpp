@@ -28,8 +28,8 @@ constexpr const char* order =
     "smallest_gap first_of_gap second_of_gap gap_ contact_force contact_impulse volume_fraction cell_1_ cell_2_ cell_3_ particle_stress_ "
     "relative_viscosity normal_stress_difference_ pressure_gradient_ disturbance_flux force_imbalance cap_velocity pressure_drop_by_flux "
     "pressure_drop_by_force drag_ torque_ drag_error drag_error_of_traction torque_error pressure_l2_error normal_l2_error surfactant_mass "
-    "smallest_concentration largest_concentration parameter fold second_parameter period leading_rate unstable_modes rate_ frequency_ "
-    "kernel_evaluations";
+    "smallest_concentration largest_concentration parameter fold second_parameter period mean_particle_velocity_ leading_rate unstable_modes "
+    "rate_ frequency_ kernel_evaluations";
 
 std::size_t rank(const std::string& name) {
   static const auto ranks = [] {

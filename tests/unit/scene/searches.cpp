@@ -6,7 +6,7 @@
 
 #include "deck/document.hpp"
 #include "scene/body.hpp"
-#include "scene/searches.hpp"
+#include "scene/searches/searches.hpp"
 
 namespace tanktread {
 namespace {

@@ -8,7 +8,7 @@
 #include "motion/periodic.hpp"
 #include "motion/spectrum.hpp"
 #include "scene/particles/warnings.hpp"
-#include "scene/system_pool.hpp"
+#include "scene/searches/system_pool.hpp"
 
 namespace tanktread {
 
@@ -19,7 +19,7 @@ using Warn = std::function<void(const Warning&)>;
 /// periodic motion through x, and the rates are Floquet exponents; modes that errors of time steps hide are left out. `pool` builds a system without
 /// symmetry if the modes may have another parity than the shape. Afterwards, x is the latest shape that `system` has evaluated. Throws UserError if
 /// Spectrum/parity does not suit the scene. Collective.
-std::vector<motion::Mode> shape_modes(SystemPool& pool, const std::shared_ptr<System>& system, const Net& x, motion::ReturnMap* returns,
+std::vector<motion::Mode> shape_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const Net& x, motion::ReturnMap* returns,
                                       const Warn& warn);
 
 }  // namespace tanktread

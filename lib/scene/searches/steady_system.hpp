@@ -11,52 +11,52 @@
 #include "motion/steady.hpp"
 #include "scene/particles/particle_system.hpp"
 #include "scene/scene.hpp"
-#include "scene/searches.hpp"
+#include "scene/searches/searches.hpp"
 #include "system/shape_coordinates.hpp"
 
 namespace tanktread {
 
 /// A scene and the motion of its particles. A branch of steady shapes has one system per value of its parameters (see SystemPool).
-struct System {
+struct SteadySystem {
   /// `stops`: function that returns true if this rank is to stop because of a signal or a limit (see GuardedDynamics).
-  System(Scene of, coupling::Ranks& ranks, Phases& phases, std::function<bool()> stops)
-      : scene(std::move(of)), particle(deforming(scene, ranks, phases)), is_to_stop(std::move(stops)) {
-    begin(particle->start());
+  SteadySystem(Scene of, coupling::Ranks& ranks, Phases& phases, std::function<bool()> stops)
+      : scene(std::move(of)), particles(deforming(scene, ranks, phases)), is_to_stop(std::move(stops)) {
+    begin(particles->start());
   }
 
   /// Sets up the motion and the equations of steady shapes on the current mesh of the particle. `x`: shape on this mesh from which the search starts.
   void begin(const Net& x) {
-    motion.emplace(particle->dynamics(), is_to_stop);
+    motion.emplace(particles->dynamics(), is_to_stop);
     motion->set_time(0, 0);
-    const Body& body = particle->body();
-    equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particle->capsule()->particles()), steady_step(scene), x);
+    const Body& body = particles->body();
+    equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particles->capsule()->particles()), steady_step(scene), x);
   }
 
   /// Returns the mesh, for move_to().
   output::Checkpoint mesh() const {
     output::Checkpoint mesh;
-    particle->store(mesh);
+    particles->store(mesh);
     return mesh;
   }
 
   /// Changes to the mesh of another system, and then calls begin(). Collective.
   void move_to(const output::Checkpoint& mesh, const Net& x) {
     Resumed resumed;
-    resumed.state.x = x, resumed.totals.phase_angle = particle->phase_angle(), resumed.checkpoint = mesh;
-    particle->resume(resumed);
+    resumed.state.x = x, resumed.totals.phase_angle = particles->phase_angle(), resumed.checkpoint = mesh;
+    particles->resume(resumed);
     begin(x);
   }
 
   /// Returns false if there are surface fields whose images under the symmetry of the shape are not known.
-  bool knows_images() const { return !particle->fields() || particle->fields()->knows_images(particle->body().symmetry); }
+  bool knows_images() const { return !particles->fields() || particles->fields()->knows_images(particles->body().symmetry); }
 
   /// Returns the coordinates of changes of the state x. `symmetry`: symmetry of the shape, which must outlive the result. `parity`: parity of the
   /// changes under reflections of x1, x2, x3.
   coupling::ShapeCoordinates coordinates(const Net& x, const surface::Symmetry& symmetry, const Vec3& parity = Vec3::Ones()) {
-    const coupling::Capsule& capsule = *particle->capsule();
+    const coupling::Capsule& capsule = *particles->capsule();
     const Net shape = x.topRows(capsule.n_points());
-    coupling::ShapeCoordinates all(particle->body().space, capsule.particles(), symmetry, shape, capsule.projection(), parity);
-    if (particle->fields()) all.add_fields(*particle->fields(), x);
+    coupling::ShapeCoordinates all(particles->body().space, capsule.particles(), symmetry, shape, capsule.projection(), parity);
+    if (particles->fields()) all.add_fields(*particles->fields(), x);
     return all;
   }
 
@@ -67,20 +67,20 @@ struct System {
   ///
   /// because a point that slides along a circle moves at right angles to the normal at the middle of its way. Collective.
   Net without_sliding(const Net& before, const Net& after) {
-    if (std::ranges::none_of(particle->capsule()->particles(), &coupling::Particle::slides)) return after;
+    if (std::ranges::none_of(particles->capsule()->particles(), &coupling::Particle::slides)) return after;
     const surface::Symmetry none;
-    const coupling::ShapeCoordinates shapes = coordinates(0.5 * (before + after), knows_images() ? particle->body().symmetry : none);
+    const coupling::ShapeCoordinates shapes = coordinates(0.5 * (before + after), knows_images() ? particles->body().symmetry : none);
     return before + shapes.displacement(shapes.coordinates(after - before));
   }
 
   Scene scene;
-  std::unique_ptr<ParticleSystem> particle;
+  std::unique_ptr<ParticleSystem> particles;
   std::function<bool()> is_to_stop;
   std::optional<motion::GuardedDynamics> motion;
   std::optional<motion::SteadyEquations> equations;
 };
 
 /// Returns the equations of steady shapes of the system. They share the ownership of the system.
-inline std::shared_ptr<motion::SteadyEquations> equations_of(const std::shared_ptr<System>& system) { return {system, &*system->equations}; }
+inline std::shared_ptr<motion::SteadyEquations> equations_of(const std::shared_ptr<SteadySystem>& system) { return {system, &*system->equations}; }
 
 }  // namespace tanktread

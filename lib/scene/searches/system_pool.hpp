@@ -14,10 +14,10 @@
 #include "base/formatted.hpp"
 #include "deck/words.hpp"
 #include "record/files/checkpoint.hpp"
-#include "scene/searches.hpp"
+#include "scene/searches/searches.hpp"
 #include "scene/series/run_totals.hpp"
 #include "scene/series/surface_fields.hpp"
-#include "scene/steady_system.hpp"
+#include "scene/searches/steady_system.hpp"
 #include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
@@ -29,8 +29,8 @@ class SystemPool {
   /// Function that returns the scene of the deck with some keys changed by settings `Section/key=value`, or throws UserError.
   using Changed = std::function<Scene(const std::vector<std::string>& settings)>;
 
-  /// Builds the system of `scene`. `stops`: see System. `scene`, `ranks` and `phases` must outlive this object, and this object must outlive the
-  /// systems that it returns. Collective.
+  /// Builds the system of `scene`. `stops`: see SteadySystem. `scene`, `ranks` and `phases` must outlive this object, and this object must outlive
+  /// the systems that it returns. Collective.
   SystemPool(const Scene& scene, Changed changed, coupling::Ranks& ranks, Phases& phases, std::function<bool()> stops)
       : scene_(scene), changed_(std::move(changed)), ranks_(ranks), phases_(phases), stops_(std::move(stops)) {
     systems_.emplace_front(Parameters(), built(scene));
@@ -38,30 +38,30 @@ class SystemPool {
   SystemPool(const SystemPool&) = delete;
 
   /// Returns the system of the branch that was used last; at first, the system of the deck.
-  const std::shared_ptr<System>& latest() const { return systems_.front().second; }
+  const std::shared_ptr<SteadySystem>& latest() const { return systems_.front().second; }
 
   /// Begins a branch. `first`: values of the parameters in the deck. Throws UserError if the deck does not allow the values at which the branch ends.
   void begin_branch(const Parameters& first) {
     scene_at({scene_.continuation.to, first[1]});
     for (const double second : scene_.continuation.second_values.value_or(std::vector<double>())) scene_at({first[0], second});
     systems_.front().first = first;
-    rest_ = latest()->particle->body().rest, unstressed_ = latest()->particle->body().unstressed;
+    rest_ = latest()->particles->body().rest, unstressed_ = latest()->particles->body().unstressed;
   }
 
   /// Returns the system for these values of the parameters. A new system starts from the shape x. If the deck does not allow the values, throws
   /// RunFailure instead of UserError, so that the points of the branch computed so far are kept. Collective.
-  std::shared_ptr<System> at(const Parameters& parameters, const Net& x) try {
-    const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<System>>::first);
+  std::shared_ptr<SteadySystem> at(const Parameters& parameters, const Net& x) try {
+    const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<SteadySystem>>::first);
     if (known != systems_.end()) {
       std::rotate(systems_.begin(), known, known + 1);
       return latest();
     }
     const auto clock = phases_.time("set-up");
-    const std::shared_ptr<System> made = built(scene_at(parameters));
-    if (mesh_ && !(made->particle->body().rest == rest_ && made->particle->body().unstressed == unstressed_))
+    const std::shared_ptr<SteadySystem> made = built(scene_at(parameters));
+    if (mesh_ && !(made->particles->body().rest == rest_ && made->particles->body().unstressed == unstressed_))
       throw UserError("the mesh has adapted, but the resting or unstressed shape depends on this key: set Adaptation/enabled to false");
     if (mesh_) made->move_to(*mesh_, x);
-    const int points = made->particle->body().space.n_points, expected = latest()->particle->body().space.n_points;
+    const int points = made->particles->body().space.n_points, expected = latest()->particles->body().space.n_points;
     if (points != expected)
       throw UserError("Continuation needs one mesh, but " + text(parameters) + formatted(" has %d control points, not %d.", points, expected));
     systems_.emplace_front(parameters, made);
@@ -78,8 +78,8 @@ class SystemPool {
   }
 
   /// Returns a new system with another scene, on the mesh of the system `like` and with the shape x. Collective.
-  std::shared_ptr<System> variant(const System& like, Scene scene, const Net& x) {
-    std::shared_ptr<System> made = built(std::move(scene));
+  std::shared_ptr<SteadySystem> variant(const SteadySystem& like, Scene scene, const Net& x) {
+    std::shared_ptr<SteadySystem> made = built(std::move(scene));
     made->move_to(like.mesh(), x);
     return made;
   }
@@ -87,18 +87,18 @@ class SystemPool {
   /// Sets in `totals` the operation counts and kernel evaluations of all systems, including deleted ones. Collective.
   void count(RunTotals& totals) const {
     totals.counts = counts_, totals.kernel = kernel_;
-    for (const std::weak_ptr<System>& one : built_)
-      if (const std::shared_ptr<System> system = one.lock())
-        totals.counts = totals.counts + system->particle->counts(), totals.kernel += system->particle->kernel_evaluations();
+    for (const std::weak_ptr<SteadySystem>& one : built_)
+      if (const std::shared_ptr<SteadySystem> system = one.lock())
+        totals.counts = totals.counts + system->particles->counts(), totals.kernel += system->particles->kernel_evaluations();
     totals.kernel = ranks_.of_all(totals.kernel + walls_->evaluations());
   }
 
  private:
   /// Builds a system. When the system is deleted, its numbers of operations are added to `counts_` and `kernel_`.
-  std::shared_ptr<System> built(Scene scene) {
+  std::shared_ptr<SteadySystem> built(Scene scene) {
     scene.walls = walls_;
-    std::shared_ptr<System> made(new System(std::move(scene), ranks_, phases_, stops_), [this](System* system) {
-      counts_ = counts_ + system->particle->counts(), kernel_ += system->particle->kernel_evaluations();
+    std::shared_ptr<SteadySystem> made(new SteadySystem(std::move(scene), ranks_, phases_, stops_), [this](SteadySystem* system) {
+      counts_ = counts_ + system->particles->counts(), kernel_ += system->particles->kernel_evaluations();
       delete system;
     });
     built_.push_back(made);
@@ -120,9 +120,9 @@ class SystemPool {
   std::function<bool()> stops_;
   coupling::OperationCounts counts_;           // operation counts of deleted systems
   stokes::Evaluations kernel_;                 // kernel evaluations of deleted systems on this rank
-  std::vector<std::weak_ptr<System>> built_;   // all systems
+  std::vector<std::weak_ptr<SteadySystem>> built_;   // all systems
   std::shared_ptr<coupling::SharedWalls> walls_ = std::make_shared<coupling::SharedWalls>();  // walls of all systems
-  std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // parameters and systems of the branch, last used first
+  std::deque<std::pair<Parameters, std::shared_ptr<SteadySystem>>> systems_;  // parameters and systems of the branch, last used first
   Net rest_, unstressed_;                      // resting and unstressed shapes of the branch on the mesh of the deck
   std::optional<output::Checkpoint> mesh_;     // mesh of the branch; not set if it is the mesh of the deck
 };

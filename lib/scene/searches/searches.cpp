@@ -1,4 +1,4 @@
-#include "scene/searches.hpp"
+#include "scene/searches/searches.hpp"
 
 #include <algorithm>
 #include <cstdlib>

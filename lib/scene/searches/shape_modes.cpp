@@ -1,4 +1,4 @@
-#include "scene/shape_modes.hpp"
+#include "scene/searches/shape_modes.hpp"
 
 #include <cmath>
 #include <complex>
@@ -13,12 +13,12 @@ namespace {
 
 /// Returns the system in which the modes of the shape x of `system` are computed: `system`, or a system without symmetry if the modes may have
 /// another parity than the shape, because the velocities of all points are then needed.
-std::shared_ptr<System> system_of_modes(SystemPool& pool, const std::shared_ptr<System>& system, const Net& x) {
+std::shared_ptr<SteadySystem> system_of_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const Net& x) {
   const bool parity = system->scene.spectrum.parity.has_value(), known = system->knows_images();
   if (!parity && known) return system;
   if (parity && !known)
     throw UserError("Spectrum/parity needs surface fields with known images: remove the key to find modes of all parities.");
-  if (system->particle->body().symmetry.order() == 1)
+  if (system->particles->body().symmetry.order() == 1)
     throw UserError("Spectrum/parity needs a symmetric scene, and this one has no symmetry: remove the key.");
   Scene whole = system->scene;
   whole.symmetry.use = "none";
@@ -40,14 +40,14 @@ std::vector<coupling::Eigenpair> floquet_exponents(motion::ReturnMap& returns, d
 
 }  // namespace
 
-std::vector<motion::Mode> shape_modes(SystemPool& pool, const std::shared_ptr<System>& system, const Net& x, motion::ReturnMap* returns,
+std::vector<motion::Mode> shape_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const Net& x, motion::ReturnMap* returns,
                                       const Warn& warn) {
-  const std::shared_ptr<System> all = system_of_modes(pool, system, x);
+  const std::shared_ptr<SteadySystem> all = system_of_modes(pool, system, x);
   motion::SpectrumOptions options = all->scene.spectrum;
-  const surface::Symmetry& symmetry = (options.parity ? system : all)->particle->body().symmetry;
+  const surface::Symmetry& symmetry = (options.parity ? system : all)->particles->body().symmetry;
   coupling::ShapeCoordinates shapes = all->coordinates(x, symmetry, options.parity.value_or(Vec3::Ones()));
-  const coupling::Capsule& capsule = *all->particle->capsule();
-  std::vector<motion::Conserved> kept = conserved_quantities(capsule, all->particle->fields(), x.topRows(capsule.n_points()));
+  const coupling::Capsule& capsule = *all->particles->capsule();
+  std::vector<motion::Conserved> kept = conserved_quantities(capsule, all->particles->fields(), x.topRows(capsule.n_points()));
   const motion::SmallChanges changes{*all->motion, shapes, x, kept};
   if (const int n = static_cast<int>(shapes.size()); options.number > n)
     warn({"modes", formatted("Spectrum/number is %d, but the shape has only %d unknowns and modes", options.number, n)});
