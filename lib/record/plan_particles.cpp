@@ -13,13 +13,13 @@ namespace {
 using Lines = output::Entries<std::string>;
 
 std::string viscosity_line(const ParticleScene& scene, int n_points, bool tree) {
+  const bool assembled = scene.solvers.assembled(tree) && (scene.tube.present || !scene.domain.present);  // never on a lattice
+  const char* const how = assembled ? "assembled" : "matrix-free";
   if (scene.particle.viscosity_ratio == 1 && scene.kelvin_voigt_membrane())
     return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns per velocity",
-                     scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
+                     how, 3 * n_points);
   if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
-  return formatted("ratio %g: double layer %s, a system of %d unknowns per velocity", scene.particle.viscosity_ratio,
-                   scene.solvers.assembled(tree) && (scene.tube.present || !scene.domain.present) ? "assembled" : "matrix-free",
-                   3 * n_points);
+  return formatted("ratio %g: double layer %s, a system of %d unknowns per velocity", scene.particle.viscosity_ratio, how, 3 * n_points);
 }
 
 std::string membrane_line(const ParticleScene& scene) {

@@ -25,9 +25,9 @@ void ClusterSums::repeat(std::vector<Vec3> images) {
   renew();
 }
 
-void ClusterSums::add(LayerSources& sources, const LayerMedium& medium, const LayerTargets& targets, Net& u) {
+void ClusterSums::set_sums(LayerSources& sources, const LayerMedium& medium, const LayerTargets& targets, Net& u) {
   place(sources, medium, targets);
-  sources.single() ? add_forces(sources, medium, targets, u) : add_stresslets(sources, targets, u);
+  sources.single() ? set_sums_of_forces(sources, medium, targets, u) : set_sums_of_stresslets(sources, targets, u);
   sources.evaluations.far += tree_.interactions();
 }
 
@@ -60,10 +60,10 @@ void ClusterSums::place(LayerSources& sources, const LayerMedium& medium, const 
   sources.evaluations.far += tree_.interactions();
 }
 
-/// Adds the far sums of the single layer by clusters. In a symmetric scene the sources are the nodes of the fundamental panels, and the sums at the
-/// reflections of the targets are added (2.19). If the medium is a lattice, which shifts each node and target into the unit cell, symmetry cannot be
-/// used: the sources are the nodes of all panels, and targets have no reflections.
-void ClusterSums::add_forces(LayerSources& sources, const LayerMedium& medium, const LayerTargets& targets, Net& u) {
+/// Computes the far sums of the single layer by clusters. In a symmetric scene the sources are the nodes of the fundamental panels, and the sums at
+/// the reflections of the targets are added (2.19). If the medium is a lattice, which shifts each node and target into the unit cell, symmetry cannot
+/// be used: the sources are the nodes of all panels, and targets have no reflections.
+void ClusterSums::set_sums_of_forces(LayerSources& sources, const LayerMedium& medium, const LayerTargets& targets, Net& u) {
   const auto& [fundamental, weight] = sources.surface.fundamental();
   const bool all = medium.wraps();
   const std::span<const surface::Reflection> images = all ? std::span<const surface::Reflection>() : sources.surface.reflections();
@@ -87,7 +87,7 @@ void ClusterSums::add_forces(LayerSources& sources, const LayerMedium& medium, c
 
 /// Computes the far sum of the double layer by clusters, sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k. The sums are over the far nodes q. f
 /// is the density, m its mean, and f0 the constant that is subtracted from f for the target. The sum is exactly 0 for a uniform density.
-void ClusterSums::add_stresslets(LayerSources& sources, const LayerTargets& targets, Net& u) {
+void ClusterSums::set_sums_of_stresslets(LayerSources& sources, const LayerTargets& targets, Net& u) {
   const Vec3 mean = sources.mean_density();
   sources.set_moments(mean);
   std::array<const double*, 6> strength;

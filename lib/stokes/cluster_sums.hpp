@@ -26,12 +26,12 @@ class ClusterSums {
   void renew() { rows_.clear(); }           ///< makes the next sum build the clusters anew, because the shape or its symmetry has changed
 
   /// Sets the rows targets.far_rows of u to the sums of the kernel times the density over all far nodes, without the factor 1/(8 pi).
-  void add(LayerSources& sources, const LayerMedium& medium, const LayerTargets& targets, Net& u);
+  void set_sums(LayerSources& sources, const LayerMedium& medium, const LayerTargets& targets, Net& u);
 
  private:
   void place(LayerSources& sources, const LayerMedium& medium, const LayerTargets& targets);
-  void add_forces(LayerSources& sources, const LayerMedium& medium, const LayerTargets& targets, Net& u);
-  void add_stresslets(LayerSources& sources, const LayerTargets& targets, Net& u);
+  void set_sums_of_forces(LayerSources& sources, const LayerMedium& medium, const LayerTargets& targets, Net& u);
+  void set_sums_of_stresslets(LayerSources& sources, const LayerTargets& targets, Net& u);
 
   TreeSum tree_;
   std::vector<Vec3> at_;        // positions of the targets of the tree

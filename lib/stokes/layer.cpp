@@ -93,7 +93,7 @@ void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const in
 /// Evaluates the potential at the targets: the far-field sum over all panels and the terms of the medium, corrected by near-singular and singular
 /// quadrature on panels that are close to a target or contain it.
 void Layer::integrate(const LayerTargets& targets, const Near* kept, Net& u) {
-  add_far(targets, u);
+  set_far(targets, u);
   medium_->add(sources_, targets, u);
   kept ? add_kept(targets, *kept, u) : add_near(targets, u);
   if (targets.sites) add_self(targets, u);
@@ -127,10 +127,10 @@ void Layer::add_self(const LayerTargets& targets, Net& u) {
   if (sources_.desingularised()) subtract_identities(sources_, targets.rows, u);
 }
 
-/// Adds the sums over all far nodes, without the factor 1/(8 pi).
-void Layer::add_far(const LayerTargets& targets, Net& u) {
+/// Sets the far rows of u to the sums over all far nodes, without the factor 1/(8 pi).
+void Layer::set_far(const LayerTargets& targets, Net& u) {
   const auto clock = sources_.phases.time("far");
-  if (clusters_) return clusters_->add(sources_, *medium_, targets, u);
+  if (clusters_) return clusters_->set_sums(sources_, *medium_, targets, u);
   const std::vector<Vec3> at = wrapped(*medium_, targets, targets.far_rows), f0 = rows_of(targets.f0, targets.far_rows);
   Net all = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
   for (const Vec3& image : medium_->node_shifts()) {

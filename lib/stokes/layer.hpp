@@ -150,7 +150,7 @@ class Layer {
   void use_clusters();
   void use(std::unique_ptr<LayerMedium> medium);
   void integrate(const LayerTargets& targets, const Near* kept, Net& u);
-  void add_far(const LayerTargets& targets, Net& u);
+  void set_far(const LayerTargets& targets, Net& u);
   void add_near(const LayerTargets& targets, Net& u);
   void add_kept(const LayerTargets& targets, const Near& kept, Net& u) const;
   void add_self(const LayerTargets& targets, Net& u);

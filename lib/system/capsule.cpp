@@ -52,8 +52,8 @@ void Capsule::push_bodies(const Net& x) {
   bodies_.rigid.push(push);
 }
 
-/// Returns the load of the membranes at x. `x`: shape of `e`, with each particle moved into the cell if there is a lattice. If `volume` is given, it
-/// is set to the constraint on velocities at x, and remains inactive if the volumes are free.
+/// Returns the load of the membranes at x. `x`: shape of `e`; on a lattice, each particle may be moved into the cell, which changes no load. If
+/// `volume` is given, it is set to the constraint on velocities at x, and remains inactive if the volumes are free.
 Net Capsule::membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume) {
   Net* response = nullptr;
   if (volume && parameters_.constrained()) {
@@ -110,7 +110,9 @@ std::shared_ptr<Evaluation> Capsule::evaluate_on_demand(const Net& x, const Net&
 /// one is needed (has_velocity_system). `origin`: see CellMove.
 Net Capsule::solve_in_cell(Evaluation& e, Net x, std::optional<double> origin, const Net& guess) {
   bodies_.rigid.fit_to(x);
-  if (!admits(x, origin)) return not_a_number(x);
+  if (!x.allFinite()) return not_a_number(x);
+  if (duct_.tube) set_tube_shape(x, origin);
+  if (!in_fluid(x)) return not_a_number(x);
   push_bodies(x);
   const bool deforms = !bodies_.tractions || !bodies_.tractions->all_rigid();
   VolumeConstraint volume;
@@ -157,9 +159,8 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& particle_v
   return v;
 }
 
-/// Sets the tube to the shape x. Returns whether all collocation sites of the shape are inside the tube.
-bool Capsule::inside_tube(const Net& x, std::optional<double> origin) {
-  set_tube_shape(x, origin);
+/// Returns whether all collocation sites of the shape x are inside the tube, which set_tube_shape() has set to this shape.
+bool Capsule::inside_tube(const Net& x) const {
   const Net at_sites = targets_.at_sites() * x;
   if (duct_.tube->fixed()) return !layout_.any(!duct_.tube->inside(at_sites, layout_.points()));
   const surface::Outline& outline = duct_.tube->wall().outline;
@@ -170,15 +171,12 @@ bool Capsule::inside_tube(const Net& x, std::optional<double> origin) {
   return !layout_.any(outside);
 }
 
-/// Returns whether all collocation sites are in the medium, or in front of plates and outside posts, if there are any.
-bool Capsule::in_fluid(const Net& x) {
+/// Returns whether all collocation sites are in the medium, inside the tube, in front of plates and outside posts, if there are any. The tube must be
+/// set to the shape x.
+bool Capsule::in_fluid(const Net& x) const {
+  if (duct_.tube && !inside_tube(x)) return false;
   if (solids()) return solids()->scene().solids->outside(targets_.at_sites() * x);
   return stokes::contains(parameters_.medium.get(), targets_.at_sites() * x);
-}
-
-/// Moves the tube to the particles. Returns whether the shape is finite, and in the fluid.
-bool Capsule::admits(const Net& x, std::optional<double> origin) {
-  return x.allFinite() && (!duct_.tube || inside_tube(x, origin)) && in_fluid(x);
 }
 
 /// Returns whether defect() uses (3.14), which does not require a solve for the velocity.
@@ -191,7 +189,9 @@ Net Capsule::defect(const Net& at, const Net& given) {
   ++counts_.evaluations;
   if (!at.allFinite()) return not_a_number(at);
   Net x = at, u = given;
-  if (const std::optional<double> origin = move_into_cell(x, &u).origin; !admits(x, origin)) return not_a_number(x);
+  const std::optional<double> origin = move_into_cell(x, &u).origin;
+  if (duct_.tube) set_tube_shape(x, origin);
+  if (!in_fluid(x)) return not_a_number(x);
   VolumeConstraint volume;
   Net projected = u;
   Evaluation e(*this, x);

@@ -199,9 +199,8 @@ class Capsule : public Dynamics {
   bool has_forces() const { return forces_.contacts.size() > 0 || forces_.fields.size() > 0; }
   // Evaluation of a shape (capsule.cpp).
   Net solve_in_cell(Evaluation& e, Net x, std::optional<double> origin, const Net& guess);
-  bool admits(const Net& x, std::optional<double> origin);
-  bool inside_tube(const Net& x, std::optional<double> origin);
-  bool in_fluid(const Net& x);
+  bool inside_tube(const Net& x) const;
+  bool in_fluid(const Net& x) const;
   void push_bodies(const Net& x);
   Net work_of_loads(const Net& x, std::vector<Net>& sums);
   Net membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume = nullptr);

@@ -54,8 +54,8 @@ Vec3 Capsule::cell_origin(const Net& x) const {
 }
 
 /// Adds to u, a velocity at the targets, the velocity that plates and posts (2.47), or a tube whose wall traction is eliminated (2.5), cause in
-/// response to the load f and the velocity v of the particles. If `with_empty`, also adds the velocity that the solids cause without particles.
-/// Returns the response of the tube.
+/// response to the load f and the velocity v of the particles. The tube must be set to the shape x. If `with_empty`, also adds the velocity that the
+/// solids cause without particles. Returns the response of the tube.
 Tube::Response Capsule::add_walls(const Net& x, const Net& f, const Net& v, bool with_empty, Net& u) {
   if (solids()) {
     const auto clock = phases_.time("wall");

@@ -19,6 +19,20 @@ class Dynamics {
  public:
   virtual ~Dynamics() = default;
 
+  // Required of every motion.
+
+  /// Evaluates the velocity (4.2) at the control net x, including the volume constraint. Not finite if the shape is degenerate.
+  virtual Net velocity(const Net& x) = 0;
+
+  /// Corrects x so that it satisfies the constraints again that a step satisfies only approximately: rigid bodies keep their shape, quaternions have
+  /// the norm 1, and particles have the prescribed volumes if the volume constraint is `exact`. If the iteration fails, x becomes NaN.
+  virtual void restore_constraints(Net& x) = 0;
+
+  /// Returns the norm in which `Time/tolerance` is measured: the root mean square of the control points' displacement, divided by R_C.
+  virtual double norm(const Net& displacement) const = 0;
+
+  // Time.
+
   /// Sets the time for all later calls, within a step that began at `start`. If the motion jumps at the time `time`, a step that ends there uses the
   /// limit from earlier times, and a step that starts there uses the limit from later times.
   virtual void set_time(double /*time*/, double /*start*/) {}
@@ -26,18 +40,20 @@ class Dynamics {
   /// Returns the first time after `time` at which the motion is not smooth in time; no step may cross it.
   virtual double next_kink(double /*time*/) const { return std::numeric_limits<double>::infinity(); }
 
-  /// Evaluates the velocity (4.2) at the control net x, including the volume constraint. Not finite if the shape is degenerate.
-  virtual Net velocity(const Net& x) = 0;
+  // Implicit steps: Jacobian, residuals and start values.
 
   /// Assembles the layer operators that the Jacobian keeps frozen (4.3) at x.
   virtual void freeze(const Net& /*x*/) {}
+
+  /// Returns the size in bytes, over all ranks, of those frozen operators that grow with the square of the number of control points.
+  virtual double frozen_bytes() const { return 0; }
 
   /// Returns true if freeze() uses a periodic lattice that changes in time. The time set by set_time() must then be the time of the shape passed to
   /// freeze().
   virtual bool lattice_moves() const { return false; }
 
-  /// Returns the size in bytes, over all ranks, of those frozen operators that grow with the square of the number of control points.
-  virtual double frozen_bytes() const { return 0; }
+  /// Returns how much a shape differs from the shape at which operators were assembled: by default the norm of the displacement.
+  virtual double distance(const Net& from, const Net& to) const { return norm(to - from); }
 
   /// Evaluates the membrane tangent H of the Jacobian (4.3) at x.
   virtual void linearise(const Net& /*x*/) {}
@@ -64,6 +80,16 @@ class Dynamics {
   /// constant net c. If B is the identity, `change` is dv - delta/shift.
   virtual Net jacobian_error(const Net& change, const Net& delta, double shift) { return change + delta / shift; }
 
+  /// Improves the initial guess y of a stage with the shift gamma dt: displaces membranes that nearly conserve area, so that their local area is the
+  /// same as in the shape `before` the stage.
+  virtual void improve_start(Net& /*y*/, const Net& /*before*/, double /*shift*/) {}
+
+  /// Removes the asymmetric round-off from a rate of change if the scene is symmetric. velocity() returns symmetric rates, but a difference of shapes
+  /// contains asymmetric round-off. Extrapolated from such differences, the round-off would grow from step to step.
+  virtual Net symmetric(Net rate) const { return rate; }
+
+  // Searches for steady shapes and periodic motions, and spectra.
+
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
   /// there are any, and otherwise a finite difference of velocities, which takes one evaluation.
   virtual Net derivative(const Net& x, const Net& v, const Net& delta) { return difference(x, v, delta); }
@@ -71,14 +97,6 @@ class Dynamics {
   /// Returns the change of the mesh relaxation velocity along interfaces due to the displacement delta, at the last linearisation. Returns no rows if
   /// no mesh relaxes.
   virtual Net mesh_motion(const Net& /*delta*/) { return {}; }
-
-  /// Corrects x so that it satisfies the constraints again that a step satisfies only approximately: rigid bodies keep their shape, quaternions have
-  /// the norm 1, and particles have the prescribed volumes if the volume constraint is `exact`. If the iteration fails, x becomes NaN.
-  virtual void restore_constraints(Net& x) = 0;
-
-  /// Improves the initial guess y of a stage with the shift gamma dt: displaces membranes that nearly conserve area, so that their local area is the
-  /// same as in the shape `before` the stage.
-  virtual void improve_start(Net& /*y*/, const Net& /*before*/, double /*shift*/) {}
 
   /// Returns fields that move points along surfaces without changing the shape: rotations of the meshes of drops and of membranes (4.22).
   virtual std::vector<Net> relabellings(const Net& /*x*/) { return {}; }
@@ -88,16 +106,6 @@ class Dynamics {
 
   /// Returns the state x rotated about the origin.
   virtual Net turned(const Net& x, const Mat3& rotation) const { return x * rotation.transpose(); }
-
-  /// Removes the asymmetric round-off from a rate of change if the scene is symmetric. velocity() returns symmetric rates, but a difference of shapes
-  /// contains asymmetric round-off. Extrapolated from such differences, the round-off would grow from step to step.
-  virtual Net symmetric(Net rate) const { return rate; }
-
-  /// Returns how much a shape differs from the shape at which operators were assembled: by default the norm of the displacement.
-  virtual double distance(const Net& from, const Net& to) const { return norm(to - from); }
-
-  /// Returns the norm in which `Time/tolerance` is measured: the root mean square of the control points' displacement, divided by R_C.
-  virtual double norm(const Net& displacement) const = 0;
 
  protected:
   /// Returns (v(x + e delta) - v)/e, where e delta has the norm 1e-4. This displacement is large enough to exceed the noise of adaptive quadrature

@@ -106,8 +106,8 @@ std::vector<MotionOfShape> InterfaceMotion::motions(const Net& x, const Net& b, 
 }
 
 /// Returns the control values of the mesh velocity (4.6), W + n n.(v - W) + (1 - n n).w, at the shape x. Here b = dV/dx, W is the motion of the shape
-/// (4.14), and w is the relaxation velocity, computed by slide() from f; if f is empty, w = 0. Sets `slip_residual` to v - W - w at the collocation
-/// sites.
+/// (4.14), and w is the relaxation velocity, computed by slide() from f; if f is empty, w = 0. Sets `slip_residual` to v - W - w at the sites
+/// where u is evaluated.
 Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& slip_residual) const {
   Net u = sites_ * v;
   const Net places = sites_ * x;

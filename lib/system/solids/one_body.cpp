@@ -22,9 +22,9 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Rigi
   }
 }
 
-/// Returns the inverse of the operator w -> R <w> - H w of (2.23) for one body. R is the collocation matrix, <w> the rigid motion nearest to w, and H
-/// the double layer. If the motion of the body is prescribed, (1/mu) A f replaces R <w>. Here A is the single layer, f = (mu/R_C) <w>, and R_C the
-/// particle radius.
+/// Returns the inverse of the operator w -> R <w> - D w of (2.23) for one body. R is the collocation matrix, <w> the rigid motion nearest to w, and D
+/// the double layer times the viscosity contrast -1. If the motion of the body is prescribed, (1/mu) A f replaces R <w>. Here A is the single layer,
+/// f = (mu/R_C) <w>, and R_C the particle radius.
 std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p,
                                                                           const Net& own, const quadrature::Options& quadrature) {
   auto factors = std::make_shared<Factors>();
@@ -35,7 +35,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   const spline::Space& space = *particle.space;
   stokes::Layer double_layer(stokes::Layer::Kernel::double_layer, space, space.collocation, quadrature);
   double_layer.set_shape(own);
-  double_layer.assemble(all, matrix);  // assembles -H (H: double layer), because the viscosity contrast is -1
+  double_layer.assemble(all, matrix);  // the double layer without the viscosity contrast, -D
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature);
   layer.set_shape(own);
   const Vec3 centre = bodies.rest_centre(p);
@@ -107,8 +107,8 @@ struct Side {
   }
 };
 
-/// Returns C = -H M^-1 (see FilmInverses): the effect of the body `by` on the sites of another body. M is the operator of the isolated body `by`.
-/// `rows`: rows of the double layer H for the sites of the other body. `sites`: sites of `by`. C has only the columns of these sites.
+/// Returns C = -D M^-1 (see FilmInverses): the effect of the body `by` on the sites of another body. M is the operator of the isolated body `by`.
+/// `rows`: rows of the double layer D for the sites of the other body. `sites`: sites of `by`. C has only the columns of these sites.
 Eigen::MatrixXd coupling(const stokes::Rows<double>& rows, const Side& by, std::span<const int> sites, const OneBodyInverses& alone,
                          const RigidParticles& placed) {
   return -rows.middleCols(3 * by.block.first_point, 3 * by.block.n_points) * alone.columns(placed, by.particle, sites);

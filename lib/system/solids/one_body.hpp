@@ -60,7 +60,7 @@ class OneBodyInverses {
 
 /// Inverses for the films between pairs of bodies. A mode of the density w (2.23) with wave number k that is equal on both sides of a film of width h
 /// has an eigenvalue of the order of k h, even after preconditioning by OneBodyInverses. Small eigenvalues slow GMRES. Let M_q be the operator of the
-/// isolated body q, and H_pq the double layer of body q at the sites of body p. The effect of body q on body p is C_pq = -H_pq M_q^-1. The matrix C
+/// isolated body q, and D_pq the double layer of body q at the sites of body p times -1. The effect of q on p is C_pq = -D_pq M_q^-1. The matrix C
 /// consists of C_pq and C_qp, restricted to the sites of the film between p and q. The matrix 1 + C is factored for each pair of bodies, and
 ///
 ///   (1 + C)^-1 - 1
@@ -69,7 +69,7 @@ class OneBodyInverses {
 /// assumed to have no sites in common; if they do, the solver needs more iterations, but its result is the same.
 class FilmInverses {
  public:
-  /// Returns the rows of the double layer H for the sites `targets`, three rows per site, in the order of `targets`; shape (3 targets, 3 N).
+  /// Returns the rows of the double layer times -1 for the sites `targets`, three rows per site, in the order of `targets`; shape (3 targets, 3 N).
   using RowsOf = std::function<stokes::Rows<double>(std::span<const int> targets)>;
 
   /// `x`: net of all particles. Films (thin layers of fluid between two bodies) are set up only for pairs of bodies that both have an inverse in

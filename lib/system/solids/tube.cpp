@@ -47,11 +47,11 @@ Net Tube::in_wall_frame(Net x) const {
   return x;
 }
 
-void Tube::set_shape(const Net& x, std::optional<double> centroid) {
+void Tube::set_shape(const Net& x, std::optional<double> origin) {
   const auto clock = phases_.time("wall");
-  if (!centroid && !fixed()) centroid = particle_->geometry.measures(x).centroid[0];
-  if (!centroid && cell()) centroid = cell()->shift(x.colwise().mean().transpose() - (wall().start + wall().end) / 2 * Vec3::UnitX())[0];
-  particle_->set_shape(x, centroid.value_or(0), *flow_, *wall_, empty_pressure_drop());
+  if (!origin && !fixed()) origin = particle_->geometry.measures(x).centroid[0];
+  if (!origin && cell()) origin = cell()->shift(x.colwise().mean().transpose() - (wall().start + wall().end) / 2 * Vec3::UnitX())[0];
+  particle_->set_shape(x, origin.value_or(0), *flow_, *wall_, empty_pressure_drop());
 }
 
 double Tube::pressure_of(const Net& f, const Net& v) {
@@ -140,7 +140,7 @@ Net Tube::pressure_driven_velocity(const Net& at) const {
 
 void Tube::velocity_at(const Eigen::SparseMatrix<double>& points, const Net& x, const Response& response, std::span<const int> rows, Net& u) {
   Net shape = x;
-  shape.col(0).array() -= particle_->centroid;  // before the product, so that a point at a far node coincides with it up to round-off (node_sum)
+  shape.col(0).array() -= particle_->origin;  // before the product, so that a point at a far node coincides with it up to round-off (node_sum)
   const Net at = points * shape;
   wall_->layer().apply(wall_->on_space(response.wall_traction), at, rows, u);
   const Net by_pressure = cell() ? Net(pressure_driven_velocity(at)(rows, Eigen::all)) : pressure_driven_velocity(at(rows, Eigen::all));

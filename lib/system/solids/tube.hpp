@@ -76,9 +76,9 @@ class Tube {
   /// Returns the particles as sources of flow. Their unstressed net, and their contrasts if they are not 0, must be set before set_shape().
   ParticleSources& particles();
 
-  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: x1 coordinate of the origin of the frame of
+  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `origin`: x1 coordinate of the origin of the frame of
   /// wall() if the wall is straight; by default the x1 coordinate of the particle's centroid.
-  void set_shape(const Net& x, std::optional<double> centroid = {});
+  void set_shape(const Net& x, std::optional<double> origin = {});
 
   /// Returns the lattice of a periodic duct; not set for other ducts.
   const std::optional<stokes::PeriodicCell>& cell() const;

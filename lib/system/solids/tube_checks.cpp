@@ -14,8 +14,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // check_sharpness: factor by which wall_residual() multiplies the tolerance of
-                                                           // integrals over the wall, because pressures are large. sharpest: upper limit of
+constexpr double check_sharpness = 1e-2, coarsest = 1e-8;  // check_sharpness: factor by which wall_residual() multiplies the tolerance of
+                                                           // integrals over the wall, because pressures are large. coarsest: upper limit of
                                                            // this product
 
 /// Adds points of a cross-section to `points`: points on straight lines from the centroid to the outline, if they are inside the outline. `place`:
@@ -92,8 +92,8 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
 
 namespace {
 
-quadrature::Options for_leak(quadrature::Options options) {
-  options.tolerance = std::clamp(check_sharpness * options.tolerance, 1e-12, sharpest);
+quadrature::Options for_wall_residual(quadrature::Options options) {
+  options.tolerance = std::clamp(check_sharpness * options.tolerance, 1e-12, coarsest);
   return options;
 }
 
@@ -103,7 +103,7 @@ Tube::BetweenSitesOfWall::BetweenSitesOfWall(const surface::TubeWall& wall, cons
                                              const BetweenSites& between, const quadrature::Options& options)
     : at(between.values * wall.net),
       weights(between.weights),
-      layer(stokes::Layer::Kernel::single_layer, wall.space, between.sites, for_leak(options)) {
+      layer(stokes::Layer::Kernel::single_layer, wall.space, between.sites, for_wall_residual(options)) {
   if (cell) layer.repeat(*cell);
   layer.set_shape(wall.net);
 }

@@ -38,9 +38,9 @@ Tube::ParticleData::ParticleData(const spline::Space& particle, const TubeParame
 }
 
 void Tube::ParticleData::set_shape(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
-  centroid = origin;
+  this->origin = origin;
   shape = x;
-  shape.col(0).array() -= centroid;
+  shape.col(0).array() -= origin;
   sources.set_shape(shape);
   flow_of_strength_.resize(0, 3);
   target_points = wall.points().targets();

@@ -53,7 +53,7 @@ struct Tube::ParticleData {
   bool periodic;                      ///< whether the duct is periodic
 
   Net shape;                                   ///< net of the particle in the frame of the wall
-  double centroid = 0;                         ///< x1 of the origin of the wall's frame, which is the particle's centroid in a straight open tube
+  double origin = 0;                           ///< x1 of the origin of the wall's frame, which is the particle's centroid in a straight open tube
   Net inlet;                                   ///< velocity c (2.5) per unit pressure drop, at the sites
   Net ambient, interpolated_ambient;           ///< duct flow v_inf at the sites, and its control values (in a channel only)
   Net pressure_of_load, pressure_of_velocity;  ///< weights of the load f and of the velocity v in dp (2.7). No weights of v if lambda = 1
