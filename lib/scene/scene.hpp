@@ -235,6 +235,9 @@ struct Scene : SharedOptions {
   double least_radius() const;       ///< smallest radius R_C of all particles, by which gaps are divided
   bool adapts() const;               ///< returns true if the mesh of a particle may change
   bool lands_on_snapshots() const;   ///< true if steps are shortened so that they end at snapshots
+
+ private:
+  ParticleScene of(const ParticleKind& kind) const;
 };
 
 /// Returns true if the key at this path may change when a run is resumed, because the data of the checkpoint do not depend on it.

@@ -175,7 +175,7 @@ bool Capsule::inside_tube(const Net& x) const {
 /// set to the shape x.
 bool Capsule::in_fluid(const Net& x) const {
   if (duct_.tube && !inside_tube(x)) return false;
-  if (solids()) return solids()->scene().solids->outside(targets_.at_sites() * x);
+  if (surroundings_.solids) return surroundings_.solids->scene().solids->outside(targets_.at_sites() * x);
   return stokes::contains(parameters_.medium.get(), targets_.at_sites() * x);
 }
 
