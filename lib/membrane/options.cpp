@@ -10,7 +10,7 @@ namespace tanktread::membrane {
 namespace {
 
 void check_stress_free(const Options& options) {
-  refuse(options.law == "surface tension" && options.stress_free != "resting", "Membrane/stress-free shape",
+  refuse(options.fluid_interface() && options.stress_free != "resting", "Membrane/stress-free shape",
          "Membrane/law `surface tension`", "a fluid interface has no stress-free shape");
   const std::string shape = "Membrane/stress-free shape `", chosen = "`, not to `" + options.stress_free + "`.";
   if (options.reduced_volume.has_value() != (options.stress_free == "spheroid"))
@@ -53,7 +53,7 @@ void declare_bending(Options& options, deck::Section& section) {
   section.key("bending number", options.bending_number, deck::not_negative(), "1",
               "dimensionless bending modulus E_b/(G_s R_C^2) of the membrane, instead of `bending modulus`. G_s: surface shear modulus, "
               "for a drop the surface tension. R_C: radius of the sphere with the particle's volume");
-  if (section.given("spontaneous curvature") || options.law == "surface tension") options.bending_reference = "flat";
+  if (section.given("spontaneous curvature") || options.fluid_interface()) options.bending_reference = "flat";
   section.key("bending reference", options.bending_reference, deck::Choice{"unstressed", "flat"},
               "curvature at which the bending moment of the membrane vanishes. `unstressed`: curvature of the unstressed surface. `flat`: "
               "Membrane/spontaneous curvature everywhere, by default 0; default with `spontaneous curvature` and for Membrane/law "
@@ -128,7 +128,7 @@ void Options::declare(deck::Section& section) {
   section.key("load", load, deck::Choice{"weak", "strong"},
               "method of computing the load (force per area) of the membrane on the fluid. `weak`: by virtual work (3.5). `strong`: by the "
               "surface divergence of the tensions, which fails as Maestre et al. (2017) show");
-  if (law == "surface tension") load_measure = "current";
+  if (fluid_interface()) load_measure = "current";
   section.key("load measure", load_measure, deck::Choice{"reference", "current"},
               "area to which the membrane load (force per area) refers, with Membrane/load `weak`. `reference`: area of the unstressed surface "
               "(3.7). `current`: current area (3.6), as by Maestre et al. (2017); default for drops");
@@ -153,17 +153,17 @@ void Options::reject(Rejections& to) const {
           "the form `strong` has no quadrature of the area resistance");
   to.pair(global_area_dilatation > 0 && load == "strong", "Membrane/global area dilatation", "Membrane/load `strong`",
           "it is implemented by virtual work, in the form `weak` only");
-  to.pair(law == "surface tension" && pre_inflation != 0.0, "Membrane/pre-inflation", "Membrane/law `surface tension`",
+  to.pair(fluid_interface() && pre_inflation != 0.0, "Membrane/pre-inflation", "Membrane/law `surface tension`",
          "a fluid interface has no unstressed shape");
-  to.pair(bending_reference == "unstressed" && law == "surface tension", "Membrane/bending reference `unstressed`",
+  to.pair(bending_reference == "unstressed" && fluid_interface(), "Membrane/bending reference `unstressed`",
           "Membrane/law `surface tension`", "a fluid interface has no unstressed shape, whose curvature it could keep at points that flow");
-  to.pair(relaxation_time.has_value() && law == "surface tension", "Membrane/relaxation time", "Membrane/law `surface tension`",
+  to.pair(relaxation_time.has_value() && fluid_interface(), "Membrane/relaxation time", "Membrane/law `surface tension`",
          "the viscosity of a fluid interface has no memory, because the interface has no stress-free shape");
   to.pair(viscosity.any() && load == "strong",
           {std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity",
            "Membrane/shear viscosity or dilatational viscosity"},
           "Membrane/load `strong`", "membrane viscosity is implemented in the form `weak` only");
-  to.pair(!forces.all.empty() && law == "surface tension", "Membrane/forces", "Membrane/law `surface tension`",
+  to.pair(!forces.all.empty() && fluid_interface(), "Membrane/forces", "Membrane/law `surface tension`",
           "a fluid interface has no material patch on which a force could act");
   to.pair(!forces.all.empty() && load == "strong", "Membrane/forces", "Membrane/load `strong`",
           "forces on patches are implemented in the form `weak` only");
@@ -176,8 +176,8 @@ void Options::check() const {
   refuse(bending_modulus && bending_number, "Membrane/bending modulus", "Membrane/bending number", "give one of them");
   refuse(capillary_number && shear_modulus, "Membrane/capillary number", "Membrane/shear modulus", "give one of them");
   refuse(capillary_number && surface_tension, "Membrane/capillary number", "Membrane/surface tension", "give one of them");
-  refuse(shear_modulus && law == "surface tension", "Membrane/shear modulus", "Membrane/law `surface tension`", "give Membrane/surface tension");
-  refuse(surface_tension && law != "surface tension", "Membrane/surface tension", "Membrane/law `" + law + "`", "give Membrane/shear modulus");
+  refuse(shear_modulus && fluid_interface(), "Membrane/shear modulus", "Membrane/law `surface tension`", "give Membrane/surface tension");
+  refuse(surface_tension && !fluid_interface(), "Membrane/surface tension", "Membrane/law `" + law + "`", "give Membrane/shear modulus");
   if (area_dilatation && !dilates())
     throw UserError("Membrane/area dilatation belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `" + law + "`.");
   if (area_order > 0 && !dilates())
@@ -198,7 +198,7 @@ void Options::check() const {
   forces.check();
   if (relaxation_time && !viscosity.any())
     throw UserError("Membrane/relaxation time needs Membrane/shear viscosity or Membrane/dilatational viscosity, whose stress it relaxes.");
-  if (law == "surface tension" && load_measure == "reference" && load == "weak")
+  if (fluid_interface() && load_measure == "reference" && load == "weak")
     throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
 }
 
@@ -212,7 +212,7 @@ double Options::modulus(double fluid_viscosity, double rate, double radius) cons
   if (surface_tension) return *surface_tension;
   if (rate == 0.0)
     throw UserError("Membrane/capillary number needs a flow with a gradient: give Membrane/" +
-                    std::string(law == "surface tension" ? "surface tension" : "shear modulus") + " instead.");
+                    std::string(fluid_interface() ? "surface tension" : "shear modulus") + " instead.");
   return fluid_viscosity * rate * radius / capillary_number.value();
 }
 

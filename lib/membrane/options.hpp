@@ -53,6 +53,7 @@ struct Options {
 
   std::shared_ptr<const StrainEnergy> strain_energy() const;  ///< energy of the law `expression`, otherwise null; throws UserError if it is invalid
 
+  bool fluid_interface() const { return law == "surface tension"; }  ///< returns true for the interface of a drop, false for an elastic membrane
   /// returns whether the law has the parameter C, the resistance to area changes
   bool dilates() const { return law == "Skalak" || law == "Evans-Skalak"; }
 

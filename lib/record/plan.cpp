@@ -33,7 +33,7 @@ std::string surface_line(const Body& body) {
 /// Returns the line of the plan that describes how the unknown tractions on the wall of a tube are computed.
 std::string wall_solver(const Scene& scene) {
   if (!scene.in_system()) return "eliminated from the system of the traction";
-  if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
+  if (!scene.solvers.eliminates_walls()) return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
   const bool system = std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system);
   return system ? "eliminated from the system of the velocity" : "solved for directly";
 }
@@ -134,7 +134,7 @@ std::string solvers_line(const Scene& scene) {
     if (scene.tube.present) add("traction", solvers.traction);
     return line.empty() ? "no iterative solver" : line;
   }
-  const bool blocks = scene.tube.present && solvers.tube != "schur";
+  const bool blocks = scene.tube.present && !solvers.eliminates_walls();
   if (blocks || std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system)) add("velocity", solvers.velocity);
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);

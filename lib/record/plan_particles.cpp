@@ -33,7 +33,7 @@ std::string membrane_line(const ParticleScene& scene) {
       scene.maxwell_membrane() ? formatted(", a Maxwell element of relaxation time %g", *scene.membrane.relaxation_time) : "";
   const std::string load = scene.membrane.law + law + memory + pulled + ", load " + scene.membrane.load;
   if (scene.load_is_strong()) return load + " at the collocation sites, as by Maestre et al. (2017)";
-  if (scene.membrane.law == "surface tension") return load + " per current area (3.6)";
+  if (scene.membrane.fluid_interface()) return load + " per current area (3.6)";
   if (scene.membrane.load_measure == "reference") return load + " per unstressed area (3.7), mass matrix factored once";
   return load + " per current area (3.6), mass matrix factored every evaluation";
 }

@@ -92,7 +92,7 @@ membrane::Law law(const membrane::Options& options, double modulus) {
   if (options.law == "Evans-Skalak") return membrane::EvansSkalak{modulus, options.area_dilatation.value_or(1.0)};
   if (options.law == "Mooney-Rivlin") return membrane::MooneyRivlin{modulus, options.neo_hookean_share.value()};
   if (options.law == "expression") return membrane::UserLaw{modulus, options.strain_energy()};
-  if (options.law == "surface tension") return membrane::SurfaceTension{modulus};
+  if (options.fluid_interface()) return membrane::SurfaceTension{modulus};
   return membrane::NeoHookean{modulus};
 }
 
@@ -125,7 +125,7 @@ bool alike(const ParticleScene& one, const ParticleScene& other) {
          levels(one) == levels(other);
 }
 
-Body body(const ParticleScene& scene, const Member* similar, std::shared_ptr<const stokes::DuctFlow> empty_duct) {
+Body body(const ParticleScene& scene, const Member* similar, std::shared_ptr<const stokes::DuctFlow> empty_duct, bool only) {
   Body b;
   const int levels = scene.adaptation.enabled ? scene.adaptation.levels : 0;
   if (similar) {
@@ -164,7 +164,7 @@ Body body(const ParticleScene& scene, const Member* similar, std::shared_ptr<con
   check_fit(scene, b);
   if (scene.wall.present) check_in_front(scene, b);
   check_in_medium(scene, b);
-  if (scene.name.empty()) b.wall = wall(scene, b);
+  if (only) b.wall = wall(scene, b);
   b.symmetry = symmetry(scene, b, b.initial);
   const bool own = scene.particle.shape.initial && scene.particle.shape.initial->volume == "own";
   b.volume = surface::measures(b.space, own ? b.initial : b.rest).volume;
@@ -206,7 +206,7 @@ coupling::LoadList loads(const ParticleScene& scene, const Body& body, const sur
 
 stokes::Measure load_measure(const ParticleScene& scene) {
   const bool reference =
-      scene.membrane.load == "weak" && scene.membrane.load_measure == "reference" && scene.membrane.law != "surface tension";
+      scene.membrane.load == "weak" && scene.membrane.load_measure == "reference" && !scene.membrane.fluid_interface();
   return reference ? stokes::Measure::reference : stokes::Measure::current;
 }
 

@@ -83,7 +83,8 @@ struct Body {
 
 /// Builds the body of a scene with one particle. If the member `alike` is given, its mesh and resting shape are used, and the shape is moved to the
 /// position of this scene's particle. `empty_duct`: flow of the empty duct if it is known already, as from another particle; otherwise computed.
-Body body(const ParticleScene& scene, const Member* alike = nullptr, std::shared_ptr<const stokes::DuctFlow> empty_duct = nullptr);
+/// `only`: true if the scene has no other particles; only then the body has the wall of a tube, and symmetries of particle and channel are used.
+Body body(const ParticleScene& scene, const Member* alike = nullptr, std::shared_ptr<const stokes::DuctFlow> empty_duct = nullptr, bool only = true);
 
 /// Returns true if body() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
 bool alike(const ParticleScene& one, const ParticleScene& other);

@@ -66,18 +66,16 @@ coupling::RigidDrive drive_of(const ParticleScene& scene, const Body& body) {
 
 std::vector<Member> members(const Scene& scene) {
   std::vector<Member> all;
-  for (ParticleScene& one : scene.particle_scenes()) {
+  std::vector<ParticleScene> scenes = scene.particle_scenes();
+  for (ParticleScene& one : scenes) {
     one.least_radius = scene.least_radius();
     const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
-    auto its_body = std::make_unique<Body>(body(one, equal == all.end() ? nullptr : &*equal, all.empty() ? nullptr : all.front().body->duct));
+    auto its_body = std::make_unique<Body>(
+        body(one, equal == all.end() ? nullptr : &*equal, all.empty() ? nullptr : all.front().body->duct, scenes.size() == 1));
     Member& member = all.emplace_back();
     member.name = one.name;
     member.scene = std::move(one);
     member.body = std::move(its_body);
-  }
-  if (Body& only = *all.front().body; all.size() == 1 && only.duct && !only.wall) {
-    only.wall = wall(all.front().scene, only);
-    only.symmetry = surface::Symmetry(only.space.n_points);  // the particle in a tube is computed without symmetry
   }
   return all;
 }
@@ -94,7 +92,7 @@ void arrange(std::vector<Member>& members) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     Member& member = members[p];
     member.block = blocks[p];
-    if (members.size() == 1) continue;  // with one member, the coupled system constructs the geometry and the membrane
+    if (members.size() == 1) continue;  // capsule() sets the geometry and the membrane of a single member
     Body& body = *member.body;
     body.symmetry = surface::Symmetry(body.space.n_points);  // no symmetry: a symmetry of one particle need not be a symmetry of all particles
     share_or_make(members, p);
@@ -171,7 +169,7 @@ std::vector<coupling::Particle> particles(const std::vector<Member>& members, co
 
 }  // namespace
 
-std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
+std::unique_ptr<coupling::Capsule> capsule(std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube, const std::optional<coupling::SolidScene>& solids) {
   const ParticleScene& scene = members.front().scene;
   coupling::CapsuleParameters parameters;
@@ -185,7 +183,12 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
   parameters.cell = scene.domain.cell();
   parameters.medium = scene.medium();
   parameters.solids = solids;
-  return std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
+  auto system = std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
+  if (members.size() == 1) {
+    members.front().geometry = {std::shared_ptr<void>(), &system->geometry()};
+    members.front().membrane = {std::shared_ptr<void>(), &system->membrane()};
+  }
+  return system;
 }
 
 std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& members, const Net& x, const Net& v) {

@@ -8,7 +8,6 @@
 #include "scene/body.hpp"
 #include "scene/scene.hpp"
 #include "scene/series/run_totals.hpp"
-#include "scene/particles/warnings.hpp"
 #include "membrane/membrane.hpp"
 #include "record/files/checkpoint.hpp"
 #include "spline/locate.hpp"
@@ -23,8 +22,10 @@ struct Member {
   ParticleScene scene;
   std::unique_ptr<Body> body;
   spline::Block block;
-  std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; this object is shared by members with equal spaces
-  std::shared_ptr<const membrane::Membrane> membrane;  ///< membrane; shared if also the materials and the unstressed shapes are equal
+  /// Geometry and membrane. Members with equal spaces share the geometry; if also their materials and unstressed shapes are equal, they share the
+  /// membrane. A single member has those of the coupled system, and no others before the system is built.
+  std::shared_ptr<const surface::Geometry> geometry;
+  std::shared_ptr<const membrane::Membrane> membrane;
   /// parametric point of the material point whose phase angle is recorded. The parametric point does not change if the mesh adapts
   spline::ParametricPoint place;
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
@@ -47,7 +48,8 @@ std::vector<Member> members(const Scene& scene);
 /// finds the same site.
 void follow(Member& member);
 
-/// Sets the blocks (rows in the nets of all particles), the geometries and the membranes of all members. Their bodies must exist.
+/// Sets the blocks (rows in the nets of all particles) of all members and, if there are several, their geometries and membranes. Their bodies must
+/// exist.
 void arrange(std::vector<Member>& members);
 
 /// Returns one body that represents all members: its nets are the stacked nets of the members, its radius is the largest R_C, and its volume is the
@@ -55,8 +57,8 @@ void arrange(std::vector<Member>& members);
 std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
 /// Builds the coupled system of all members, with the given tube or solids (plates and posts) if there are any. Only the operators that the members
-/// need are built. `all`: body of all members (see stacked_body).
-std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
+/// need are built. `all`: body of all members (see stacked_body). The geometry and the membrane of a single member become those of the system.
+std::unique_ptr<coupling::Capsule> capsule(std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube,
                                            const std::optional<coupling::SolidScene>& solids);
 

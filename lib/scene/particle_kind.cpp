@@ -148,7 +148,7 @@ void ParticleKind::declare_sections(deck::Section& section, const Registry& regi
 }
 
 void ParticleKind::reject(const ParticleScene& scene, Rejections& to) const {
-  const bool drop = membrane.law == "surface tension", strong = scene.load_is_strong(), rigid = particle.rigid();
+  const bool drop = membrane.fluid_interface(), strong = scene.load_is_strong(), rigid = particle.rigid();
   const bool desingularised = scene.quadrature.rule == quadrature::LayerRule::desingularised;
   const bool degenerate = surface.polar() && surface.poles == "plain", constrained = scene.volume.constraint != coupling::VolumeConservation::none;
   const std::string plain = "Surface/poles `plain`";

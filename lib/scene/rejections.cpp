@@ -1,4 +1,4 @@
-// Combinations of choices that the program rejects, and choices that require one coupled system for the particles.
+// Combinations of choices that the program rejects.
 
 #include <algorithm>
 
@@ -22,19 +22,6 @@ void reject_registered(const ParticleScene& scene, Rejections& to) {
 }
 
 }  // namespace
-
-std::string_view why_in_system(const SharedOptions& scene, const ParticleKind& kind) {
-  if (scene.only_solids) return {};
-  if (!kind.name.empty()) return "Particles";
-  if (!kind.particle.rigid()) return "Particle/motion";
-  if (scene.domain.present) return "Domain";
-  if (scene.output.power_balance) return "Output/power balance";
-  if (scene.steady.present || scene.periodic.present || scene.spectrum.present) return "Steady, Periodic or Spectrum";
-  if (scene.tube.repulsion) return "repulsion";
-  if (scene.flow.history && kind.particle.motion == Motion::prescribed) return "Flow/history";
-  if (!scene.series.empty()) return "Output/series";
-  return scene.flow.user && !scene.flow.user->affine() ? "Flow/type" : "";
-}
 
 void reject_power(const SharedOptions& scene, bool strong, Rejections& to) {
   const stokes::FlowOptions& flow = scene.flow;

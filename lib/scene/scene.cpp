@@ -152,9 +152,13 @@ void check_adaptation(const ParticleScene& scene) {
   scene.adaptation.check(static_cast<int>(scene.surface.n_points()), std::sqrt(area / scene.surface.n_elements()));
 }
 
-/// Sets in the options of wall and flow whether the walls are plates. If the scene has one particle in a duct, in front of a wall or on a lattice,
-/// sets the default of Adaptation/film resolution.
-void complete_walls(Scene& scene) {
+/// Sets the members of options that follow from several sections and that no section reads while it is declared. If the scene has one particle in a
+/// duct, in front of a wall or on a lattice, also sets the default of Adaptation/film resolution.
+void complete_derived(Scene& scene) {
+  if (scene.spectrum.present) scene.quadrature.choose_smooth_sums();
+  scene.periodic.driven = scene.flow.history.has_value();
+  if (const auto& sides = scene.domain.side_lengths; scene.tube.present && scene.domain.present && sides && !sides->empty())
+    scene.tube.period = sides->front();
   scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
   scene.flow.plates = scene.wall.plates();
   const bool films = scene.wall.present || scene.tube.present || scene.domain.present;
@@ -200,7 +204,7 @@ void Scene::declare(deck::Section& root) {
   if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;
   ParticleKind only;  // the particle of the section Particle
-  if (tube.present) only.duct_half_width = tube.half_width();
+  if (tube.present) only.duct_half_width = tube.half_width();  // read by the declaration of Surface
   const bool several = root.given("Particles");
   particles = declare_particles(root, only, *registry);
   if (several || root.given("Domain") || root.documenting())
@@ -214,7 +218,6 @@ void Scene::declare(deck::Section& root) {
     refuse(domain.present, "Tube/periodic length", "Domain", "both give the period along x1");
     domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
   }
-  if (tube.present && domain.present && domain.side_lengths && !domain.side_lengths->empty()) tube.period = domain.side_lengths->front();
   wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
   if (!only.particle.rigid() || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
   root.section("Quadrature", quadrature, "numerical integration of the boundary integrals of the flow");
@@ -232,15 +235,13 @@ void Scene::declare(deck::Section& root) {
       "Spectrum", spectrum,
       "growth rates of small perturbations of a steady shape, instead of a run in time. The shape is the result of Steady, or, without Steady, the "
       "initial shape, which should be steady");
-  if (spectrum.present) quadrature.choose_smooth_sums();
-  periodic.driven = flow.history.has_value();
-  solvers.in_lattice = domain.present && !tube.present;
+  solvers.in_lattice = domain.present && !tube.present;  // read by the declaration of Solvers
   root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);
   idle_keys = root.idle_keys();
   if (root.documenting()) return;
-  complete_walls(*this);
+  complete_derived(*this);
   walls = std::make_shared<coupling::SharedWalls>();
   take_posts(*this);
   list_idle_gravity(*this);
@@ -291,11 +292,10 @@ motion::TimeOptions ParticleScene::time_options() const {
 }
 
 coupling::MeshMotion ParticleScene::interface_motion() const {
-  return interface.motion.value_or(membrane.law == "surface tension" ? coupling::MeshMotion::relaxed : coupling::MeshMotion::material);
+  return interface.motion.value_or(membrane.fluid_interface() ? coupling::MeshMotion::relaxed : coupling::MeshMotion::material);
 }
 
 double ParticleScene::speed() const { return flow.speed(radius()); }
-
 double ParticleScene::rate() const {
   if (speed() > 0) return speed() / radius();
   return particle.rigid() ? 1 : modulus() / (flow.viscosity * radius());
@@ -342,6 +342,19 @@ ParticleScene Scene::first_deforming() const {
   return of(found == particles.end() ? particles.front() : *found);
 }
 
+std::string_view why_in_system(const SharedOptions& scene, const ParticleKind& kind) {
+  if (scene.only_solids) return {};
+  if (!kind.name.empty()) return "Particles";
+  if (!kind.particle.rigid()) return "Particle/motion";
+  if (scene.domain.present) return "Domain";
+  if (scene.output.power_balance) return "Output/power balance";
+  if (scene.steady.present || scene.periodic.present || scene.spectrum.present) return "Steady, Periodic or Spectrum";
+  if (scene.tube.repulsion) return "repulsion";
+  if (scene.flow.history && kind.particle.motion == Motion::prescribed) return "Flow/history";
+  if (!scene.series.empty()) return "Output/series";
+  return scene.flow.user && !scene.flow.user->affine() ? "Flow/type" : "";
+}
+
 /// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for several bodies of
 /// up to 1500 control points, all with adaptive meshes, or for the only particle in a duct, of up to 2000. For a film of a tenth of the radius,
 /// `first kind` needs a third of the points of `second kind`. With 1538 points both take the same time for a sphere of 0.8 tube radii, and the
@@ -349,7 +362,7 @@ ParticleScene Scene::first_deforming() const {
 bool Scene::by_tractions() const {
   using enum coupling::BodyEquation;
   if (solvers.rigid_bodies != automatic || !runs_in_time()) return solvers.rigid_bodies == first_kind;
-  const bool alone = tube.present && particles.size() == 1 && solvers.tube == "schur";
+  const bool alone = tube.present && particles.size() == 1 && solvers.eliminates_walls();
   double bodies = 0, points = 0;
   for (const ParticleKind& kind : particles) {
     if (!kind.particle.rigid()) continue;
@@ -374,18 +387,14 @@ bool Scene::lands_on_snapshots() const {
 }
 
 bool may_change_on_resume(const std::string& path) {
-  if (path == "Tube/contact gap" || path == "Channel/contact gap" || path == "Wall/contact gap" || path == "Contact/limit") return true;
-  if (path.starts_with("Particles/")) {
-    const std::string of_particle = path.substr(path.find('/', std::string("Particles/").size()) + 1);
-    const bool of_fields = of_particle.starts_with("Interface/fields/") || of_particle.starts_with("Interface/surfactant/");
-    return (of_particle.starts_with("Interface/") && !of_fields) || of_particle.starts_with("Adaptation/");
-  }
-  if (path == "Output/power balance" || path == "Contact/limiter") return false;  // these keys decide which series the results contain
-  for (const char* fixed :
-       {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall", "Interface/fields", "Interface/surfactant",
-        "Output/series"})
-    if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
-  return true;
+  // Particles/<name>/Interface/motion is treated like Interface/motion; the name begins after the 10 characters of `Particles/`.
+  const std::string_view key = std::string_view(path).substr(path.starts_with("Particles/") ? path.find('/', 10) + 1 : 0);
+  const auto is_in = [key](std::string_view section) { return key.starts_with(section); };
+  constexpr std::string_view fixed[] = {"Contact/limiter", "Interface/fields/", "Interface/surfactant/", "Output/power balance", "Output/series/"};
+  constexpr std::string_view free[] = {
+      "Accuracy/", "Adaptation/", "Contact/", "Continuation/", "Expect/", "Interface/", "Output/", "Periodic/", "Quadrature/", "Solvers/",
+      "Spectrum/", "Steady/", "Symmetry/", "Time/", "Units/", "Channel/contact gap", "Tube/contact gap", "Wall/contact gap"};
+  return std::ranges::any_of(free, is_in) && std::ranges::none_of(fixed, is_in);
 }
 
 }  // namespace tanktread

@@ -2,15 +2,14 @@
 // All options of a run, as read from its deck.
 //
 // The types that describe a particle. Each contains the type above it, or is built from it:
-//   ParticleOptions    keys of the section Particle
-//   ParticleKind       all sections of one particle; Scene::particles has one per particle
+//   ParticleOptions    keys of the section Particle (scene/particle_kind.hpp)
+//   ParticleKind       all sections of one particle; Scene::particles has one per particle (scene/particle_kind.hpp)
 //   ParticleScene      a ParticleKind and the options that all particles share: the argument of functions about one particle
 //   Body               spaces, control nets and moduli on the current mesh (scene/body.hpp)
 //   Member             a ParticleScene with its Body and its rows in the nets of all particles, for the time of a run (scene/member.hpp)
 //   coupling::Particle data of a Member that the coupled system uses (system/particle.hpp)
 //   RecordedParticle   data of a Member that user-defined series use (scene/registry.hpp)
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,19 +19,16 @@
 
 #include "accuracy/request.hpp"
 #include "base/rejections.hpp"
-#include "scene/copies.hpp"
+#include "scene/contact_options.hpp"
 #include "scene/domain.hpp"
+#include "scene/particle_kind.hpp"
 #include "scene/posts.hpp"
 #include "scene/registry.hpp"
 #include "scene/wall_options.hpp"
-#include "system/interface_options.hpp"
 #include "system/solvers/options.hpp"
 #include "system/symmetry.hpp"
 #include "system/volume_options.hpp"
 #include "deck/expectation.hpp"
-#include "membrane/options.hpp"
-#include "membrane/surfactant_options.hpp"
-#include "motion/adaptation.hpp"
 #include "motion/options.hpp"
 #include "motion/continuation.hpp"
 #include "motion/periodic.hpp"
@@ -41,7 +37,6 @@
 #include "record/files/options.hpp"
 #include "quadrature/options.hpp"
 #include "stokes/flow/flow_options.hpp"
-#include "surface/options.hpp"
 #include "surface/walls/duct_options.hpp"
 
 namespace tanktread {
@@ -52,68 +47,6 @@ struct SharedWalls;
 namespace deck {
 class Units;
 }
-
-struct ParticleScene;
-struct SharedOptions;
-
-/// `Particle/motion`.
-enum class Motion { deforming, prescribed, free };
-
-std::string text(Motion motion);  ///< returns the name of the motion in the deck, in backquotes
-
-/// Options `Particle/*` of the deck: the resting shape, the inner fluid and the motion.
-struct ParticleOptions {
-  surface::ParticleShape shape;
-  double viscosity_ratio = 1;  ///< lambda
-  Motion motion = Motion::deforming;
-  std::optional<Vec3> velocity;          ///< velocity of the centre of a body with `prescribed` motion; zero if not set
-  std::optional<Vec3> angular_velocity;  ///< angular velocity of a body with `prescribed` motion about its centre; zero if not set
-  std::optional<Vec3> force, torque;     ///< force and torque on a `free` body; zero if not set
-  std::optional<double> density_difference;  ///< inner minus outer density, for the body force of `Flow/gravity`; zero if not set
-  std::optional<std::string> drift;      ///< motion of the centroid, `free` or `held`; if not set, holds_centre() decides
-  std::optional<std::string> forces;     ///< how forces on a `prescribed` body are computed: `reciprocal`, `integral`
-
-  bool rigid() const { return motion != Motion::deforming; }
-  std::string choice() const;  ///< returns for example "Particle/motion `free`", for messages
-  void declare(deck::Section& section);
-  void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices that contradict the motion of the particle
-};
-
-/// Options that may differ between particles.
-struct ParticleKind {
-  std::string name;  ///< name of the section Particles/<name>; empty for a single particle
-  ParticleOptions particle;
-  membrane::Options membrane;
-  surface::MeshOptions surface;
-  coupling::InterfaceOptions interface;
-  std::optional<membrane::SurfactantOptions> surfactant;  ///< Interface/surfactant; not set for a clean interface
-  std::vector<membrane::LoadParts::Chosen> loads;         ///< Membrane/loads
-  std::vector<membrane::FieldParts::Chosen> fields;       ///< Interface/fields
-  motion::AdaptationOptions adaptation;
-  CopiesOptions copies;
-  bool membrane_given = false;  ///< true if the deck has the section Membrane
-  double duct_half_width = std::numeric_limits<double>::infinity();  ///< least distance of the axis of Tube or Channel from its wall, if known
-  double field_length = 0;      ///< length by which values of surface fields are multiplied to become rows of a state x; 0: R_C of the particle
-
-  std::string path() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< returns the section of the particle, for messages
-  /// Declares Particles/<name>: the keys of Particle, and the inner sections `copies`, Membrane, Surface, Interface and Adaptation. `registry`:
-  /// user-defined loads and fields.
-  void declare(deck::Section& section, const Registry& registry);
-  void declare_sections(deck::Section& section, const Registry& registry);  ///< declares the sections Membrane, Surface, Interface and Adaptation
-  void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices that contradict the mesh, membrane or interface
-};
-
-/// Options `Contact/*` of the deck: contacts between several particles or periodic images.
-struct ContactOptions {
-  double limit = 1e-3;  ///< smallest allowed gap, divided by the radius R_C of the smallest particle
-  bool limiter = false;  ///< true if contact forces keep the gaps between particles at `limit` or above
-
-  static constexpr double slack = 1e-2;  ///< fraction of `limit` by which gaps adjacent to a contact may be smaller than `limit`
-  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap below which the run ends, divided by the smallest radius R_C
-
-  void declare(deck::Section& section);
-  void reject(const SharedOptions& scene, Rejections& to) const;
-};
 
 /// Options of a deck that all particles share, with one section of the deck each.
 struct SharedOptions {
@@ -184,7 +117,7 @@ struct ParticleScene : SharedOptions, ParticleKind {
   /// speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without gradient
   double speed() const;
   double modulus() const;            ///< shear modulus G_s, or the surface tension of a drop; units force/length; 0 for a rigid body
-  bool elastic() const { return !particle.rigid() && membrane.law != "surface tension"; }  ///< true for a membrane, false for a drop or rigid body
+  bool elastic() const { return !particle.rigid() && !membrane.fluid_interface(); }  ///< true for a membrane, false for a drop or rigid body
   bool viscous_membrane() const { return !particle.rigid() && membrane.viscosity.any(); }
   bool maxwell_membrane() const { return viscous_membrane() && membrane.relaxation_time; }
   bool kelvin_voigt_membrane() const { return viscous_membrane() && !membrane.relaxation_time; }
@@ -240,7 +173,8 @@ struct Scene : SharedOptions {
   ParticleScene of(const ParticleKind& kind) const;
 };
 
-/// Returns true if the key at this path may change when a run is resumed, because the data of the checkpoint do not depend on it.
+/// Returns true if the key at this path may change when a run is resumed, because the data of the checkpoint do not depend on it. Keys of sections
+/// that this function does not name may not change.
 bool may_change_on_resume(const std::string& path);
 
 /// Returns the table of all rejected combinations as Markdown, sorted by the first choice.

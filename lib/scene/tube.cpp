@@ -77,7 +77,7 @@ TubeRow with_channel(const coupling::Tube& tube, const stokes::AmbientFlow& flow
 void reject_with_tube(const ParticleScene& scene, Rejections& to) {
   const stokes::FlowOptions& flow = scene.flow;
   const coupling::SolverOptions& solvers = scene.solvers;
-  const bool tube = scene.tube.present, straight = tube && !scene.tube.channel, all_blocks = solvers.tube != "schur";
+  const bool tube = scene.tube.present, straight = tube && !scene.tube.channel, all_blocks = !solvers.eliminates_walls();
   const Chosen confined = scene.duct_choice(), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
   to.pair(!scene.runs_in_time() && scene.tube.channel && flow.held == "flow rate", scene.sought(), "Flow/held `flow rate`",
           "a particle in a channel moves with the fluid if the flow rate is prescribed, and can be at rest only if the pressure drop is; "

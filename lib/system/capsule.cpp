@@ -105,38 +105,49 @@ std::shared_ptr<Evaluation> Capsule::evaluate_on_demand(const Net& x, const Net&
   return latest_;
 }
 
-/// Computes (4.2) step by step: the load (membrane_load and rigid bodies), the velocity that this load causes plus the ambient velocity
-/// (explicit_velocity), the projection onto constant volumes (constrain), and the solution of the linear system for the velocity (solve_velocity), if
-/// one is needed (has_velocity_system). `origin`: see CellMove.
-Net Capsule::solve_in_cell(Evaluation& e, Net x, std::optional<double> origin, const Net& guess) {
-  bodies_.rigid.fit_to(x);
-  if (!x.allFinite()) return not_a_number(x);
-  if (duct_.tube) set_tube_shape(x, origin);
+/// Computes (4.2) in the cell. Tube and rigid bodies must be set to the shape x. Returns the velocity of the control points.
+Net Capsule::solve_in_cell(Evaluation& e, const Net& x, const Net& guess) {
   if (!in_fluid(x)) return not_a_number(x);
   push_bodies(x);
-  const bool deforms = !bodies_.tractions || !bodies_.tractions->all_rigid();
   VolumeConstraint volume;
-  Net f = deforms ? membrane_load(e, x, &volume) : Net::Zero(x.rows(), 3);
-  if (!bodies_.tractions) bodies_.rigid.add_load(f);
-  e.load_ = f;
-  Net v = explicit_velocity(x, f, {}, &e.response_);
-  if (!bodies_.tractions) bodies_.rigid.add_load_correction(v), bodies_.rigid.subtract_prescribed(v);
-  volumes_.constrain(v, volume);
-  if (bodies_.tractions) v = solve_tractions(e, x, volume, symmetric(v));
-  else if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, e.error_);
-  e.unknowns_ = v;
-  if (viscous() && !bodies_.tractions) e.load_ += membranes_.viscous_load(x, symmetric(v));
-  if (!bodies_.rigid.empty() && !bodies_.tractions) {
-    e.unknowns_ = symmetric(v);
-    e.load_ += bodies_.rigid.completing_load(v);
-    bodies_.rigid.move(v);
-  }
-  if (!interface_) return v;
-  e.fluid_ = symmetric(v);
+  const Net fluid = bodies_.tractions ? solve_first_kind(e, x, volume) : solve_second_kind(e, x, guess, volume);
+  if (!interface_) return fluid;
+  e.fluid_ = symmetric(fluid);
   const auto clock = phases_.time("interface motion");
-  v = interface_->velocity(x, volume.active() ? volume.gradient : volumes_.gradient(x), v, e.x());
+  Net v = interface_->velocity(x, volume.active() ? volume.gradient : volumes_.gradient(x), fluid, e.slip_);
   volumes_.constrain(v, volume);  // removes the small change of volume that the spline interpolation of the normal velocity causes
   return v;
+}
+
+/// Computes the fluid velocity of (4.2) step by step: the load of membranes and rigid bodies, the velocity that this load causes plus the ambient
+/// velocity, the projection onto constant volumes, and the solution of the linear system for the velocity, if one is needed. The unknowns of rigid
+/// bodies are the densities w of (2.23), which are replaced by the velocities of the bodies at the end. Sets `volume`.
+Net Capsule::solve_second_kind(Evaluation& e, const Net& x, const Net& guess, VolumeConstraint& volume) {
+  RigidParticles& rigid = bodies_.rigid;
+  Net f = membrane_load(e, x, &volume);
+  rigid.add_load(f);
+  e.load_ = f;
+  Net v = explicit_velocity(x, f, {}, &e.response_);
+  rigid.add_load_correction(v);
+  rigid.subtract_prescribed(v);
+  volumes_.constrain(v, volume);
+  if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, e.error_);
+  e.unknowns_ = v;
+  if (viscous()) e.load_ += membranes_.viscous_load(x, symmetric(v));
+  if (rigid.empty()) return v;
+  e.unknowns_ = symmetric(v);
+  e.load_ += rigid.completing_load(v);
+  rigid.move(v);
+  return v;
+}
+
+/// Computes the fluid velocity of (4.2) as solve_second_kind() does, but with the tractions on rigid bodies as unknowns (2.40). Sets `volume`.
+Net Capsule::solve_first_kind(Evaluation& e, const Net& x, VolumeConstraint& volume) {
+  e.load_ = bodies_.tractions->all_rigid() ? Net(Net::Zero(x.rows(), 3)) : membrane_load(e, x, &volume);
+  Net v = explicit_velocity(x, e.load_, {}, &e.response_);
+  volumes_.constrain(v, volume);
+  e.unknowns_ = solve_tractions(e, x, volume, symmetric(v));
+  return e.unknowns_;
 }
 
 /// Returns v_inf - (1/mu) R^-1 A f of (4.2), with the ambient velocity v_inf, the collocation matrix R and the single layer A. Adds the velocity that
@@ -189,8 +200,7 @@ Net Capsule::defect(const Net& at, const Net& given) {
   ++counts_.evaluations;
   if (!at.allFinite()) return not_a_number(at);
   Net x = at, u = given;
-  const std::optional<double> origin = move_into_cell(x, &u).origin;
-  if (duct_.tube) set_tube_shape(x, origin);
+  place(x, &u);
   if (!in_fluid(x)) return not_a_number(x);
   VolumeConstraint volume;
   Net projected = u;
@@ -209,20 +219,18 @@ Net Capsule::defect(const Net& at, const Net& given) {
 
 void Capsule::freeze(const Net& at) {
   Net x = at;
-  const std::optional<double> origin = move_into_cell(x).origin;
   const auto clock = phases_.time("assembly");
+  place(x);
   ++counts_.assemblies;
   frozen_.assemble(at, x);
-  if (!duct_.tube) return;
-  set_tube_shape(x, origin);
-  duct_.tube->freeze();
+  if (duct_.tube) duct_.tube->freeze();
 }
 
 void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++counts_.tangents;
   const auto e = evaluate_on_demand(x, {}, 0);
-  jacobian_.linearise(x, slides() ? e->work() : Net(), e->load_sums());
+  jacobian_.linearise(x, slides() ? e->work() : Net(), e->load_sums(), e->slip_);
 }
 
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
@@ -254,7 +262,7 @@ Net Capsule::mesh_motion(const Net& delta) {
 
 Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
   if (!has_frozen()) return difference(x, v, delta);
-  if (interface_) velocity(x);  // because InterfaceMotion::derivative needs the velocity at x
+  if (interface_) evaluate(x);  // because the change of the mesh motion depends on the fluid velocity
   const auto clock = phases_.time("stiffness");
   linearise(x);
   return symmetric(jacobian_.velocity_change(delta, {}).rate);

@@ -156,6 +156,8 @@ class Capsule : public Dynamics {
   /// given, to the velocity of the image. Without a lattice, does nothing. The cell is centred on the origin; in a channel, on the middle of the
   /// channel; and in a straight tube, whose wall moves with the particles, on the mean of the particles.
   CellMove move_into_cell(Net& x, Net* v = nullptr) const;
+  /// Moves x and v into the cell, as move_into_cell(), and sets the tube, if there is one, to the shape x in the cell.
+  void place(Net& x, Net* v = nullptr);
 
   stokes::Evaluations kernel_evaluations() const;  ///< kernel evaluations of all layers
   const Targets& targets() const { return targets_; }
@@ -193,12 +195,14 @@ class Capsule : public Dynamics {
   /// Returns whether the ambient velocity is evaluated at the targets. Otherwise it is affine, and exact at the control points.
   bool flow_at_targets() const { return duct_.tube || parameters_.solids || !surroundings_.flow.affine(); }
   /// Returns whether the wall traction is eliminated from the velocity system, so that only the particles have unknowns in the system.
-  bool eliminates_walls() const { return !duct_.tube || bodies_.tractions || parameters_.solvers.tube == "schur"; }
+  bool eliminates_walls() const { return !duct_.tube || bodies_.tractions || parameters_.solvers.eliminates_walls(); }
   bool has_velocity_system() const { return layers_.has_double() || viscous() || !eliminates_walls(); }
   bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // true if all unknowns are velocities of control points
   bool has_forces() const { return forces_.contacts.size() > 0 || forces_.fields.size() > 0; }
   // Evaluation of a shape (capsule.cpp).
-  Net solve_in_cell(Evaluation& e, Net x, std::optional<double> origin, const Net& guess);
+  Net solve_in_cell(Evaluation& e, const Net& x, const Net& guess);
+  Net solve_second_kind(Evaluation& e, const Net& x, const Net& guess, VolumeConstraint& volume);
+  Net solve_first_kind(Evaluation& e, const Net& x, VolumeConstraint& volume);
   bool inside_tube(const Net& x) const;
   bool in_fluid(const Net& x) const;
   void push_bodies(const Net& x);

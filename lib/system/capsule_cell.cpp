@@ -39,8 +39,14 @@ Capsule::CellMove Capsule::move_into_cell(Net& x, Net* v) const {
   return move;
 }
 
+void Capsule::place(Net& x, Net* v) {
+  const std::optional<double> origin = move_into_cell(x, v).origin;
+  set_tube_shape(x, origin);
+}
+
+/// Sets the tube, if there is one, to the shape x. `origin`: see CellMove.
 void Capsule::set_tube_shape(const Net& x, std::optional<double> origin) {
-  if (same(duct_.net, x) && duct_.origin == origin) return;
+  if (!duct_.tube || (same(duct_.net, x) && duct_.origin == origin)) return;
   duct_.tube->set_shape(x, origin);
   duct_.net = x, duct_.origin = origin;
 }
@@ -80,11 +86,13 @@ void Capsule::set_solid_shape(const Net& x) {
 /// Evaluates the shape with each particle replaced by its image in the cell of a lattice. Converts the velocities of the images
 /// to velocities of the particles.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
-  if (!surroundings_.cell || !e.x().allFinite()) return solve_in_cell(e, e.x(), {}, guess);
+  if (!e.x().allFinite()) return not_a_number(e.x());
   Net x = e.x(), v = guess;
   const auto [shifts, origin] = move_into_cell(x, &v);
   bodies_.rigid.move_into_cell(shifts);
-  v = solve_in_cell(e, std::move(x), origin, v);
+  bodies_.rigid.fit_to(x);
+  set_tube_shape(x, origin);
+  v = solve_in_cell(e, x, v);
   for (std::size_t p = 0; p < shifts.size(); ++p)
     for (Net* net : {&v, &e.fluid_})
       if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += shifts[p].velocity.transpose();

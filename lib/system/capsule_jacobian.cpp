@@ -45,7 +45,7 @@ CapsuleJacobian::CapsuleJacobian(const CapsuleParameters& parameters, const stok
   if (area_->empty()) area_.reset();
 }
 
-void CapsuleJacobian::linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums) {
+void CapsuleJacobian::linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums, const Slip& slip) {
   membranes_.linearise(x, sums);
   frozen_.turn_to(x);
   if (area_) area_->set_shape(x);
@@ -54,7 +54,7 @@ void CapsuleJacobian::linearise(const Net& x, const Net& energy_gradient, const 
   const Net gradient = volumes_.gradient(x);
   if (parameters_.constrained()) constraint_ = {gradient, parameters_.symmetry.completed(membranes_.solved(gradient))};
   if (!interface_) return;
-  interface_->linearise(x, gradient);
+  interface_->linearise(x, gradient, slip);
   pressures_.clear(), x_ = x;
   for (const Particle& one : parameters_.particles) {
     const Net y = one.block.rows(x).rowwise() - one.block.rows(x).colwise().mean();

@@ -37,8 +37,8 @@ class CapsuleJacobian {
                   OperationCounts& counts);
 
   /// Linearises at x. `energy_gradient`: dE/dx at x, required only if control points slide. `sums`: surface integrals that Membranes::work computed
-  /// at x.
-  void linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums);
+  /// at x. `slip`: slip at x, required only if control points slide; empty if it is unknown.
+  void linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums, const Slip& slip);
 
   /// Returns whether all control points move with the fluid and the velocity is the solution of a linear system.
   bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }

@@ -82,8 +82,7 @@ void Evaluation::find_unknowns() {
 const Tube::Response& Evaluation::response() {
   if (!response_) find_unknowns();
   Net inside = x_;
-  const std::optional<double> origin = system_->move_into_cell(inside).origin;
-  system_->set_tube_shape(inside, origin);
+  system_->place(inside);
   if (!response_) response_ = system_->duct_.tube->respond(load_, unknowns_);
   return *response_;
 }

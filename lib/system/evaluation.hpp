@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "system/interface_motion.hpp"
 #include "system/solids/rigid_particles.hpp"
 #include "system/solids/solids.hpp"
 #include "system/solids/tube.hpp"
@@ -78,6 +79,7 @@ class Evaluation {
   double error_ = 0;      // allowed error of the solution, see solve()
   bool solved_ = false;  // true if load, velocities, unknowns and rigid bodies are computed
   Net velocity_, fluid_;  // velocity_: velocity of the control points. fluid_: velocity of the fluid; no rows if no control point slides
+  Slip slip_;             // slip of the fluid along the meshes of interfaces; empty if the shape is not solved or no control point slides
   Net unknowns_;          // unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies
   Net work_, load_, viscous_work_;  // no rows until first used
   std::vector<Net> load_sums_;

@@ -166,26 +166,25 @@ std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> a
   return all;
 }
 
-Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v, const Net& given) {
-  latest_.x = given, latest_.v = v;
+Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v, Slip& slip) {
+  slip.fluid = v;
   const Net normals = normals_at(x);
-  if (!relaxed_) return combined(x, b, normals, v, {}, latest_.slip_residual);
-  latest_.density = sites_ * mass_.solve(ranks_.filled(x.rows(), [&](Net& d) { mesh_.load(x, own_elements_, d); }));
-  return combined(x, b, normals, v, collocation_.solve(along_interface(normals, latest_.density)), latest_.slip_residual);
+  if (!relaxed_) return combined(x, b, normals, v, {}, slip.residual);
+  slip.density = sites_ * mass_.solve(ranks_.filled(x.rows(), [&](Net& d) { mesh_.load(x, own_elements_, d); }));
+  return combined(x, b, normals, v, collocation_.solve(along_interface(normals, slip.density)), slip.residual);
 }
 
-void InterfaceMotion::linearise(const Net& x, const Net& b) {
-  x_ = x, flux_ = b;
+void InterfaceMotion::linearise(const Net& x, const Net& b, const Slip& slip) {
+  x_ = x, flux_ = b, slip_ = slip;
   normals_ = normals_at(x);
-  known_ = same(latest_.x, x) ? latest_ : Latest();
-  shapes_ = known_.x.size() > 0 ? motions(x, b, normals_, known_.v) : std::vector<MotionOfShape>();
+  shapes_ = slip_.known() ? motions(x, b, normals_, slip_.fluid) : std::vector<MotionOfShape>();
   if (relaxed_) tangent_.update(x, own_elements_);
 }
 
 /// Returns the tangential part of the change of W (4.14) with the shape, per distance `aside`, at the points `at`, which move to `there`.
 Net InterfaceMotion::change_of_motion(const Displaced& to, const Net& at, const Net& there, const Net& normals, double aside,
                                       std::vector<int> Drop::* rows) const {
-  const std::vector<MotionOfShape> after = motions(to.x, to.b, to.normals, known_.v);
+  const std::vector<MotionOfShape> after = motions(to.x, to.b, to.normals, slip_.fluid);
   Net change = Net::Zero(at.rows(), 3);
   for (size_t d = 0; d < drops_.size(); ++d)
     for (const int i : drops_[d].*rows)
@@ -195,7 +194,7 @@ Net InterfaceMotion::change_of_motion(const Displaced& to, const Net& at, const 
 
 Net InterfaceMotion::derivative(const Net& dv, const Net& delta, const Net& db) {
   const double most = delta.cwiseAbs().maxCoeff();
-  const bool turns = known_.x.size() > 0 && most > 0;
+  const bool turns = slip_.known() && most > 0;
   const double aside = turns ? 1e-6 * radius_ / most : 0;
   Net change, density, slip_residual;
   Displaced to;
@@ -203,19 +202,19 @@ Net InterfaceMotion::derivative(const Net& dv, const Net& delta, const Net& db) 
   if (turns) to.x = x_ + aside * delta, to.normals = normals_at(to.x), change = (to.normals - normals_) / aside;
   if (relaxed_) {
     density = along_interface(normals_, sites_ * mass_.solve(ranks_.filled(delta.rows(), [&](Net& h) { tangent_.apply(delta, h); })));
-    if (turns) density -= normal_part_change(normals_, change, known_.density);
+    if (turns) density -= normal_part_change(normals_, change, slip_.density);
     density = collocation_.solve(density);
   }
   const Net kept = combined(x_, flux_, normals_, dv, density, slip_residual);
   if (!turns) return kept;
   if (projection_) {
     const Net n = projection_->normals(x_), at = projection_->values() * x_;
-    Net turned = normal_part_change(n, (projection_->normals(to.x) - n) / aside, known_.slip_residual);
+    Net turned = normal_part_change(n, (projection_->normals(to.x) - n) / aside, slip_.residual);
     if (db.rows() > 0) turned += change_of_motion(to, at, projection_->values() * to.x, n, aside, &Drop::sites);
     return kept + projection_->control_values(turned);
   }
   return kept + collocation_.solve(ranks_.filled(x_.rows(), [&](Net& u) {
-    u = normal_part_change(normals_, change, known_.slip_residual);
+    u = normal_part_change(normals_, change, slip_.residual);
     if (db.rows() > 0) u += change_of_motion(to, sites_ * x_, sites_ * to.x, normals_, aside, &Drop::points);
   }));
 }

@@ -17,6 +17,15 @@ namespace tanktread::coupling {
 /// Returns the unit normal of the surface with net x at a point, given by its site on one element or by its sites on all elements that meet there.
 Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const spline::Site> sites);
 
+/// Motion of the fluid relative to the mesh motion on all drops (4.6). Empty nets if unknown.
+struct Slip {
+  Net fluid;     ///< control values of the fluid velocity v
+  Net residual;  ///< v - W - w, fluid velocity minus motions of shape and relaxation, at the sites where u is evaluated
+  Net density;   ///< force density M0^{-1} dE1/dx at the collocation sites, with the mesh energy E1; no rows if no drop relaxes
+
+  bool known() const { return fluid.rows() > 0; }
+};
+
 /// Computes the velocity u of the control points from the fluid velocity v. At the collocation sites of each drop
 ///
 ///   u = W + n n.(v - W) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed Q A0 Q^T (1 - n n).M0^{-1} dE1/dx (`relaxed`)    (4.6)
@@ -38,20 +47,20 @@ class InterfaceMotion {
                   const membrane::SymmetricSolver& mass);
 
   /// Returns the control values of the velocity u (4.6) of the control points in the shape x. `v`: control values of the fluid velocity. `b`: dV/dx.
-  /// `given`: net of this shape as passed to `linearise`. It differs from x if particles have been moved into a cell, and by round-off in the rows of
-  /// rigid bodies. Collective.
-  Net velocity(const Net& x, const Net& b, const Net& v, const Net& given);
+  /// Sets `slip`, which `linearise` needs. Collective.
+  Net velocity(const Net& x, const Net& b, const Net& v, Slip& slip);
 
   /// Returns the control values of (1 - n n).(e_k x y) on each drop for each k of `axes`, where y is the position relative to the mean of the drop's
   /// control points. These fields rotate the mesh along an interface that does not move. Collective.
   std::vector<Net> rotations(const Net& x, std::span<const int> axes) const;
 
-  /// Stores x, b = dV/dx, the normals, and the Hessian of the mesh energy E1 (4.6) at x, which `derivative` needs. Collective.
-  void linearise(const Net& x, const Net& b);
+  /// Stores x, b = dV/dx, the normals, and the Hessian of the mesh energy E1 (4.6) at x, which `derivative` needs. `slip`: result of velocity() at
+  /// this shape; empty if it is unknown. Collective.
+  void linearise(const Net& x, const Net& b, const Slip& slip);
 
   /// Returns the change of the control points' velocity u (4.6) if the shape passed to `linearise` is displaced by delta. `dv`, `db`: changes of the
   /// fluid velocity v and of the volume gradient b due to delta. The changes of the normals and of the linear map from v to the motion W are included
-  /// only if the last call of `velocity` before `linearise` was for the same net. If db has no rows, the change of the map is omitted. Collective.
+  /// only if `linearise` received a slip. If db has no rows, the change of the map is omitted. Collective.
   Net derivative(const Net& dv, const Net& delta, const Net& db);
 
   /// Returns true if any drop has the mesh motion `relaxed`.
@@ -87,15 +96,9 @@ class InterfaceMotion {
   const Ranks& ranks_;
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
-  struct Latest {
-    Net x, v;                    // shape, fluid velocity
-    Net slip_residual, density;  // slip_residual: fluid velocity minus motions of shape and relaxation, v - W - w of (4.6), at the sites where u is
-                                 // evaluated; density: force density M0^{-1} dE1/dx at the collocation sites, with the mesh energy E1 of (4.6)
-  };
-  Latest latest_, known_;  // latest_: data of the last call of velocity(). known_: copy of latest_ made by linearise(x); empty if the last call of
-                           // velocity() was at a shape other than x
   Net x_, flux_, normals_;  // shape, b = dV/dx and normals at which the system was linearised
-  std::vector<MotionOfShape> shapes_;  // W (4.14) of each drop at this shape; empty if known_ is
+  Slip slip_;               // slip at this shape; empty if it is unknown
+  std::vector<MotionOfShape> shapes_;  // W (4.14) of each drop at this shape; empty if slip_ is
 };
 
 }  // namespace tanktread::coupling

@@ -134,7 +134,7 @@ std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& r
 }
 
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
-  return scene.in_system() ? deforming(scene, ranks, phases) : free_body(scene, ranks, phases);
+  return scene.in_system() ? coupled_particles(scene, ranks, phases) : free_body(scene, ranks, phases);
 }
 
 }  // namespace tanktread

@@ -72,7 +72,7 @@ class ParticleSystem {
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 /// Builds a coupled system of particles.
-std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 /// Builds a system that consists of one free rigid body.
 std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 

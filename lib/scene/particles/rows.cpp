@@ -28,7 +28,7 @@ ParticleRows::ParticleRows(std::vector<Member>& members, const coupling::Capsule
 DeformingRow ParticleRows::deforming(std::size_t p, const Net& y) {
   const Member& member = members_[p];
   const Net x = member.own(state_.x), slope = member.own(state_.history.front());
-  DeformingRow now = deforming_row(member.scene, *member.body, geometry(member), membrane(member), x, slope, ranks_);
+  DeformingRow now = deforming_row(member.scene, *member.body, *member.geometry, *member.membrane, x, slope, ranks_);
   now.volume_error = capsule_.volume_error(now.measures.volume, p);
   now.stresslet = here_.stresslet(p);
   now.energy += here_.load_energy(p);
@@ -42,7 +42,7 @@ DeformingRow ParticleRows::deforming(std::size_t p, const Net& y) {
 RigidRow ParticleRows::rigid(std::size_t p, const coupling::RigidParticles& bodies) {
   const Member& member = members_[p];
   const coupling::RigidParticles& rigid = here_.rigid();
-  RigidRow now = rigid_row(member.scene, *member.body, capsule_.flow(), geometry(member), member.own(here_.x()), rigid.motion(p),
+  RigidRow now = rigid_row(member.scene, *member.body, capsule_.flow(), *member.geometry, member.own(here_.x()), rigid.motion(p),
                            Eigen::Quaterniond(bodies.turn(p)), here_.stresslet(p), ranks_);
   now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
   return now;
@@ -56,7 +56,7 @@ void ParticleRows::add_treading(const Net& v) {
       const Member& member = members_[k];
       if (member.scene.particle.rigid()) continue;
       ParticleRow& now = *rows_[k];
-      tanktread::add_treading(member.scene, *member.body, geometry(member), member.own(state_.x), member.own(v), now);
+      tanktread::add_treading(member.scene, *member.body, *member.geometry, member.own(state_.x), member.own(v), now);
       to.row(k) << now.velocity.transpose(), now.treading.velocity, now.treading.frequency;
     }
   });

@@ -23,8 +23,6 @@ class ParticleRows {
   Together together() const;  ///< returns totals and means of all particles, without the stresslets of pairs in contact
 
  private:
-  const surface::Geometry& geometry(const Member& member) const { return members_.size() > 1 ? *member.geometry : capsule_.geometry(); }
-  const membrane::Membrane& membrane(const Member& member) const { return members_.size() > 1 ? *member.membrane : capsule_.membrane(); }
   DeformingRow deforming(std::size_t p, const Net& y);
   RigidRow rigid(std::size_t p, const coupling::RigidParticles& bodies);
   void add_treading(const Net& v);

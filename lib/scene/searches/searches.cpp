@@ -49,7 +49,7 @@ bool turns(const SharedOptions& scene) {
 }  // namespace
 
 void reject_searches(const ParticleScene& scene, Rejections& to) {
-  const bool search = !scene.runs_in_time(), steady = scene.steady.present, drop = scene.membrane.law == "surface tension";
+  const bool search = !scene.runs_in_time(), steady = scene.steady.present, drop = scene.membrane.fluid_interface();
   const std::string& unstressed = scene.membrane.stress_free == "resting" ? scene.particle.shape.shape : scene.membrane.stress_free;
   to.pair(steady && scene.periodic.present, "Steady", "Periodic", "a steady shape has no period; give one of them");
   to.add(scene.continuation.present && !steady, "Continuation needs a section Steady, because it continues steady shapes.");

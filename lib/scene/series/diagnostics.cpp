@@ -166,7 +166,7 @@ void DeformingRow::add_columns(const ParticleScene& one, Columns& to) const {
        "Membrane/relaxation time, of surface viscosity and of a surfactant"});
   to.add(tension.compressed_area, {"compressed_area", "1", "fraction of the membrane's area where a principal tension is negative, so "
                                                            "that the membrane may wrinkle"});
-  if (to.when(one.membrane.law != "surface tension"))
+  if (to.when(!one.membrane.fluid_interface()))
     to.add(tension.area_change,
            {"local_area_change", "1", "largest relative change of area anywhere on the membrane: maximum of |J - 1|, with J the current "
                                       "area divided by the unstressed area of the same material"});
@@ -346,7 +346,7 @@ DeformingRow deforming_row(const ParticleScene& scene, const Body& body, const s
 void add_treading(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now) {
   const FlowPlane& plane = body.plane;
   now.velocity = surface::centroid_velocity(geometry.bezier(), x, v);
-  const bool elastic = scene.membrane.law != "surface tension";
+  const bool elastic = !scene.membrane.fluid_interface();
   now.treading = surface::tank_treading(geometry.bezier(), plane.turned(x), plane.turned(v), elastic ? &body.unstressed : nullptr,
                                         plane.components(now.centre), plane.components(now.velocity));
 }

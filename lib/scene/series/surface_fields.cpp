@@ -95,6 +95,11 @@ void SurfaceFields::set_state(const Net& y, double distance) {
   else motion_->set_state(y);
 }
 
+std::shared_ptr<coupling::Evaluation> SurfaceFields::evaluate(const Net& y, const Net& velocity, double distance) {
+  set_state(y, distance);
+  return capsule_.evaluate_on_demand(shape(y), velocity, distance);
+}
+
 void SurfactantRow::add_columns(Columns& to) const {
   constexpr const char* of = "drop with surfactant";
   to.add(mass, {"surfactant_mass", "1", "total mass of surfactant divided by its initial value; it stays 1 up to rounding errors", {}, of});

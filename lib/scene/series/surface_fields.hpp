@@ -58,6 +58,9 @@ class SurfaceFields {
   /// `distance` of y.
   void set_state(const Net& y, double distance = 0);
 
+  /// Calls set_state(y, distance). Returns the evaluation of the shape in y, see Capsule::evaluate_on_demand.
+  std::shared_ptr<coupling::Evaluation> evaluate(const Net& y, const Net& velocity, double distance);
+
   /// Returns a function that evaluates all fields of particle p, scaled to order 1, at a parametric point in the state set last. The function is
   /// empty if there are no fields.
   surface::FieldsAt values_at(std::size_t p) const;

@@ -40,6 +40,7 @@ struct SolverOptions {
   std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values:
                                                   ///< preconditioner of one system for all unknowns (TubeSystem)
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (see WallSolver)
+  bool eliminates_walls() const { return tube == "schur"; }  ///< returns whether the tractions on the wall of a tube are eliminated
   BodyEquation rigid_bodies = BodyEquation::automatic;
   std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
   std::string frozen_operator = "nodal";          ///< single layer of the Jacobian: nodal (NodalOperator) or assembled (FrozenOperator)

@@ -246,6 +246,16 @@ TEST(Members, HaveTheMeshAndTheShapeOfASingleParticle) {
   }
 }
 
+TEST(Members, HaveTheSymmetryOfASingleParticleWhetherTheyHaveANameOrNot) {
+  const std::string around = "  Channel: {section: circle, radius: 1, profile: constriction, depth: 0.5, half length: 2}\n";
+  const std::string place = "{radius: 0.4, center: [-2.6, 0, 0]}\n";
+  const auto order = [&](const std::string& particle) {
+    return tanktread::members(scene("  Flow: {type: duct, mean velocity: 1}\n" + around + particle)).front().body->symmetry.order();
+  };
+  EXPECT_GT(order("  Particle: " + place), 1);
+  EXPECT_EQ(order("  Particles: {a: " + place + "}\n"), order("  Particle: " + place));
+}
+
 TEST(Scenes, PutASingleRigidBodyInAFlowOfAnyDegreeIntoTheSystem) {
   struct Keys {
     void declare(deck::Section&) {}
@@ -270,9 +280,12 @@ TEST(Scenes, PutASingleRigidBodyInAFlowOfAnyDegreeIntoTheSystem) {
 }
 
 TEST(Resuming, MayChangeKeysOfTheRunButNotOfTheScene) {
-  for (const char* path : {"Time/final time", "Output/interval", "Expect/volume/value", "Solvers/Belos", "Quadrature/tolerance"})
+  for (const char* path : {"Time/final time", "Output/interval", "Expect/volume/value", "Solvers/Belos", "Quadrature/tolerance", "Contact/limit",
+                           "Interface/motion", "Particles/red/Interface/motion", "Particles/red/Adaptation/interval", "Tube/contact gap"})
     EXPECT_TRUE(may_change_on_resume(path)) << path;
-  for (const char* path : {"Flow/type", "Particle/radius", "Membrane/law", "Surface/elements per side", "Output/power balance", "Contact/limiter"})
+  for (const char* path : {"Flow/type", "Particle/radius", "Membrane/law", "Surface/elements per side", "Output/power balance", "Contact/limiter",
+                           "Particles/red/radius", "Particles/red/Membrane/law", "Particles/Contact/limit", "Tube/radius", "No section/key",
+                           "Particles/red/Interface/surfactant/elasticity number", "Interface/fields/own/key"})
     EXPECT_FALSE(may_change_on_resume(path)) << path;
 }
 

@@ -31,16 +31,16 @@ namespace tanktread {
 
 namespace {
 
-class Deforming : public ParticleSystem {
+class CoupledParticles : public ParticleSystem {
  public:
-  Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
+  CoupledParticles(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)), solids_(solids(scene, phases)) {
     check_apart(members_, scene.domain.cell());
     check_outside_of_posts(scene_, members_);
     set_up();
     for (Member& member : members_) {
       const Body& body = *member.body;
-      member.followed = site_ahead(body.nested(), body.rest, geometry(member).measures(body.rest).centroid, body.plane);
+      member.followed = site_ahead(body.nested(), body.rest, member.geometry->measures(body.rest).centroid, body.plane);
       member.place = spline::place(body.nested(), member.followed);
       follow(member);
     }
@@ -159,8 +159,7 @@ class Deforming : public ParticleSystem {
 
   Columns row(const motion::State& whole_state, ProgressRow progress) override {
     const motion::State state = fields_->of_shape(whole_state);
-    fields_->set_state(whole_state.x, scene_.time.tolerance);
-    const auto here = capsule_->evaluate_on_demand(state.x, state.history.front(), scene_.time.tolerance);
+    const auto here = fields_->evaluate(whole_state.x, state.history.front(), scene_.time.tolerance);
     // Solves the linear system for the velocity again in two cases: if the series of tractions on walls need a more accurate velocity than the step,
     // and if deformable particles and rigid bodies occur together, because the loads of the deformable particles then follow from this solution.
     const auto rigid = [](const Member& member) { return member.scene.particle.rigid(); };
@@ -187,8 +186,7 @@ class Deforming : public ParticleSystem {
 
   SurfaceSnapshot snapshot(const motion::State& whole_state) override {
     const motion::State& state = snapshot_state_ = fields_->of_shape(whole_state);
-    fields_->set_state(whole_state.x);
-    const auto here = capsule_->evaluate_on_demand(state.x, state.history.empty() ? Net() : state.history.front(), 0);
+    const auto here = fields_->evaluate(whole_state.x, state.history.empty() ? Net() : state.history.front(), 0);
     const Net load = here->load(), velocity = capsule_->slides() || !state.history.empty() ? here->fluid_velocity() : Net();
     return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) {
               std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, state.x, load, velocity);
@@ -199,8 +197,6 @@ class Deforming : public ParticleSystem {
   }
 
  private:
-  const surface::Geometry& geometry(const Member& member) const { return stacked_ ? *member.geometry : capsule_->geometry(); }
-
   /// Returns the number of control points of all particles on their current meshes.
   Eigen::Index n_points() const {
     return std::accumulate(members_.begin(), members_.end(), 0, [](int n, const Member& member) { return n + member.body->space.n_points; });
@@ -324,8 +320,8 @@ class Deforming : public ParticleSystem {
 
 }  // namespace
 
-std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
-  return std::make_unique<Deforming>(scene, ranks, phases);
+std::unique_ptr<ParticleSystem> coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return std::make_unique<CoupledParticles>(scene, ranks, phases);
 }
 
 }  // namespace tanktread
