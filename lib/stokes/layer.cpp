@@ -69,6 +69,7 @@ void Layer::set_shape(const Net& x, Measure measure) {
 void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
   const LayerSurface& surface = sources_.surface;
   assert(surface.n_sites > 0 && "a layer is for sites or for points off its surfaces");
+  assert((!shared() || std::ranges::includes(everybody_, sites)) && "share() is called with the sites of all ranks");
   sources_.set_density(f);
   const std::span<const int> far_rows = shared() ? everybody_ : sites, in_tree = clusters_ ? std::span<const int>(fundamental_sites_) : sites;
   Net at(u.rows(), 3), f0 = Net::Zero(u.rows(), 3);
@@ -94,7 +95,9 @@ void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const in
 /// quadrature on panels that are close to a target or contain it.
 void Layer::integrate(const LayerTargets& targets, const Near* kept, Net& u) {
   set_far(targets, u);
-  medium_->add(sources_, targets, u);
+  LayerTargets of_medium = targets;
+  if (!medium_->shares_sums()) of_medium.far_rows = targets.rows;
+  medium_->add(sources_, of_medium, u);
   kept ? add_kept(targets, *kept, u) : add_near(targets, u);
   if (targets.sites) add_self(targets, u);
   for (const int i : targets.far_rows) u.row(i) *= over_8_pi;

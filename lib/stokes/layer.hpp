@@ -71,7 +71,8 @@ class Layer {
 
   /// If far sums use clusters, divides the far sums at the sites `everybody` among the ranks 0 .. parts - 1; `part` is the number of this rank. Then
   /// `apply` computes only the share of this rank in the rows `everybody`. The caller must sum these rows over all ranks. Near-singular and singular
-  /// quadrature is included only by the rank that requests the row.
+  /// quadrature is included only by the rank that requests the row. `everybody`: ascending; contains the sites of all later calls of `apply`, which
+  /// must be ascending, too.
   void share(int part, int parts, std::vector<int> everybody);
   bool shared() const { return clusters_ && parts_ > 1; }
 

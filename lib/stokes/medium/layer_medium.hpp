@@ -53,8 +53,12 @@ class LayerMedium {
   /// Prepares the sums for the shape and the weights of `sources`.
   virtual void set_sources(const LayerSources& sources);
 
-  /// Shares sums by clusters among ranks, see TreeSum::share.
+  /// Divides the far sums of add() among the ranks, see TreeSum::share, if shares_sums() is true.
   virtual void share(int part, int parts);
+  /// Returns whether share() divides the far sums of add() among the ranks. If so, add() adds the part of this rank to the rows
+  /// LayerTargets::far_rows, and the caller of the layer adds up the parts of all ranks. Otherwise, add() is called with far_rows equal to rows, and
+  /// adds the sums over all nodes.
+  virtual bool shares_sums() const { return false; }
 
   /// Displacements of the nodes() that are included in far sums. In far sums each node and each target is first moved by wrapped().
   virtual const std::vector<Vec3>& node_shifts() const { return itself_; }

@@ -18,6 +18,7 @@ class WallImages : public LayerMedium {
 
   void set_sources(const LayerSources& sources) override { sum_.set_sources(sources.surface.node); }
   void share(int part, int parts) override { sum_.share(part, parts); }
+  bool shares_sums() const override { return true; }
   void add(LayerSources& sources, const LayerTargets& targets, Net& u) override;
   bool add_row(LayerSources& sources, const Vec3& x0, std::vector<Mat3>& block) override;
 

@@ -222,5 +222,40 @@ TEST(PlaneWall, HasNoSlip) {
   }
 }
 
+/// A medium that adds sums at all far rows and does not divide them among ranks: the velocity of the free-space kernel at displaced targets.
+struct UndividedMedium : Medium {
+  struct Sums : LayerMedium {
+    void add(LayerSources& sources, const LayerTargets& targets, Net& u) override {
+      std::vector<Vec3> at = rows_of(targets.at, targets.far_rows);
+      for (Vec3& x : at) x[2] += 3;
+      u(targets.far_rows, Eigen::all) += sources.direct_sum(sources.surface.node, at, rows_of(targets.f0, targets.far_rows));
+    }
+  };
+  std::unique_ptr<LayerMedium> in_layer(const LayerSources& /*sources*/, bool /*by_clusters*/) const override { return std::make_unique<Sums>(); }
+  bool contains(const Vec3& /*x*/) const override { return true; }
+  std::string refusal(const AmbientFlow& /*flow*/) const override { return {}; }
+};
+
+TEST(Medium, PartsOfTheSumsAddUp) {
+  const Surface& of = ellipsoid();
+  const PlaneWall wall = of.below(0.1);
+  const UndividedMedium undivided;
+  for (const auto kernel : {single, twofold})
+    for (const Medium* medium : {static_cast<const Medium*>(&wall), static_cast<const Medium*>(&undivided)}) {
+      const auto part_of = [&](int part, int parts) {
+        Layer layer(kernel, of.space, of.space.collocation, {.far_sum = "tree"});
+        layer.set_medium(*medium);
+        layer.share(part, parts, of.all);
+        layer.set_shape(of.x);
+        std::vector<int> mine;
+        for (int i = part; i < of.space.n_points; i += parts) mine.push_back(i);
+        Net u = Net::Zero(of.space.n_points, 3);
+        layer.apply(of.field, mine, u);
+        return u;
+      };
+      EXPECT_LT(difference(part_of(0, 3) + part_of(1, 3) + part_of(2, 3), part_of(0, 1)), 1e-13);  // round-off
+    }
+}
+
 }  // namespace plane_wall_test
 }  // namespace tanktread::stokes
