@@ -89,9 +89,9 @@ void ClusterSums::set_sums_of_forces(LayerSources& sources, const LayerMedium& m
 /// is the density, m its mean, and f0 the constant that is subtracted from f for the target. The sum is exactly 0 for a uniform density.
 void ClusterSums::set_sums_of_stresslets(LayerSources& sources, const LayerTargets& targets, Net& u) {
   const Vec3 mean = sources.mean_density();
-  sources.set_moments(mean);
+  const LayerSources::StressletMoments& moments = sources.stresslet_moments(mean);
   std::array<const double*, 6> strength;
-  for (std::size_t c = 0; c < 6; ++c) strength[c] = sources.moment[c].data();
+  for (std::size_t c = 0; c < 6; ++c) strength[c] = moments[c].data();
   Net there(at_.size(), 3);
   tree_.sum<StressletKernel>(strength, there.data());
   for (const int i : targets.far_rows) {

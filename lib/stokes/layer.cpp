@@ -41,12 +41,18 @@ void Layer::use(std::unique_ptr<LayerMedium> medium) {
 void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
   const auto* lattice = dynamic_cast<const Lattice*>(medium_.get());
   if (lattice && lattice->is(cell, how)) return;
-  if (!lattice && typeid(*medium_) != typeid(LayerMedium)) throw std::logic_error("a layer has one medium, or is on a lattice");
+  if (!lattice) require_no_medium();
   if (!clusters_ && sums_by_tree(lattice_images * n_nodes(), sources_.surface.options)) use_clusters();
   use(std::make_unique<Lattice>(cell, how));
 }
 
+/// Throws std::logic_error if the layer has a medium or is on a lattice.
+void Layer::require_no_medium() const {
+  if (typeid(*medium_) != typeid(LayerMedium)) throw std::logic_error("a layer has one medium, or is on a lattice");
+}
+
 void Layer::set_medium(const Medium& medium) {
+  require_no_medium();
   if (shared()) throw std::logic_error("Layer::set_medium must be called before Layer::share, because the far sums of the medium are shared as well");
   use(medium.in_layer(sources_, by_clusters()));
 }

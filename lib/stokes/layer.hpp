@@ -56,11 +56,12 @@ class Layer {
   void set_symmetry(const surface::Symmetry& symmetry);
 
   /// Sets the medium, by default unbounded fluid. All later shapes must be in it. Throws std::logic_error if called after share(), unless share() has
-  /// no effect. Blocks that are assembled for near control points do not include what the medium adds.
+  /// no effect, and if the layer has a medium or a lattice already. Call set_shape() afterwards. Blocks that are assembled for near control points
+  /// do not include what the medium adds.
   void set_medium(const Medium& medium);
 
   /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again when the cell
-  /// deforms. With three periods, a double layer includes an additional pressure linear in x. The double layer then does not change the mean velocity
+  /// deforms, and before set_shape(). With three periods, a double layer includes an additional pressure linear in x. The double layer then does not change the mean velocity
   /// over the cell, including the volume inside the surfaces:
   ///
   ///   T_ijk = T^P_ijk - (8 pi/V) delta_jk (x - x_p)_i,   x_p a point of surface p.                                              (2.28)
@@ -109,14 +110,12 @@ class Layer {
              int first_image_row = no_row);
 
   /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3 x
-  /// number of targets, 3 x number of control points).
+  /// number of targets, 3 x number of control points). With Repetition::assembled, the rows of a single layer at `sites` include all images
+  /// on the lattice and must be in double precision; other rows include only the near images.
   template <class Real>
   void assemble(std::span<const int> sites, Rows<Real>& a);
   template <class Real>
   void assemble(const Net& at, std::span<const int> targets, Rows<Real>& a);
-
-  /// Adds to the assembled rows `a` at `sites` the images of a periodic single layer that are not near (PeriodicSum).
-  void assemble_remainder(std::span<const int> sites, Rows<double>& a);
 
   /// Assembles only the blocks A_iB of near control points of a single layer: entries[6 j + c], c = 11, 12, 13, 22, 23, 33, for near.point[j].
   /// Consecutive targets should be neighbours, because targets are processed in groups of sixteen, and each group evaluates the panels around the
@@ -149,6 +148,7 @@ class Layer {
   /// tolerance.
   double cluster_tolerance() const { return (single() ? 1 : 4) * sources_.surface.options.tolerance; }
   void use_clusters();
+  void require_no_medium() const;
   void use(std::unique_ptr<LayerMedium> medium);
   void integrate(const LayerTargets& targets, const Near* kept, Net& u);
   void set_far(const LayerTargets& targets, Net& u);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <stdexcept>
+#include <type_traits>
 
 #include "base/indices.hpp"
 #include "stokes/closed_surface_identities.hpp"
@@ -234,6 +236,13 @@ void assemble_rows(LayerSources& sources, LayerMedium& medium, std::span<const i
 template <class Real>
 void Layer::assemble(std::span<const int> sites, Rows<Real>& a) {
   assemble_rows(sources_, *medium_, sites, nullptr, a);
+  if (!single() || !medium_->rows_include_images()) return;
+  if constexpr (std::is_same_v<Real, double>) {
+    const auto clock = sources_.phases.time("assembly");
+    medium_->add_remainder(sources_, sites, a);
+  } else {
+    throw std::logic_error("the images of a lattice are added to rows in double precision only");
+  }
 }
 template <class Real>
 void Layer::assemble(const Net& at, std::span<const int> targets, Rows<Real>& a) {
@@ -243,12 +252,6 @@ template void Layer::assemble(std::span<const int> sites, Rows<float>& a);
 template void Layer::assemble(std::span<const int> sites, Rows<double>& a);
 template void Layer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
 template void Layer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
-
-void Layer::assemble_remainder(std::span<const int> sites, Rows<double>& a) {
-  assert(single());
-  const auto clock = sources_.phases.time("assembly");
-  medium_->add_remainder(sources_, sites, a);
-}
 
 void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) {
   assert(single());

@@ -86,20 +86,22 @@ Vec3 LayerSources::mean_density() const {
 
 /// Computes the stresslet moments of a density f(node, component).
 template <class Values>
-void LayerSources::set_moments_of(const Values& f) {
+const LayerSources::StressletMoments& LayerSources::set_moments(const Values& f) {
   for (int c = 0; c < 6; ++c) {
     const auto [i, j] = stresses[c];
-    moment[c].resize(n_nodes());
-    for (int k = 0; k < n_nodes(); ++k) moment[c][k] = (f(k, i) * normal[j][k] + f(k, j) * normal[i][k]) / 2;
+    std::vector<double>& moment = moments_[static_cast<std::size_t>(c)];
+    moment.resize(n_nodes());
+    for (int k = 0; k < n_nodes(); ++k) moment[k] = (f(k, i) * normal[j][k] + f(k, j) * normal[i][k]) / 2;
   }
+  return moments_;
 }
 
-void LayerSources::set_moments(const Vec3& mean) {
-  set_moments_of([&](int k, int i) { return density[i][k] - mean[i]; });
+const LayerSources::StressletMoments& LayerSources::stresslet_moments(const Vec3& mean) {
+  return set_moments([&](int k, int i) { return density[i][k] - mean[i]; });
 }
 
-void LayerSources::set_moments_of_constant(int component) {
-  set_moments_of([&](int, int i) { return i == component ? 1. : 0.; });
+const LayerSources::StressletMoments& LayerSources::stresslet_moments_of_constant(int component) {
+  return set_moments([&](int, int i) { return i == component ? 1. : 0.; });
 }
 
 Net LayerSources::direct_sum(const NodeVectors& x, std::span<const Vec3> at, std::span<const Vec3> f0) {

@@ -60,10 +60,12 @@ class LayerSources {
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
   Vec3 mean_density() const;  ///< mean of `density` over the far nodes
-  /// Computes the stresslet moments `moment` of the density minus `mean`.
-  void set_moments(const Vec3& mean);
-  /// Computes the stresslet moments `moment` of a constant unit density along axis `component`.
-  void set_moments_of_constant(int component);
+  /// Stresslet moments (f n + n f)/2 at the far nodes, with n = `normal`, components as in `stresses`.
+  using StressletMoments = std::array<std::vector<double>, 6>;
+  /// Returns the stresslet moments of the density minus `mean`, or of a constant unit density along axis `component`. The result is valid until the
+  /// next call of one of these functions.
+  const StressletMoments& stresslet_moments(const Vec3& mean);
+  const StressletMoments& stresslet_moments_of_constant(int component);
 
   /// Returns the sum of the kernel times the density over the far nodes at the positions x (the far nodes of the surface, or displaced ones), at the
   /// targets `at`; shape (number of targets, 3). `f0`: for each target the constant that is subtracted from the density of a double layer. For all
@@ -89,7 +91,6 @@ class LayerSources {
   std::vector<double> weight;     ///< quadrature weights of the far nodes, times area and the factor k_p of (2.1); single layer only
   NodeVectors density, normal;    ///< values at the far nodes. density: density f (times `weight` in a single layer). normal: normal times
                                   ///< quadrature weight, area and factor k_p of (2.2)
-  std::vector<double> moment[6];  ///< stresslet moments (f n + n f)/2 at the far nodes, with n = `normal`, components as in `stresses`
   Evaluations evaluations;        ///< kernel evaluations since construction
   Phases phases;                  ///< computing times since construction
 
@@ -100,13 +101,14 @@ class LayerSources {
     std::vector<bool> per_current_area;  // for Measure::by_element: for each element, true if the density is per current area
   };
   template <class Values>
-  void set_moments_of(const Values& f);
+  const StressletMoments& set_moments(const Values& f);
 
   LayerKernel kernel_;
   std::vector<double> factor_;
   std::optional<Measure> measure_;  // kind of area (current or unstressed) that `weight` contains; not set before set_shape()
   Reference reference_;
   std::vector<double> bezier_field_;
+  StressletMoments moments_;  // result of the latest call of stresslet_moments() or stresslet_moments_of_constant()
   std::vector<Pack> point_weights_, scratch_;
 };
 

@@ -62,15 +62,19 @@ void Lattice::add_remainder(LayerSources& sources, const LayerTargets& targets, 
   } else {
     const Vec3 mean = sources.mean_density();
     if (at != remainder_at_) set_remainder_targets(sources, at);
-    sources.set_moments(mean);
-    sum_->add_remainder(charges(node_, sources.moment), at, sums.data());
-    if (cell_.n() == 3) sums.rowwise() += pressure_along(sources).transpose();
+    add_stresslets(sources, sources.stresslet_moments(mean), at, sums);
     for (std::size_t k = 0; k < at.size(); ++k) {
       const Vec3 value = targets.f0.row(targets.rows[k]).transpose();
       sums.row(static_cast<Eigen::Index>(k)) -= (remainder_stress_[k] * (value - mean)).transpose();
     }
   }
   for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.rows[k]) += sums.row(static_cast<Eigen::Index>(k));
+}
+
+/// Adds the sum over the images that are not near, of stresslets with these moments, at the targets `at`.
+void Lattice::add_stresslets(const LayerSources& sources, const Moments& moments, const std::vector<Vec3>& at, Net& sums) {
+  sum_->add_remainder(charges(node_, moments), at, sums.data());
+  if (cell_.n() == 3) sums.rowwise() += pressure_along(sources, moments).transpose();
 }
 
 /// Computes remainder_stress_ at the targets `at`: the double layer of a constant unit density on all images that are not near, one column per
@@ -80,17 +84,15 @@ void Lattice::set_remainder_targets(LayerSources& sources, const std::vector<Vec
   remainder_at_ = at;
   remainder_stress_.assign(at.size(), Mat3::Zero());
   for (int c = 0; c < 3; ++c) {
-    sources.set_moments_of_constant(c);
     Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
-    sum_->add_remainder(charges(node_, sources.moment), at, sums.data());
-    if (cell_.n() == 3) sums.rowwise() += pressure_along(sources).transpose();
+    add_stresslets(sources, sources.stresslet_moments_of_constant(c), at, sums);
     for (std::size_t k = 0; k < at.size(); ++k) remainder_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
   }
 }
 
 /// Returns the contribution of the additional pressure of (2.28) to the double layer, -(8 pi/V) sum_p k_p int_p (f.n) (x - x_p) dGamma, for the
-/// density f whose moments are set. x_p is the mean of the nodes of surface p, and k_p the factor of (2.2).
-Vec3 Lattice::pressure_along(const LayerSources& sources) const {
+/// density f with these moments. x_p is the mean of the nodes of surface p, and k_p the factor of (2.2).
+Vec3 Lattice::pressure_along(const LayerSources& sources, const Moments& moments) const {
   const LayerSurface& surface = sources.surface;
   const auto number = [&](int e) { return static_cast<std::size_t>(surface.near_field.surface(e)); };
   const auto place = [&](int k) { return Vec3(surface.node[0][k], surface.node[1][k], surface.node[2][k]); };
@@ -103,7 +105,7 @@ Vec3 Lattice::pressure_along(const LayerSources& sources) const {
   Vec3 sum = Vec3::Zero();
   for (int e = 0; e < surface.panels.size(); ++e)
     for (int k = surface.panels[e].first_node; k < surface.panels[e].first_node + surface.panels[e].table->n_nodes; ++k)
-      sum += (sources.moment[0][k] + sources.moment[1][k] + sources.moment[2][k]) * (place(k) - middle[number(e)]);
+      sum += (moments[0][k] + moments[1][k] + moments[2][k]) * (place(k) - middle[number(e)]);
   return -1 / (over_8_pi * cell_.volume()) * sum;
 }
 

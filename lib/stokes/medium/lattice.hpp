@@ -12,8 +12,7 @@ namespace tanktread::stokes {
 
 /// Options for the periodic images of the surfaces on a lattice.
 struct Repetition {
-  bool assembled = false;  ///< true: assembled rows include the near images, and Layer::assemble_remainder() adds all other images (PeriodicSum).
-                           ///< false: assembled rows include no images
+  bool assembled = false;  ///< whether assembled rows include images, see Layer::assemble()
   std::array<Vec3, 2> target_range{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off
                                                                                     ///< the surfaces
 
@@ -43,7 +42,9 @@ class Lattice : public LayerMedium {
   void subtract_surfaces(LayerSources& sources, const LayerTargets& targets, Net& u) const;
   void add_remainder(LayerSources& sources, const LayerTargets& targets, Net& u);
   void set_remainder_targets(LayerSources& sources, const std::vector<Vec3>& at);
-  Vec3 pressure_along(const LayerSources& sources) const;
+  using Moments = LayerSources::StressletMoments;
+  void add_stresslets(const LayerSources& sources, const Moments& moments, const std::vector<Vec3>& at, Net& sums);
+  Vec3 pressure_along(const LayerSources& sources, const Moments& moments) const;
 
   PeriodicCell cell_;
   Repetition how_;

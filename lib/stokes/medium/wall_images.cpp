@@ -59,8 +59,7 @@ void WallImages::add_far(LayerSources& sources, const LayerTargets& targets, Net
   } else {
     const Vec3 mean = sources.mean_density();
     if (others) compute_image_stress(sources);
-    sources.set_moments(mean);
-    sums = sum_.sum(sources.moment);
+    sums = sum_.sum(sources.stresslet_moments(mean));
     for (std::size_t k = 0; k < targets.far_rows.size(); ++k)
       sums.row(static_cast<Eigen::Index>(k)) -= (image_stress_[k] * (targets.f0.row(targets.far_rows[k]).transpose() - mean)).transpose();
   }
@@ -70,8 +69,7 @@ void WallImages::add_far(LayerSources& sources, const LayerTargets& targets, Net
 
 void WallImages::compute_image_stress(LayerSources& sources) {
   for (int c = 0; c < 3; ++c) {
-    sources.set_moments_of_constant(c);
-    const Net sums = sum_.sum(sources.moment);
+    const Net sums = sum_.sum(sources.stresslet_moments_of_constant(c));
     image_stress_.resize(static_cast<std::size_t>(sums.rows()));
     for (std::size_t k = 0; k < image_stress_.size(); ++k) image_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
     sources.evaluations.far += sum_.interactions();

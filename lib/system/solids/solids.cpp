@@ -109,7 +109,6 @@ bool Solids::outside(const Net& at) const {
 Eigen::MatrixXd Solids::rows(stokes::Layer& on_itself, std::span<const int> sites) const {
   stokes::Rows<double> all;
   on_itself.assemble(sites, all);
-  on_itself.assemble_remainder(sites, all);
   Eigen::MatrixXd found(all.rows(), sites_.size());
   for (Eigen::Index r = 0; r < all.rows(); ++r) {
     const Net periodic = surface_.open_from_periodic.transpose() * Eigen::Map<const Net>(all.row(r).data(), surface_.space.n_points, 3);

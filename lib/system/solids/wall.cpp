@@ -85,7 +85,6 @@ template void Wall::from_space(stokes::Rows<float>& rows) const;
 /// Assembles the rows of the single layer of the wall at targets on the wall itself. The columns belong to the control values of f.
 void Wall::assemble_rows(std::span<const int> targets, stokes::Rows<double>& rows) {
   on_itself_->assemble(targets, rows);
-  if (cell_) on_itself_->assemble_remainder(targets, rows);
   from_space(rows);
 }
 

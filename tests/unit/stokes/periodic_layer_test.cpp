@@ -90,7 +90,6 @@ TEST(PeriodicLayer, AssembledRowsOfTargetsAtFarNodesAreTheSum) {
   layer.apply(field, all, u);
   Rows<double> rows;
   layer.assemble(all, rows);
-  layer.assemble_remainder(all, rows);
   const Eigen::VectorXd product = rows * Eigen::Map<const Eigen::VectorXd>(field.data(), field.size());
   EXPECT_LT((product - Eigen::Map<const Eigen::VectorXd>(u.data(), u.size())).cwiseAbs().maxCoeff(), 1e-11);
 }
