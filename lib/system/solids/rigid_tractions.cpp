@@ -1,6 +1,7 @@
 #include "system/solids/rigid_tractions.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include <Eigen/LU>
@@ -104,6 +105,7 @@ void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
 
 /// Returns B y (see Surroundings::product), the left-hand side of the system for the unknowns y, including the regularising term of (2.10).
 Net RigidTractions::product(const Net& y) {
+  assert(around_ || !walls_.solids);  // only Surroundings::product contains the response of plates and posts
   const Net caused = repeats_ ? Net() : layer_.velocity(y);
   if (!around_) return walls_.tube ? Net(caused + walls_.tube->respond(load(y)).velocity) : caused;
   Net all = around_->product(y, caused);
