@@ -129,7 +129,7 @@ Net Capsule::solve_in_cell(Evaluation& e, Net x, std::optional<double> origin, c
   if (!bodies_.rigid.empty() && !bodies_.tractions) {
     e.unknowns_ = symmetric(v);
     e.load_ += bodies_.rigid.completing_load(v);
-    bodies_.rigid.move(v);
+    bodies_.rigid.store_density(v);
   }
   if (!interface_) return v;
   e.fluid_ = symmetric(v);

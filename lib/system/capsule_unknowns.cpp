@@ -157,7 +157,7 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint
   Net v = deformable_velocity(volume, solution.unknowns);
   auto body = solution.bodies.begin();
   for (std::size_t p = 0; p < particles().size(); ++p)
-    if (bodies_.rigid.is_rigid(p)) bodies_.rigid.move(p, body->motion, body->force, body->torque, v), ++body;
+    if (bodies_.rigid.is_rigid(p)) bodies_.rigid.set_motion(p, body->motion, body->force, body->torque, v), ++body;
   e.load_ = load(solution.unknowns);
   for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, flat(v), parameters_.solvers.tolerance);
   if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, solution.pressure_correction);
