@@ -152,14 +152,15 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
   const bool responds = layers_.repeats() || duct_.tube || solids() || layers_.has_double() || viscous();
-  bodies_.tractions->solve(x, centres, driven, surroundings_.flow, RigidTractions::Surroundings{flow, responds, product, load});
-  Net v = deformable_velocity(volume, bodies_.tractions->unknowns());
-  auto body = bodies_.tractions->bodies().begin();
+  const RigidTractions::Solution& solution =
+      bodies_.tractions->solve(x, centres, driven, surroundings_.flow, RigidTractions::Surroundings{flow, responds, product, load});
+  Net v = deformable_velocity(volume, solution.unknowns);
+  auto body = solution.bodies.begin();
   for (std::size_t p = 0; p < particles().size(); ++p)
-    if (bodies_.rigid.is_rigid(p)) bodies_.rigid.move(p, body->motion, body->force, body->torque, v), ++body;
-  e.load_ = load(bodies_.tractions->unknowns());
+    if (bodies_.rigid.is_rigid(p)) bodies_.rigid.set_motion(p, body->motion, body->force, body->torque, v), ++body;
+  e.load_ = load(solution.unknowns);
   for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, flat(v), parameters_.solvers.tolerance);
-  if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, bodies_.tractions->pressure_correction());
+  if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, solution.pressure_correction);
   return v;
 }
 

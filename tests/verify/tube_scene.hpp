@@ -111,9 +111,8 @@ struct RigidSphere {
  private:
   Resistance resistance(const coupling::RigidDrive& driven, const stokes::AmbientFlow& in) {
     tube->set_shape(sphere.net);
-    tractions->solve(sphere.net, {&sphere.centre, 1}, {&driven, 1}, in);
-    return {tractions->bodies().front().force[0] / (6 * std::numbers::pi * radius),
-            tractions->pressure_correction() - tube->pressure_of(tractions->unknowns())};
+    const auto& solution = tractions->solve(sphere.net, {&sphere.centre, 1}, {&driven, 1}, in);
+    return {solution.bodies.front().force[0] / (6 * std::numbers::pi * radius), solution.pressure_correction - tube->pressure_of(solution.unknowns)};
   }
 };
 

@@ -58,19 +58,19 @@ RigidSolution rigid_solution(const ParticleScene& scene, const Body& body, coupl
     if (tube) tube->set_shape(body.rest);
     if (scene.reciprocal_forces()) {
       tractions.solve(body.rest, {&centre, 1}, {&driven, 1}, body.flow);
-      s.density = tractions.unknowns();
+      s.density = tractions.solution().unknowns;
     } else {
       tractions.set_shape(body.rest, {&centre, 1});
       s.density = tractions.density(coupling::rigid_velocity(tractions.sites(), driven.motion, centre) - body.flow.velocities(tractions.sites()));
     }
   }
   s.iterations = tractions.converged_iterations();
-  const auto integrals = tractions.integrals(0, s.density), corrected = scene.reciprocal_forces() ? tractions.bodies().front() : integrals;
+  const auto integrals = tractions.integrals(0, s.density), corrected = scene.reciprocal_forces() ? tractions.solution().bodies.front() : integrals;
   s.integral = -integrals.force;
   s.force = -corrected.force, s.torque = -corrected.torque;
   s.stresslet = -integrals.stresslet();
   if (tube) {
-    s.pressure_drop = (scene.reciprocal_forces() ? tractions.pressure_correction() : 0) - tube->pressure_of(s.density);
+    s.pressure_drop = (scene.reciprocal_forces() ? tractions.solution().pressure_correction : 0) - tube->pressure_of(s.density);
     return s;
   }
   if (const auto exact = exact_body(scene)) {

@@ -102,9 +102,9 @@ BoundedFreeBody::Solution BoundedFreeBody::in_tube(const Net& position) const {
 
 BoundedFreeBody::Solution BoundedFreeBody::in_medium(const Net& position) const {
   const Vec3 centre = centre_of(position);
-  body_.solve(surface(position), {&centre, 1}, {&driven_, 1}, flow_);
-  const SolvedBody& found = body_.bodies().front();
-  return {found.motion, body_.unknowns(), -found.stresslet()};
+  const RigidTractions::Solution& solution = body_.solve(surface(position), {&centre, 1}, {&driven_, 1}, flow_);
+  const SolvedBody& found = solution.bodies.front();
+  return {found.motion, solution.unknowns, -found.stresslet()};
 }
 
 }  // namespace tanktread::coupling

@@ -1,5 +1,6 @@
 #include "system/solids/channel_flow.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -50,8 +51,9 @@ std::shared_ptr<Wall> ChannelFlow::wall(Phases* phases) const {
   return wall_;
 }
 
-std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry& particle) const {
-  if (wall_ && wall_->symmetry().order() == particle.order()) return wall_;
+std::shared_ptr<Wall> ChannelFlow::use_symmetry(Phases& phases, const surface::Symmetry& particle) const {
+  if (wall_ && std::ranges::is_permutation(wall_->symmetry().images(), particle.images(), {}, &surface::Image::signs, &surface::Image::signs))
+    return wall_;
   const Net* net[] = {&surface_->net};
   std::vector<surface::Image> images;
   for (const surface::Image& image : particle.images()) images.push_back(surface::image(surface_->space, net, image.signs).value());

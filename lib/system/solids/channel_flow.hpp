@@ -75,8 +75,9 @@ class ChannelFlow : public stokes::DuctFlow {
   /// communication between ranks. Collective.
   std::shared_ptr<Wall> wall(Phases* phases = nullptr) const;
 
-  /// Returns the wall operator for fields with the symmetries of the particle in the channel. From then on, all fields must have these symmetries.
-  std::shared_ptr<Wall> wall(Phases& phases, const surface::Symmetry& particle) const;
+  /// Replaces the wall operator by the operator for fields with the symmetries of the particle in the channel, and returns it. From then on, all
+  /// fields must have these symmetries. Collective.
+  std::shared_ptr<Wall> use_symmetry(Phases& phases, const surface::Symmetry& particle) const;
 
  private:
   EmptyChannel& kept() const;

@@ -1,6 +1,8 @@
 #include "system/solids/rigid_particles.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -105,17 +107,19 @@ RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& r
     body.rest = x.rowwise() - body.centre.transpose();
     if (particle.by_traction) continue;
     const auto alike = std::ranges::find_if(bodies_, [&](const Body& other) {
-      return other.self_correction && other.rest.rows() == body.rest.rows() && (other.rest - body.rest).norm() <= 1e-12 * body.rest.norm();
+      return other.double_layer && other.rest.rows() == body.rest.rows() && (other.rest - body.rest).norm() <= 1e-12 * body.rest.norm();
     });
-    body.self_correction = alike == bodies_.end() ? std::make_shared<const SelfCorrection>(*particle.space, x, quadrature)
-                                                  : alike->self_correction;
+    DoubleLayer dual;
+    dual.self_correction = alike == bodies_.end() ? std::make_shared<const SelfCorrection>(*particle.space, x, quadrature)
+                                                  : alike->dual().self_correction;
     const Eigen::SparseMatrix<double> mass = membrane::MassMatrix(*particle.space, 8).update(x);
-    body.weight = mass * Eigen::VectorXd::Ones(x.rows());
-    body.moment = mass * body.rest;
-    body.first = body.moment.colwise().sum().transpose();
-    body.second = body.moment.transpose() * body.rest;
-    const Mat3 turning = body.second.trace() * Mat3::Identity() - body.second;
-    body.inertia << body.weight.sum() * Mat3::Identity(), -cross(body.first), cross(body.first), turning;
+    dual.weight = mass * Eigen::VectorXd::Ones(x.rows());
+    dual.moment = mass * body.rest;
+    dual.first = dual.moment.colwise().sum().transpose();
+    dual.second = dual.moment.transpose() * body.rest;
+    const Mat3 turning = dual.second.trace() * Mat3::Identity() - dual.second;
+    dual.inertia << dual.weight.sum() * Mat3::Identity(), -cross(dual.first), cross(dual.first), turning;
+    body.double_layer = std::move(dual);
   }
 }
 
@@ -134,17 +138,22 @@ void RigidParticles::fit_to(Net& x) {
   }
 }
 
+const RigidParticles::DoubleLayer& RigidParticles::Body::dual() const {
+  if (!double_layer) throw std::logic_error("a rigid body whose unknown is the traction has no double layer");
+  return *double_layer;
+}
+
 RigidMotion RigidParticles::Body::with_integrals(const Vec3& f, const Vec3& t) const {
   Motions right;
   right << turn.transpose() * f, turn.transpose() * t;
-  const Motions motions = inertia.partialPivLu().solve(right);
+  const Motions motions = dual().inertia.partialPivLu().solve(right);
   return {turn * motions.head<3>(), turn * motions.tail<3>()};
 }
 
 RigidMotion RigidParticles::Body::mean(const Net& w) const {
   const auto rows = block.rows(w);
-  const Mat3 moments = turn * (moment.transpose() * rows);  // int r w
-  return with_integrals(rows.transpose() * weight, axial_vector(moments.transpose()));
+  const Mat3 moments = turn * (dual().moment.transpose() * rows);  // int r w
+  return with_integrals(rows.transpose() * dual().weight, axial_vector(moments.transpose()));
 }
 
 Net RigidParticles::Body::field(const RigidMotion& of) const { return rigid_velocity(rest * turn.transpose(), of, Vec3::Zero()); }
@@ -166,39 +175,43 @@ RigidDrive RigidParticles::Body::given() const {
 
 void RigidParticles::add_load(Net& load) const {
   for (const Body& body : bodies_)
-    if (const RigidDrive given = body.given(); !given.prescribed) body.block.rows(load) -= body.field(body.with_integrals(given.force, given.torque));
+    if (const RigidDrive given = body.given(); body.double_layer && !given.prescribed)
+      body.block.rows(load) -= body.field(body.with_integrals(given.force, given.torque));
 }
 
 Net RigidParticles::Body::single_layer_correction(const RigidMotion& load) const {
   const Vec3 a = turn.transpose() * load.velocity, b = turn.transpose() * load.angular_velocity;
+  const std::array<Net, 6>& loads = dual().self_correction->loads;
   Net sum = Net::Zero(rest.rows(), 3);
   for (std::size_t k = 0; k < 3; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    sum += a[i] * self_correction->loads[k] + b[i] * self_correction->loads[3 + k];
+    sum += a[i] * loads[k] + b[i] * loads[3 + k];
   }
   return sum * turn.transpose();
 }
 
 Net RigidParticles::Body::double_layer_correction(const Net& w) const {
-  if (self_correction->density.size() == 0) return Net::Zero(rest.rows(), 3);
+  const Eigen::MatrixXd& correction = dual().self_correction->density;
+  if (correction.size() == 0) return Net::Zero(rest.rows(), 3);
   const Net own = block.rows(w) * turn;
-  const Eigen::VectorXd sum = self_correction->density * flat(own);
+  const Eigen::VectorXd sum = correction * flat(own);
   return as_net(sum) * turn.transpose();
 }
 
 void RigidParticles::add_load_correction(Net& v) const {
   for (const Body& body : bodies_)
-    if (const RigidDrive given = body.given(); !given.prescribed)
+    if (const RigidDrive given = body.given(); body.double_layer && !given.prescribed)
       body.block.rows(v) += body.single_layer_correction(body.with_integrals(given.force, given.torque)) / body.viscosity;
 }
 
 void RigidParticles::subtract_prescribed(Net& v) const {
   for (const Body& body : bodies_)
-    if (body.rigid.prescribed) body.block.rows(v) -= body.field(body.given().motion);
+    if (body.double_layer && body.rigid.prescribed) body.block.rows(v) -= body.field(body.given().motion);
 }
 
 void RigidParticles::complete(const Net& w, Net& v) const {
   for (const Body& body : bodies_) {
+    if (!body.double_layer) continue;
     body.block.rows(v) += body.double_layer_correction(w) - Net(body.block.rows(w));
     const RigidMotion mean = body.mean(w);
     body.block.rows(v) += body.rigid.prescribed ? Net(body.single_layer_correction(mean) / body.radius) : body.field(mean);
@@ -208,7 +221,7 @@ void RigidParticles::complete(const Net& w, Net& v) const {
 Net RigidParticles::completing_load(const Net& w) const {
   Net load = Net::Zero(w.rows(), 3);
   for (const Body& body : bodies_)
-    if (body.rigid.prescribed) body.block.rows(load) = body.viscosity / body.radius * body.field(body.mean(w));
+    if (body.double_layer && body.rigid.prescribed) body.block.rows(load) = body.viscosity / body.radius * body.field(body.mean(w));
   return load;
 }
 
@@ -226,8 +239,9 @@ void RigidParticles::move_out_of_cell(std::span<const CellShift> shifts) {
   }
 }
 
-void RigidParticles::move(Net& v) {
+void RigidParticles::store_density(Net& v) {
   for (Body& body : bodies_) {
+    if (!body.double_layer) continue;
     const RigidMotion mean = body.mean(v);
     body.density = body.block.rows(v);
     const RigidDrive given = body.given();
@@ -235,7 +249,7 @@ void RigidParticles::move(Net& v) {
     if (body.rigid.prescribed) {
       Motions of_body, integrals;
       of_body << body.turn.transpose() * mean.velocity, body.turn.transpose() * mean.angular_velocity;
-      integrals = -body.viscosity / body.radius * body.inertia * of_body;
+      integrals = -body.viscosity / body.radius * body.dual().inertia * of_body;
       body.force = body.turn * integrals.head<3>(), body.torque = body.turn * integrals.tail<3>();
     }
     body.motion = body.rigid.prescribed ? given.motion : mean;
@@ -243,14 +257,14 @@ void RigidParticles::move(Net& v) {
   }
 }
 
-void RigidParticles::move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v) {
+void RigidParticles::set_motion(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v) {
   Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
   body.motion = motion, body.force = force, body.torque = torque;
   body.block.rows(v) = body.field(motion);
 }
 
 Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
-  const Body& of = body(p);
+  const DoubleLayer& of = body(p).dual();
   const Motions row = of.inertia.inverse().row(k).transpose();
   Net functional = of.weight * row.head<3>().transpose();
   for (Eigen::Index a = 0; a < functional.rows(); ++a) functional.row(a) += row.tail<3>().cross(Vec3(of.moment.row(a).transpose())).transpose();
@@ -261,8 +275,8 @@ Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
 Mat3 RigidParticles::load_moment(std::size_t p) const {
   const Body& of = body(p);
   const RigidMotion load = of.with_integrals(of.force, of.torque);
-  const Mat3 second = of.turn * of.second * of.turn.transpose();
-  return -(load.velocity * (of.turn * of.first).transpose() + cross(load.angular_velocity) * second);
+  const Mat3 second = of.turn * of.dual().second * of.turn.transpose();
+  return -(load.velocity * (of.turn * of.dual().first).transpose() + cross(load.angular_velocity) * second);
 }
 
 }  // namespace tanktread::coupling

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -61,7 +62,7 @@ class RigidParticles {
   /// directions in space.
   void push(const Net& work);
 
-  // The next six functions apply only to bodies whose unknown is the double-layer density w (2.23), not to bodies whose unknown is the traction.
+  // The next six functions skip bodies whose unknown is the traction instead of the double-layer density w (2.23).
   void add_load(Net& load) const;            ///< adds the load df (2.23) of the bodies whose force and torque are given, in the rows of these bodies
   void add_load_correction(Net& v) const;    ///< adds the correction (SelfCorrection) of the velocity -(1/mu) R^-1 A df of each body on itself
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
@@ -71,10 +72,10 @@ class RigidParticles {
                                               ///< load completing_load()
   Net completing_load(const Net& w) const;   ///< returns the load (mu/R_C) <w> of bodies with prescribed motion, with <w> the rigid motion nearest to
                                              ///< w (2.23); 0 in the rows of other particles
-  void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
+  void store_density(Net& v);                ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
   /// Sets the motion, force and torque of body p to values that were not computed from (2.23). Sets the rows of the body in v to the control values
   /// of this motion.
-  void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
+  void set_motion(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
   /// On a lattice, the solve for the velocities uses the image of each body in the cell. move_into_cell() must be called before the solve, so that
   /// prescribed velocities become the velocities of the images. move_out_of_cell() must be called after the solve. It moves the centres and
   /// velocities of the images back to those of the bodies. `shifts`: one per particle.
@@ -91,14 +92,16 @@ class RigidParticles {
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
   RigidDrive given(std::size_t p) const { return body(p).given(); }    ///< prescribed motion, or prescribed force and torque plus push()
-  Mat3 load_moment(std::size_t p) const;                               ///< int df r dGamma
+
+  // The members below throw std::logic_error if the unknown of the body is the traction.
+  Mat3 load_moment(std::size_t p) const;  ///< int df r dGamma
 
   /// Returns whether the bodies p and q have equal shapes and orientations at rest.
-  bool alike(std::size_t p, std::size_t q) const { return body(p).self_correction && body(p).self_correction == body(q).self_correction; }
+  bool alike(std::size_t p, std::size_t q) const { return body(p).dual().self_correction == body(q).dual().self_correction; }
 
   /// Returns the correction (SelfCorrection) of the velocity that the unit load k of body p induces on the body itself, in the axes of the body at
   /// rest.
-  const Net& self_correction(std::size_t p, int k) const { return body(p).self_correction->loads[static_cast<std::size_t>(k)]; }
+  const Net& self_correction(std::size_t p, int k) const { return body(p).dual().self_correction->loads[static_cast<std::size_t>(k)]; }
 
   /// Component k of the mean rigid motion <w> (velocity, then angular velocity) is a linear function of the body's rows of w. Returns its
   /// coefficients, three per row, for the body in its position at rest.
@@ -106,18 +109,22 @@ class RigidParticles {
 
  private:
   using Motions = Eigen::Matrix<double, 6, 1>;
+  /// Integrals over a body at rest whose unknown is the double-layer density w (2.23), and the correction of its layers.
+  struct DoubleLayer {
+    std::shared_ptr<const SelfCorrection> self_correction;  // shared by equal bodies
+    Eigen::VectorXd weight;                                 // int N_A dGamma
+    Net moment;                                             // int N_A r dGamma
+    Eigen::Matrix<double, 6, 6> inertia;  // entry (j, k): integral of u_j.u_k over the surface, with the velocity field u_k of unit motion k
+    Mat3 second;                          // int r r dGamma
+    Vec3 first;                           // int r dGamma
+  };
   struct Body {
     spline::Block block;
     RigidDrive rigid;
     Net pushed;  // rows of this body in the argument of push(); no rows if there are no such forces
     double radius = 0, viscosity = 0;
     Net rest;             // control net in the reference orientation, relative to the centre of volume
-    std::shared_ptr<const SelfCorrection> self_correction;  // shared by equal bodies
-    Eigen::VectorXd weight;              // int N_A dGamma
-    Net moment;                          // int N_A r dGamma
-    Eigen::Matrix<double, 6, 6> inertia;  // entry (j, k): integral of u_j.u_k over the surface, with the velocity field u_k of unit motion k
-    Mat3 second;                          // int r r dGamma
-    Vec3 first;                           // int r dGamma
+    std::optional<DoubleLayer> double_layer;  // set if the unknown is the density w
     Vec3 rest_centre, centre;
     Vec3 cell_velocity = Vec3::Zero();  // velocity of the body minus the velocity of its image in the cell
     Mat3 turn = Mat3::Identity();
@@ -125,6 +132,7 @@ class RigidParticles {
     RigidMotion motion;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 
+    const DoubleLayer& dual() const;  // throws std::logic_error if double_layer is not set
     RigidDrive given() const;
     RigidMotion mean(const Net& w) const;      // rigid motion <w> of (2.23): least-squares fit over the body. `w`: net of all particles
     RigidMotion with_integrals(const Vec3& force, const Vec3& torque) const;  // a + b x r with these integrals

@@ -1,6 +1,7 @@
 #include "system/solids/rigid_tractions.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include <Eigen/LU>
@@ -92,8 +93,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed
       collocation_(collocation_matrix(space)),
       mass_(space, 8),  // mass matrix by eight Gauss points per direction, because the area element is not a polynomial
       krylov_(parameters.solvers.of(parameters.solvers.velocity)),
-      tolerance_(parameters.solvers.tolerance),
-      bodies_(particles_.size()) {
+      tolerance_(parameters.solvers.tolerance) {
   if (walls.tube) walls.tube->particles().set_reference(unstressed);
 }
 
@@ -104,6 +104,7 @@ void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
 
 /// Returns B y (see Surroundings::product), the left-hand side of the system for the unknowns y, including the regularising term of (2.10).
 Net RigidTractions::product(const Net& y) {
+  assert(around_ || !walls_.solids);  // only Surroundings::product contains the response of plates and posts
   const Net caused = repeats_ ? Net() : layer_.velocity(y);
   if (!around_) return walls_.tube ? Net(caused + walls_.tube->respond(load(y)).velocity) : caused;
   Net all = around_->product(y, caused);
@@ -156,17 +157,17 @@ void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std:
 }
 
 /// Returns the collocation-error corrections (2.11) for the unknowns y. Each column of z is a force density; its correction is its work in the
-/// residual velocity, computed from the weighted residual `weighted_residual_`. In a channel the residual on the wall is included (2.42).
-Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z) {
-  Eigen::VectorXd work = z.transpose() * weighted_residual_;
+/// residual velocity, computed from Solution::residual. In a channel the residual on the wall is included (2.42).
+Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z, const Eigen::VectorXd& residual) {
+  Eigen::VectorXd work = z.transpose() * residual;
   if (!walls_.tube || !walls_.tube->fixed() || !all_rigid()) return work;
-  const Tube::WallResidual residual = walls_.tube->wall_residual(load(y));
-  for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(residual, walls_.tube->respond(load(as_net(z.col(k)))));
+  const Tube::WallResidual on_wall = walls_.tube->wall_residual(load(y));
+  for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(on_wall, walls_.tube->respond(load(as_net(z.col(k)))));
   return work;
 }
 
-void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const RigidDrive> driven, const stokes::AmbientFlow& flow,
-                           std::optional<Surroundings> around) {
+const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const RigidDrive> driven,
+                                                      const stokes::AmbientFlow& flow, std::optional<Surroundings> around) {
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   set_shape(x, centres, std::move(around));
   const bool has_pressure = walls_.tube && all_rigid(), driven_by_pressure = flow.duct() && flow.amplitude() != 0;
@@ -197,29 +198,31 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::VectorXd moving = fields * motion;
   for (const Particle& body : particles_) body.block.rows(v) = body.block.rows(as_net(moving));
   const Net between = flow.velocities(residual_.points().values * x);
-  weighted_residual_ = flat(residual_.integrated(x, load(unknowns), v, between, walls_));
-  const Eigen::VectorXd correction = corrections(unknowns, of_all), change = freed(free, resistance, -correction.head(m));
+  solution_ = {};
+  solution_.shape = x, solution_.residual = flat(residual_.integrated(x, load(unknowns), v, between, walls_));
+  const Eigen::VectorXd correction = corrections(unknowns, of_all, solution_.residual), change = freed(free, resistance, -correction.head(m));
   motion += change;
   y += z * change;
-  unknowns_ = completed(y);
-  const Net f = force_densities(unknowns_);
+  solution_.unknowns = completed(y);
+  const Net f = force_densities(solution_.unknowns);
   if (has_pressure) {
     const double unit = apart ? 1 : flow.amplitude();
     const Net of_duct = apart ? walls_.tube->flow().velocities(residual_.points().values * x) : Net(between / unit);
-    pressure_correction_ = walls_.tube->pressure_correction(residual_.points(), of_duct, f, correction[m + apart] / unit);
+    solution_.pressure_correction = walls_.tube->pressure_correction(residual_.points(), of_duct, f, correction[m + apart] / unit);
   }
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);
-    bodies_[p] = integrals(p, f);
-    bodies_[p].motion = {motion.segment<3>(first), motion.segment<3>(first + 3)};
-    bodies_[p].force += correction.segment<3>(first), bodies_[p].torque += correction.segment<3>(first + 3);
+    SolvedBody& body = solution_.bodies.emplace_back(integrals(p, f));
+    body.motion = {motion.segment<3>(first), motion.segment<3>(first + 3)};
+    body.force += correction.segment<3>(first), body.torque += correction.segment<3>(first + 3);
   }
+  return solution_;
 }
 
 double RigidTractions::pressure_correction_of(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, const Net& z) {
   const Net places = residual_.points().values * x;
-  weighted_residual_ = flat(residual_.integrated(x, load(f), v, flow.velocities(places), walls_));
-  return walls_.tube->pressure_correction(residual_.points(), walls_.tube->flow().velocities(places), f, corrections(f, flat(z))[0]);
+  const Eigen::VectorXd residual = flat(residual_.integrated(x, load(f), v, flow.velocities(places), walls_));
+  return walls_.tube->pressure_correction(residual_.points(), walls_.tube->flow().velocities(places), f, corrections(f, flat(z), residual)[0]);
 }
 
 Net RigidTractions::density(const Net& velocities) { return as_net(densities(flat(velocities))); }
@@ -250,11 +253,12 @@ bool RigidTractions::inside(const Net& x) const {
 }
 
 Mat3 RigidTractions::moment(std::size_t p) {
+  assert(same(solution_.shape, x_));
   reports_.clear();
-  if (walls_.tube) return bodies_[p].moment;
-  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(weighted_residual_.size(), n_unit_strains);
+  if (walls_.tube) return solution_.bodies[p].moment;
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(solution_.residual.size(), n_unit_strains);
   set_unit_strains(sites_, particles_[p].block, centres_[p], velocities);
-  return bodies_[p].moment + strain_of_products(densities(velocities).transpose() * weighted_residual_);
+  return solution_.bodies[p].moment + strain_of_products(densities(velocities).transpose() * solution_.residual);
 }
 
 int RigidTractions::solve_iteratively(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns) {

@@ -79,11 +79,21 @@ class RigidTractions {
   /// interactions with deformable particles and with images on a lattice; not set if there are neither. Collective.
   void set_shape(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
 
+  /// Solution of (2.40) for all bodies at the net `shape`.
+  struct Solution {
+    Net shape;
+    std::vector<SolvedBody> bodies;  ///< in the order of the particles; the moments are not corrected for the collocation error, see moment()
+    Net unknowns;                    ///< control values of f on bodies, and of v on deformable particles
+    double pressure_correction = 0;  ///< collocation-error correction of the pressure drop (2.7)
+    Eigen::VectorXd residual;        ///< int N_A (v - v_inf - (1/mu) A f) dGamma, flattened: residual of (2.40) that (2.11) uses
+  };
+
   /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles at the net x. `driven`: prescribed force
-  /// and torque, or prescribed motion, of each body. `flow`: ambient flow. `centres`, `around`: as for set_shape(). Results are kept until the next
-  /// call. Collective.
-  void solve(const Net& x, std::span<const Vec3> centres, std::span<const RigidDrive> driven, const stokes::AmbientFlow& flow,
-             std::optional<Surroundings> around = {});
+  /// and torque, or prescribed motion, of each body. `flow`: ambient flow. `centres`, `around`: as for set_shape(). Returns solution(). Collective.
+  const Solution& solve(const Net& x, std::span<const Vec3> centres, std::span<const RigidDrive> driven, const stokes::AmbientFlow& flow,
+                        std::optional<Surroundings> around = {});
+
+  const Solution& solution() const { return solution_; }  ///< returns the solution that solve() computed last
 
   /// Returns the force densities, shape (N, 3), that cause these velocities at the collocation sites of the net passed to set_shape() last. Neither
   /// motions of the bodies nor corrections of the collocation error are included. All particles must be bodies. Collective.
@@ -105,17 +115,11 @@ class RigidTractions {
   /// Returns whether the bodies with the net x are inside the tube and in the medium. If there is a tube, call Tube::set_shape(x) before.
   bool inside(const Net& x) const;
 
-  /// Returns the results for the bodies in the order of the particles. Their moments are not corrected for the collocation
-  /// error; moment() returns corrected moments.
-  const std::vector<SolvedBody>& bodies() const { return bodies_; }
-
-  /// Returns int f r dGamma of body p for the latest solve. Unless there is a tube, its symmetric traceless part is corrected for the collocation
-  /// error. This takes five additional solves, one for each unit strain. Collective.
+  /// Returns int f r dGamma of body p for solution(), whose net must be the net set last. Unless there is a tube, its symmetric traceless
+  /// part is corrected for the collocation error. This takes five additional solves, one for each unit strain. Collective.
   Mat3 moment(std::size_t p);
 
-  bool all_rigid() const;                            ///< returns whether all particles are rigid bodies
-  const Net& unknowns() const { return unknowns_; }  ///< control values of f on bodies, and of v on deformable particles
-  double pressure_correction() const { return pressure_correction_; }   ///< collocation-error correction of the pressure drop (2.7)
+  bool all_rigid() const;  ///< returns whether all particles are rigid bodies
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
   /// Throws RunFailure if an iterative solve in `reports()` did not converge. Otherwise returns the number of iterations of all these solves.
   int converged_iterations() const;
@@ -133,7 +137,7 @@ class RigidTractions {
   Net force_densities(const Net& y) const;
   Net completed(const Eigen::VectorXd& y);
   Net load(const Net& y) const { return around_ ? around_->load(y) : Net(-y); }
-  Eigen::VectorXd corrections(const Net& y, const Eigen::MatrixXd& z);
+  Eigen::VectorXd corrections(const Net& y, const Eigen::MatrixXd& z, const Eigen::VectorXd& residual);
 
   std::vector<Particle> particles_;  // the bodies
   FluidWalls walls_;
@@ -147,11 +151,8 @@ class RigidTractions {
   double tolerance_;
   std::optional<Surroundings> around_;  // surroundings passed to set_shape() last
   Net x_, sites_;                       // x_: net passed to set_shape() last. sites_: positions of the collocation sites on this net
-  Eigen::VectorXd weighted_residual_;   // int N_A (v - v_inf - (1/mu) A f) dGamma for the latest f: residual of (2.40), used by (2.11)
   std::vector<Vec3> centres_;
-  std::vector<SolvedBody> bodies_;
-  Net unknowns_;
-  double pressure_correction_ = 0;
+  Solution solution_;
   std::vector<SolveReport> reports_;
 };
 

@@ -1,6 +1,7 @@
 #include "system/solids/solids.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "surface/geometry.hpp"
@@ -98,6 +99,12 @@ void Solids::reach(const Net& x) {
   make_layer();
 }
 
+bool Solids::reaches(const Net& at) const {
+  if (cell().n() == 3 || at.rows() == 0) return true;
+  const auto [low, high] = cell().range(at);
+  return low[2] >= reached_[0][2] && high[2] <= reached_[1][2];
+}
+
 bool Solids::outside(const Net& at) const {
   for (const auto& outside : outside_)
     for (const auto row : at.rowwise())
@@ -170,6 +177,7 @@ Solids::Flow Solids::solve(const Net& u, const Vec3& force) const {
 }
 
 void Solids::velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept) {
+  assert(reaches(at(rows, Eigen::all)));
   layer_->apply(on_space(flow.force), at, rows, u, kept);
   for (const int i : rows) u.row(i) = u.row(i) / viscosity() + flow.drift.transpose();
 }

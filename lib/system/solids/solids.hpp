@@ -64,7 +64,7 @@ class Solids {
   };
 
   /// Sets the range of heights above a plate in which `velocity_at` and `layer` are accurate, so that the range contains the solids and the points x.
-  /// Must be called before `velocity_at` and `layer`. Collective.
+  /// Must be called before `velocity_at` and `layer`, again after another system that shares this object has called it. x must be equal on all ranks.
   void reach(const Net& x);
 
   /// Returns whether all points `at` are outside of all solids (Solid::outside).
@@ -103,6 +103,7 @@ class Solids {
   void factor(stokes::Layer& on_itself);
   Eigen::MatrixXd rows(stokes::Layer& on_itself, std::span<const int> sites) const;
   void make_layer();
+  bool reaches(const Net& at) const;  // whether `velocity_at` is accurate at these points
 
   surface::SolidSurface surface_;
   Parameters parameters_;

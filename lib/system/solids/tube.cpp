@@ -18,7 +18,7 @@ Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particl
     : flow_(flow), phases_(phases) {
   {
     const auto clock = phases_.time("wall assembly");
-    wall_ = flow->wall(phases_, parameters.symmetry);
+    wall_ = flow->use_symmetry(phases_, parameters.symmetry);
     flow->pressure_drop();
   }
   particle_ = std::make_unique<ParticleData>(particle, parameters, *wall_, phases_);

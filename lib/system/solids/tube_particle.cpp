@@ -52,6 +52,7 @@ void Tube::ParticleData::set_shape(const Net& x, double origin, const stokes::Du
     for (const int i : own) own_targets.push_back(n_on_wall + i);
   }
   prepared_targets = sources.prepared(target_points, own_targets, n_on_wall);
+  wall_on_sites.reset();
   if (sources.has_double()) wall_on_sites = wall.layer().near(sites(), own);
   if (!periodic) inlet = wall.inlet().integral(sites()) / parameters.viscosity;
   weigh_pressure(flow, !wall.surface().channel);

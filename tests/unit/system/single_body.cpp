@@ -102,8 +102,8 @@ TEST(SingleBody, IsCorrectedByTheReciprocalTheorem) {
   at_rest.type = "quiescent";
   s.tractions->solve(s.rest, {&centre, 1}, {&moving, 1}, stokes::AmbientFlow(at_rest));
   const Vec3 force = exact.force(viscosity, u);
-  const double plain = (s.integrals(s.tractions->unknowns()).force - force).norm() / force.norm();
-  const double corrected = (s.tractions->bodies().front().force - force).norm() / force.norm();
+  const double plain = (s.integrals(s.tractions->solution().unknowns).force - force).norm() / force.norm();
+  const double corrected = (s.tractions->solution().bodies.front().force - force).norm() / force.norm();
   EXPECT_LT(corrected, 2e-7);  // relative volume error of the fitted surface: 2e-7
   EXPECT_LT(corrected, plain / 20);
 }
