@@ -62,8 +62,7 @@ class Layer {
 
   /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again, and before
   /// set_shape(), when the cell deforms. With three periods, a double layer includes an additional pressure linear in x. The double layer then does
-  /// not change the mean velocity
-  /// over the cell, including the volume inside the surfaces:
+  /// not change the mean velocity over the cell, including the volume inside the surfaces:
   ///
   ///   T_ijk = T^P_ijk - (8 pi/V) delta_jk (x - x_p)_i,   x_p a point of surface p.                                              (2.28)
   ///

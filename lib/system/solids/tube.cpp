@@ -55,14 +55,20 @@ void Tube::set_shape(const Net& x, std::optional<double> origin) {
 }
 
 double Tube::pressure_of(const Net& f, const Net& v) {
-  const bool by_flow = fixed() && particle_->sources.has_double() && v.size() > 0;
-  return dot(particle_->pressure_of_load, f) + (by_flow ? pressure_of_velocity(v, particle_on_wall({}, v)) : dot(particle_->pressure_of_velocity, v));
+  return dot(particle_->weights_of_load, f) + pressure_of_velocity(v);
 }
 
-/// Returns the pressure drop for which the disturbance caused by v has zero net flow rate. `on_wall`: velocity of this disturbance at the wall.
-double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
+/// Returns the contribution of v to dp (2.7), 0 if lambda = 1. In a channel, it is the pressure drop for which the disturbance caused by v has zero
+/// net flow rate. `on_wall`: velocity of this disturbance at the wall; if null, it is computed when needed.
+double Tube::pressure_of_velocity(const Net& v, const Net* on_wall) {
+  if (v.size() == 0 || !particle_->sources.has_double()) return 0;
+  if (!fixed()) return dot(particle_->weights_of_velocity, v);
+  if (!on_wall) {
+    const Net caused = particle_on_wall({}, v);
+    return pressure_of_velocity(v, &caused);
+  }
   weigh_flow();
-  const double taken_away = wall_->iterates() ? dot(flow_weights_, wall_->solve(on_wall)) : dot(flow_of_wall_, on_wall);
+  const double taken_away = wall_->iterates() ? dot(flow_weights_, wall_->solve(*on_wall)) : dot(flow_of_wall_, *on_wall);
   return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->sources.strength(v))) / flow_of_pressure_;
 }
 
@@ -101,19 +107,17 @@ Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correct
   const auto clock = phases_.time("wall");
   Response response;
   response.pressure_drop = pressure_of(f) + pressure_correction;
-  const bool has_velocity = v.size() > 0 && particle_->sources.has_double(), by_flow = has_velocity && fixed();
-  if (has_velocity && !fixed()) response.pressure_drop += dot(particle_->pressure_of_velocity, v);
   if (cell()) {
     ParticleData::Cause cause = particle_->cause(f, v);
     const Net on_wall = wall_->points().collocated(cause.at_wall);
-    if (by_flow) response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? particle_on_wall({}, v) : on_wall);
+    response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? nullptr : &on_wall);
     response.wall_traction = solve_wall(on_wall);
     response.velocity = on_particle(std::move(cause.at_sites));
     response.load = f, response.particle_velocity = v;
   } else {
     Net on_wall = Net::Zero(wall_->points().sites().rows(), 3);
-    if (has_velocity) on_wall += particle_on_wall({}, v);
-    if (by_flow) response.pressure_drop += pressure_of_velocity(v, on_wall);
+    if (v.size() > 0 && particle_->sources.has_double()) on_wall += particle_on_wall({}, v);
+    response.pressure_drop += pressure_of_velocity(v, &on_wall);
     if (f.size() > 0) on_wall += particle_on_wall(f);
     response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->traction_per_pressure_drop();
   }
@@ -161,13 +165,13 @@ void Tube::freeze() {
   particle_->freeze(*wall_, by_flow ? Net(flow_of_wall_ / flow_of_pressure_) : Net());
   if (!by_flow) return;
   const Net& through_inlet = particle_->flow_of_strength(*wall_);
-  particle_->frozen.pressure_of_velocity -= particle_->sources.strength(through_inlet) / flow_of_pressure_;
+  particle_->frozen.weights_of_velocity -= particle_->sources.strength(through_inlet) / flow_of_pressure_;
 }
 
 Net Tube::frozen_response(const Net& f, const Net& v) {
   if (wall_->iterates()) return Net::Zero(particle_->sites().rows(), 3);
   const ParticleData::Frozen& frozen = particle_->frozen;
-  const double pressure = dot(frozen.pressure_of_load, f) + dot(frozen.pressure_of_velocity, v);
+  const double pressure = dot(frozen.weights_of_load, f) + dot(frozen.weights_of_velocity, v);
   const auto add = [](double factor, const FrozenOperator& of, const Net& strength, Net& to) {
     Net part = Net::Zero(to.rows(), 3);
     of.apply(strength, part);

@@ -179,7 +179,7 @@ class Tube {
   double flow_rate_reduction(double pressure_drop) const;
   Net pressure_driven_velocity(const Net& at) const;
   Net on_particle(const Net& own) const;
-  double pressure_of_velocity(const Net& v, const Net& on_wall);
+  double pressure_of_velocity(const Net& v, const Net* on_wall = nullptr);
   void weigh_flow();
 
   std::shared_ptr<const stokes::DuctFlow> flow_;

@@ -95,16 +95,16 @@ void Tube::ParticleData::weigh_pressure(const stokes::DuctFlow& flow, bool strai
     interpolated_ambient = from_sites.solve(ambient);
     layer.values(interpolated_ambient, flow_at);
   }
-  pressure_of_load = Net::Zero(sites().rows(), 3);
+  weights_of_load = Net::Zero(sites().rows(), 3);
   for (int c = 0; c < (straight ? 1 : 3); ++c) {
     for (std::size_t k = 0; k < n; ++k) weighted[k] = layer.weights()[k] * flow_at[c][k];
-    pressure_of_load.col(c) = layer.moments(weighted) / flow.flow_rate();
+    weights_of_load.col(c) = layer.moments(weighted) / flow.flow_rate();
   }
   if (!sources.has_double() || !straight) return;
   set_columns(flow.tractions(as_net(sources.double_layer->nodes()), as_net(sources.double_layer->normals())), flow_at);
-  pressure_of_velocity.resize(sites().rows(), 3);
+  weights_of_velocity.resize(sites().rows(), 3);
   for (int c = 0; c < 3; ++c)
-    pressure_of_velocity.col(c) = sources.contrasts().cwiseProduct(sources.double_layer->moments(flow_at[c])) / -flow.flow_rate();
+    weights_of_velocity.col(c) = sources.contrasts().cwiseProduct(sources.double_layer->moments(flow_at[c])) / -flow.flow_rate();
 }
 
 /// Returns the duct flow at the sites. In a symmetric scene the flow is evaluated at the fundamental points only and completed by symmetry.
@@ -140,8 +140,8 @@ void Tube::ParticleData::freeze(Wall& wall, const Net& pressure_of_wall) {
     wall.layer().assemble(sites(), targets, rows);
     wall.from_space(rows);
   });
-  frozen.inlet = inlet, frozen.ambient = ambient, frozen.pressure_of_load = pressure_of_load, frozen.pressure_of_velocity = pressure_of_velocity;
-  if (pressure_of_wall.size() > 0) frozen.pressure_of_velocity = sources.contrasts().asDiagonal() * weights;
+  frozen.inlet = inlet, frozen.ambient = ambient, frozen.weights_of_load = weights_of_load, frozen.weights_of_velocity = weights_of_velocity;
+  if (pressure_of_wall.size() > 0) frozen.weights_of_velocity = sources.contrasts().asDiagonal() * weights;
 }
 
 }  // namespace tanktread::coupling
