@@ -31,8 +31,8 @@
 #include "record/results.hpp"
 #include "scene/scene.hpp"
 #include "scene/series/series.hpp"
-#include "system/agreement.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/agreement.hpp"
+#include "system/parallel/ranks.hpp"
 #include "system/solvers/options.hpp"
 
 namespace tanktread {

@@ -3,7 +3,7 @@
 #include <csignal>
 
 #include "motion/guarded.hpp"
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 
 namespace tanktread {
 

@@ -21,7 +21,7 @@
 #include "scene/particles/warnings.hpp"
 #include "scene/plane_wall.hpp"
 #include "scene/tube.hpp"
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 #include "system/solids/shared_walls.hpp"
 
 namespace tanktread {

@@ -23,7 +23,7 @@
 #include "scene/searches/steady_system.hpp"
 #include "scene/searches/system_pool.hpp"
 #include "scene/tube.hpp"
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 
 namespace tanktread {
 

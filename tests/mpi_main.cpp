@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 
 int main(int argc, char** argv) {
   const tanktread::coupling::Session session(&argc, &argv);

@@ -9,7 +9,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "motion/guarded.hpp"
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 
 namespace tanktread::accuracy {
 

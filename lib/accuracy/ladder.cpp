@@ -13,8 +13,8 @@
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
 #include "record/files/file.hpp"
-#include "system/agreement.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/agreement.hpp"
+#include "system/parallel/ranks.hpp"
 
 namespace tanktread::accuracy {
 

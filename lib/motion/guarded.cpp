@@ -3,7 +3,7 @@
 #include <new>
 
 #include "base/errors.hpp"
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 
 namespace tanktread::motion {
 

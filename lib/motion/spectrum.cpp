@@ -8,8 +8,8 @@
 
 #include "base/errors.hpp"
 #include "deck/section.hpp"
-#include "system/agreement.hpp"
-#include "system/solids/rigid_motion.hpp"
+#include "system/parallel/agreement.hpp"
+#include "system/solids/bodies/rigid_motion.hpp"
 #include "system/solvers/eigenvalues.hpp"
 
 namespace tanktread::motion {

@@ -4,7 +4,7 @@
 
 #include "record/files/file.hpp"
 #include "stokes/flow/duct_flow.hpp"
-#include "system/solids/channel_flow.hpp"
+#include "system/solids/ducts/channel_flow.hpp"
 
 namespace tanktread {
 

@@ -14,7 +14,7 @@
 #include "scene/solids.hpp"
 #include "scene/tube.hpp"
 #include "stokes/layer_surface.hpp"
-#include "system/solids/wall.hpp"
+#include "system/solids/ducts/wall.hpp"
 #include "system/solvers/frozen_operator.hpp"
 
 namespace tanktread {

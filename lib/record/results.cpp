@@ -23,7 +23,7 @@
 #include "record/numbers.hpp"
 #include "scene/series/series.hpp"
 #include "spline/iga.hpp"
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 
 namespace tanktread {
 

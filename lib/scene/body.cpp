@@ -21,7 +21,7 @@
 #include "spline/extraction.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
-#include "system/collocation.hpp"
+#include "system/targets/collocation.hpp"
 
 namespace tanktread {
 

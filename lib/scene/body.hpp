@@ -15,7 +15,7 @@
 #include "surface/symmetry.hpp"
 #include "surface/walls/tube_wall.hpp"
 #include "system/capsule.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 #include "system/symmetry.hpp"
 
 namespace tanktread {

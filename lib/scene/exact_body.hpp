@@ -7,7 +7,7 @@
 #include "scene/scene.hpp"
 #include "spline/space.hpp"
 #include "stokes/flow/ellipsoid.hpp"
-#include "system/solids/rigid_body.hpp"
+#include "system/solids/bodies/rigid_body.hpp"
 
 namespace tanktread {
 

@@ -10,7 +10,7 @@
 #include "scene/scene.hpp"
 #include "scene/tube.hpp"
 #include "surface/walls/channel.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 #include "system/solvers/frozen_operator.hpp"
 
 namespace tanktread {

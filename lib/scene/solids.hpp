@@ -10,7 +10,7 @@
 #include "base/timing.hpp"
 #include "scene/member.hpp"
 #include "scene/scene.hpp"
-#include "system/solids/solid_response.hpp"
+#include "system/solids/plates/solid_response.hpp"
 
 namespace tanktread {
 

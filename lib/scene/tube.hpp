@@ -6,7 +6,7 @@
 
 #include "scene/body.hpp"
 #include "scene/series/diagnostics.hpp"
-#include "system/solids/tube.hpp"
+#include "system/solids/ducts/tube.hpp"
 
 namespace tanktread {
 

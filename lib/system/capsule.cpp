@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "system/solids/rigid_tractions.hpp"
+#include "system/solids/bodies/rigid_tractions.hpp"
 #include "system/symmetry.hpp"
 
 namespace tanktread::coupling {
@@ -137,7 +137,7 @@ Net Capsule::solve_second_kind(Evaluation& e, const Net& x, const Net& guess, Vo
   if (rigid.empty()) return v;
   e.unknowns_ = symmetric(v);
   e.load_ += rigid.completing_load(v);
-  rigid.move(v);
+  rigid.store_density(v);
   return v;
 }
 

@@ -8,7 +8,7 @@
 #include "stokes/flow/ambient_flow.hpp"
 #include "system/interface_motion.hpp"
 #include "system/membranes.hpp"
-#include "system/solids/tube.hpp"
+#include "system/solids/ducts/tube.hpp"
 #include "system/solvers/frozen_layers.hpp"
 #include "system/solvers/secants.hpp"
 #include "system/volumes.hpp"

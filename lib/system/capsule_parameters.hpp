@@ -11,7 +11,7 @@
 #include "stokes/medium/periodic_images.hpp"
 #include "surface/symmetry.hpp"
 #include "system/particle.hpp"
-#include "system/solids/solid_response.hpp"
+#include "system/solids/plates/solid_response.hpp"
 #include "system/solvers/options.hpp"
 #include "system/volume_options.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "system/capsule.hpp"
-#include "system/solids/rigid_tractions.hpp"
+#include "system/solids/bodies/rigid_tractions.hpp"
 
 namespace tanktread::coupling {
 

@@ -8,7 +8,7 @@
 
 #include "base/formatted.hpp"
 #include "system/capsule.hpp"
-#include "system/solids/rigid_tractions.hpp"
+#include "system/solids/bodies/rigid_tractions.hpp"
 #include "system/solvers/tube_system.hpp"
 
 namespace tanktread::coupling {

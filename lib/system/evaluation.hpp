@@ -7,9 +7,9 @@
 
 #include "base/types.hpp"
 #include "system/interface_motion.hpp"
-#include "system/solids/rigid_particles.hpp"
-#include "system/solids/solids.hpp"
-#include "system/solids/tube.hpp"
+#include "system/solids/bodies/rigid_particles.hpp"
+#include "system/solids/plates/solids.hpp"
+#include "system/solids/ducts/tube.hpp"
 
 namespace tanktread::coupling {
 

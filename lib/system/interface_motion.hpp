@@ -10,7 +10,7 @@
 #include "base/types.hpp"
 #include "membrane/membrane.hpp"
 #include "system/motion_of_shape.hpp"
-#include "system/particle_layers.hpp"
+#include "system/targets/particle_layers.hpp"
 
 namespace tanktread::coupling {
 

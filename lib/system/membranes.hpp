@@ -9,7 +9,7 @@
 #include "membrane/mass_solver.hpp"
 #include "membrane/membrane.hpp"
 #include "system/capsule_parameters.hpp"
-#include "system/layout.hpp"
+#include "system/parallel/layout.hpp"
 
 namespace tanktread::coupling {
 

@@ -5,8 +5,8 @@
 #include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 #include "surface/geometry.hpp"
-#include "system/collocation.hpp"
-#include "system/solids/rigid_residual.hpp"
+#include "system/targets/collocation.hpp"
+#include "system/solids/bodies/rigid_residual.hpp"
 
 namespace tanktread::coupling {
 

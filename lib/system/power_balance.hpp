@@ -9,8 +9,8 @@
 #include "base/types.hpp"
 #include "membrane/mass.hpp"
 #include "system/capsule.hpp"
-#include "system/layer_pair.hpp"
-#include "system/ranks.hpp"
+#include "system/targets/layer_pair.hpp"
+#include "system/parallel/ranks.hpp"
 
 namespace tanktread::coupling {
 

@@ -5,10 +5,10 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-#include "system/agreement.hpp"
-#include "system/collocation.hpp"
+#include "system/parallel/agreement.hpp"
+#include "system/targets/collocation.hpp"
 #include "system/interface_motion.hpp"
-#include "system/solids/rigid_motion.hpp"
+#include "system/solids/bodies/rigid_motion.hpp"
 
 namespace tanktread::coupling {
 

@@ -13,7 +13,7 @@
 #include "system/coupled_motion.hpp"
 #include "system/dynamics.hpp"
 #include "system/particle.hpp"
-#include "system/velocity_projection.hpp"
+#include "system/targets/velocity_projection.hpp"
 
 namespace tanktread::coupling {
 

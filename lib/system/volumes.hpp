@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "surface/geometry.hpp"
-#include "system/layout.hpp"
+#include "system/parallel/layout.hpp"
 #include "system/particle.hpp"
 
 namespace tanktread::coupling {

@@ -17,7 +17,7 @@
 #include "stokes/kernels/far_kernel.hpp"
 #include "surface/shapes.hpp"
 #include "system/capsule.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
 #include "tests/layers.hpp"
 

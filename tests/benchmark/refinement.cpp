@@ -15,7 +15,7 @@
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/shapes.hpp"
 #include "system/capsule.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
 
 namespace {

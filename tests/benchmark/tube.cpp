@@ -12,7 +12,7 @@
 #include "surface/shapes.hpp"
 #include "surface/walls/tube_wall.hpp"
 #include "system/capsule.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
 
 namespace {

@@ -10,7 +10,7 @@
 #include "membrane/symmetric_solver.hpp"
 #include "quadrature/gauss.hpp"
 #include "surface/geometry.hpp"
-#include "system/collocation.hpp"
+#include "system/targets/collocation.hpp"
 #include "tests/evolution.hpp"
 
 namespace tanktread {

@@ -8,7 +8,7 @@
 
 #include "deck/document.hpp"
 #include "scene/particles/particle_system.hpp"
-#include "system/solids/rigid_body.hpp"
+#include "system/solids/bodies/rigid_body.hpp"
 
 namespace tanktread {
 namespace jeffery_test {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "surface/geometry.hpp"
-#include "system/collocation.hpp"
+#include "system/targets/collocation.hpp"
 #include "tests/layers.hpp"
 #include "tests/verify/tube_scene.hpp"
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
-#include "system/collocation.hpp"
+#include "system/targets/collocation.hpp"
 #include "system/solvers/krylov.hpp"
 #include "tests/layers.hpp"
 #include "tests/verify/tube_scene.hpp"

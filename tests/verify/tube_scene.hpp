@@ -11,10 +11,10 @@
 #include "spline/t_mesh.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/shapes.hpp"
-#include "system/ranks.hpp"
-#include "system/solids/rigid_body.hpp"
-#include "system/solids/rigid_tractions.hpp"
-#include "system/solids/tube.hpp"
+#include "system/parallel/ranks.hpp"
+#include "system/solids/bodies/rigid_body.hpp"
+#include "system/solids/bodies/rigid_tractions.hpp"
+#include "system/solids/ducts/tube.hpp"
 
 namespace tanktread {
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "stokes/flow/duct_boundary.hpp"
-#include "system/solids/wall.hpp"
+#include "system/solids/ducts/wall.hpp"
 #include "tests/verify/tube_scene.hpp"
 
 namespace tanktread {

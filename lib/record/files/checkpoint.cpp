@@ -13,7 +13,7 @@
 #include "base/formatted.hpp"
 #include "record/files/file.hpp"
 #include "record/files/hdf.hpp"
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 
 namespace tanktread::output {
 

@@ -16,7 +16,7 @@
 #include "surface/geometry.hpp"
 #include "surface/metrics.hpp"
 #include "surface/shapes.hpp"
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 
 namespace tanktread {
 

@@ -7,7 +7,7 @@
 #include "scene/plane_wall.hpp"
 #include "scene/tube.hpp"
 #include "surface/geometry.hpp"
-#include "system/solids/rigid_body.hpp"
+#include "system/solids/bodies/rigid_body.hpp"
 
 namespace tanktread {
 

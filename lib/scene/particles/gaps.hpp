@@ -9,7 +9,7 @@
 #include "scene/series/diagnostics.hpp"
 #include "surface/walls/tube_wall.hpp"
 #include "system/contact.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 
 namespace tanktread {
 

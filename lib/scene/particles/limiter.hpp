@@ -11,7 +11,7 @@
 #include "scene/particles/gaps.hpp"
 #include "system/capsule.hpp"
 #include "system/contact.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 
 namespace tanktread {
 

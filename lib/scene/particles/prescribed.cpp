@@ -3,7 +3,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "surface/geometry.hpp"
-#include "system/solids/rigid_body.hpp"
+#include "system/solids/bodies/rigid_body.hpp"
 
 namespace tanktread {
 

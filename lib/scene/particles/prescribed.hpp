@@ -7,7 +7,7 @@
 #include "scene/exact_body.hpp"
 #include "scene/scene.hpp"
 #include "scene/series/diagnostics.hpp"
-#include "system/solids/rigid_tractions.hpp"
+#include "system/solids/bodies/rigid_tractions.hpp"
 
 namespace tanktread {
 

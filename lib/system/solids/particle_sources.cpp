@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "system/collocation.hpp"
+#include "system/targets/collocation.hpp"
 
 namespace tanktread::coupling {
 

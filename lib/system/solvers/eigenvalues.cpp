@@ -10,7 +10,7 @@
 #include <Thyra_DefaultSpmdVectorSpace.hpp>
 
 #include "base/errors.hpp"
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 #include "system/solvers/thyra_blocks.hpp"
 
 namespace tanktread::coupling {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "membrane/mass.hpp"
-#include "system/particle_layers.hpp"
+#include "system/targets/particle_layers.hpp"
 #include "system/solvers/frozen_operator.hpp"
 #include "system/solvers/nodal_operator.hpp"
 

@@ -5,7 +5,7 @@
 #include <Thyra_DefaultSpmdVectorSpace.hpp>
 #include <Thyra_DetachedVectorView.hpp>
 
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 
 namespace tanktread::coupling {
 

@@ -7,7 +7,7 @@
 
 #include "base/types.hpp"
 #include "spline/space.hpp"
-#include "system/solids/tube.hpp"
+#include "system/solids/ducts/tube.hpp"
 #include "system/solvers/krylov.hpp"
 
 namespace tanktread::coupling {

@@ -12,8 +12,8 @@
 #include "base/errors.hpp"
 #include "explicit_motion.hpp"
 #include "motion/integrator.hpp"
-#include "system/agreement.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/agreement.hpp"
+#include "system/parallel/ranks.hpp"
 
 namespace tanktread::motion {
 namespace {

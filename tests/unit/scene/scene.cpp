@@ -11,7 +11,7 @@
 #include "deck/document.hpp"
 #include "deck/section.hpp"
 #include "scene/member.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 
 namespace tanktread {
 namespace scene_test {

@@ -1,6 +1,6 @@
 // Tests that the ranks agree on outcomes and decisions.
 
-#include "system/agreement.hpp"
+#include "system/parallel/agreement.hpp"
 
 #include <stdexcept>
 #include <vector>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 
 namespace tanktread::coupling {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "system/collocation.hpp"
+#include "system/targets/collocation.hpp"
 #include "tests/layers.hpp"
 #include "tests/unit/system/sphere_in_flow.hpp"
 

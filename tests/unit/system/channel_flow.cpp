@@ -10,9 +10,9 @@
 #include "spline/t_mesh.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
-#include "system/solids/channel_flow.hpp"
+#include "system/solids/ducts/channel_flow.hpp"
 #include "system/solids/shared_walls.hpp"
-#include "system/solids/tube.hpp"
+#include "system/solids/ducts/tube.hpp"
 
 namespace tanktread::coupling {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "system/solids/congruence.hpp"
-#include "system/solids/wall.hpp"
+#include "system/solids/ducts/congruence.hpp"
+#include "system/solids/ducts/wall.hpp"
 
 namespace tanktread::coupling {
 namespace {

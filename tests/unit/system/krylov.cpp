@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
-#include "system/agreement.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/agreement.hpp"
+#include "system/parallel/ranks.hpp"
 #include "system/solvers/krylov.hpp"
 
 namespace tanktread::coupling {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "system/collocation.hpp"
+#include "system/targets/collocation.hpp"
 #include "system/symmetry.hpp"
 #include "tests/unit/system/sphere_in_flow.hpp"
 

@@ -6,7 +6,7 @@
 #include "spline/extraction.hpp"
 #include "spline/t_mesh.hpp"
 #include "surface/shapes.hpp"
-#include "system/collocation.hpp"
+#include "system/targets/collocation.hpp"
 #include "system/solvers/nodal_operator.hpp"
 #include "tests/layers.hpp"
 

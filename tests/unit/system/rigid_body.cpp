@@ -9,7 +9,7 @@
 
 #include "single_ellipsoid.hpp"
 #include "surface/geometry.hpp"
-#include "system/solids/rigid_body.hpp"
+#include "system/solids/bodies/rigid_body.hpp"
 
 namespace tanktread::coupling {
 namespace rigid_body_test {

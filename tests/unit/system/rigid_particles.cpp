@@ -15,7 +15,7 @@
 #include "spline/t_mesh.hpp"
 #include "surface/shapes.hpp"
 #include "system/capsule.hpp"
-#include "system/solids/rigid_body.hpp"
+#include "system/solids/bodies/rigid_body.hpp"
 
 namespace tanktread::coupling {
 namespace rigid_particles_test {

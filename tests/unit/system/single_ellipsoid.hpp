@@ -6,7 +6,7 @@
 #include "spline/extraction.hpp"
 #include "spline/t_mesh.hpp"
 #include "surface/shapes.hpp"
-#include "system/solids/rigid_tractions.hpp"
+#include "system/solids/bodies/rigid_tractions.hpp"
 
 namespace tanktread::coupling {
 

@@ -1,13 +1,13 @@
 // Tests of plates and posts in a lattice without particles: exact solutions, and the balance of forces.
 
-#include "system/solids/solids.hpp"
+#include "system/solids/plates/solids.hpp"
 
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "system/solids/solid_response.hpp"
+#include "system/solids/plates/solid_response.hpp"
 
 namespace tanktread::coupling {
 namespace {

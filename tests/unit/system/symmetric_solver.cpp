@@ -14,7 +14,7 @@
 #include "spline/refinement.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
-#include "system/collocation.hpp"
+#include "system/targets/collocation.hpp"
 
 namespace tanktread::coupling {
 namespace {

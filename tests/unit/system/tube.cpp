@@ -13,9 +13,9 @@
 #include "spline/t_mesh.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
-#include "system/collocation.hpp"
-#include "system/solids/rigid_body.hpp"
-#include "system/solids/tube.hpp"
+#include "system/targets/collocation.hpp"
+#include "system/solids/bodies/rigid_body.hpp"
+#include "system/solids/ducts/tube.hpp"
 
 namespace tanktread::coupling {
 namespace tube_test {

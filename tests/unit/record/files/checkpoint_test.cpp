@@ -16,7 +16,7 @@
 #include "record/files/file.hpp"
 #include "record/files/snapshot.hpp"
 #include "scratch.hpp"
-#include "system/ranks.hpp"
+#include "system/parallel/ranks.hpp"
 
 namespace tanktread::output {
 namespace {

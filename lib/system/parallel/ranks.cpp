@@ -1,0 +1,205 @@
+#include "system/parallel/ranks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include <Kokkos_Core.hpp>
+#include <Teuchos_CommHelpers.hpp>
+#include <Teuchos_DefaultSerialComm.hpp>
+#include <Tpetra_Core.hpp>
+#include <Tpetra_Import.hpp>
+#include <Tpetra_Map.hpp>
+#include <Tpetra_MultiVector.hpp>
+
+#include "surface/partition.hpp"
+#include "system/parallel/agreement.hpp"
+
+namespace tanktread::coupling {
+
+using Map = Tpetra::Map<>;
+using MultiVector = Tpetra::MultiVector<>;
+
+namespace {
+
+/// Returns whether an MPI launcher (of Open MPI, or one that uses PMIx or PMI) started this process. Without a launcher, MPI is not
+/// started, because the start of its devices, plugins and threads would take longer than a small run.
+bool launched() {
+  return std::ranges::any_of(std::array{"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}, [](const char* name) { return std::getenv(name); });
+}
+
+/// Command-line arguments of Kokkos, separated from the arguments of the program, because Kokkos would otherwise respond to `--help` too.
+struct KokkosArguments {
+  std::vector<char*> all;
+  int count = 0;
+  char** begin = nullptr;
+
+  KokkosArguments(int* argc, char*** argv) {
+    const auto of_kokkos = [](const char* argument) { return std::string_view(argument).starts_with("--kokkos-"); };
+    char **first = *argv, **last = first + *argc;
+    all.push_back(*first);
+    std::copy_if(first + 1, last, std::back_inserter(all), of_kokkos);
+    char** end = std::remove_if(first + 1, last, of_kokkos);
+    if (end != last) *end = nullptr;
+    *argc = static_cast<int>(end - first);
+    count = static_cast<int>(all.size());
+    all.push_back(nullptr);
+    begin = all.data();
+  }
+};
+
+}  // namespace
+
+struct Session::Impl {
+  Impl(int* argc, char*** argv) {
+    KokkosArguments kokkos(argc, argv);
+    if (launched())
+      Tpetra::initialize(&kokkos.count, &kokkos.begin);  // MPI, then Kokkos
+    else
+      Kokkos::initialize(kokkos.count, kokkos.begin);
+    begin_agreements();
+  }
+  ~Impl() { Tpetra::isInitialized() ? Tpetra::finalize() : Kokkos::finalize(); }
+};
+
+namespace {
+
+Teuchos::RCP<const Teuchos::Comm<int>> communicator() {
+  if (Tpetra::isInitialized()) return Tpetra::getDefaultComm();
+  return Teuchos::rcp(new Teuchos::SerialComm<int>);
+}
+
+}  // namespace
+
+Session::Session(int* argc, char*** argv) : impl_(std::make_unique<Impl>(argc, argv)) {}
+Session::~Session() = default;
+int Session::rank() const { return communicator()->getRank(); }
+
+struct Ranks::Impl {
+  Teuchos::RCP<const Teuchos::Comm<int>> comm = communicator();
+  std::vector<int> rows;
+  surface::Symmetry symmetry;
+  Teuchos::RCP<Tpetra::Import<>> import;
+  Teuchos::RCP<MultiVector> own, all;
+  Phases* phases = nullptr;
+
+  std::unique_ptr<Phases::Scope> time() const { return phases ? std::make_unique<Phases::Scope>(*phases, "exchange") : nullptr; }
+};
+
+Ranks::Ranks() : impl_(std::make_unique<Impl>()) {}
+Ranks::~Ranks() = default;
+int Ranks::rank() const { return impl_->comm->getRank(); }
+int Ranks::size() const { return impl_->comm->getSize(); }
+void Ranks::measure(Phases& phases) { impl_->phases = &phases; }
+
+void Ranks::set_owned_rows(const std::vector<int>& rows, surface::Symmetry symmetry) {
+  impl_->rows = rows;
+  impl_->symmetry = std::move(symmetry);
+  if (size() == 1) return;
+  const std::vector<int>& all = impl_->symmetry.fundamental();
+  std::vector<Map::global_ordinal_type> ids;
+  for (const int row : rows) ids.push_back(std::ranges::lower_bound(all, row) - all.begin());
+  const auto n = static_cast<Tpetra::global_size_t>(all.size());
+  const auto source = Teuchos::rcp(new Map(n, ids.data(), static_cast<int>(ids.size()), 0, impl_->comm));
+  const auto target = Teuchos::rcp(new Map(n, 0, impl_->comm, Tpetra::LocallyReplicated));
+  impl_->import = Teuchos::rcp(new Tpetra::Import<>(source, target));
+  impl_->own = Teuchos::rcp(new MultiVector(source, 3));
+  impl_->all = Teuchos::rcp(new MultiVector(target, 3));
+}
+
+std::vector<int> Ranks::divide_points(const spline::Space& space, const surface::Symmetry& symmetry) {
+  std::vector<int> rows = surface::share(space, surface::partition_of_points(space, size(), symmetry.fundamental()), rank()).points;
+  set_owned_rows(rows, symmetry);
+  return rows;
+}
+
+std::vector<int> Ranks::divide_in_order(const surface::Symmetry& symmetry) {
+  std::vector<int> rows;
+  for (const int k : share(static_cast<int>(symmetry.fundamental().size()))) rows.push_back(symmetry.fundamental()[static_cast<std::size_t>(k)]);
+  set_owned_rows(rows, symmetry);
+  return rows;
+}
+
+void Ranks::replicate(Net& net) const {
+  const auto clock = impl_->time();
+  if (size() > 1) {
+    for (int c = 0; c < 3; ++c) {
+      const auto column = impl_->own->getDataNonConst(static_cast<size_t>(c));
+      for (size_t i = 0; i < impl_->rows.size(); ++i) column[static_cast<Teuchos::Ordinal>(i)] = net(impl_->rows[i], c);
+    }
+    impl_->all->doImport(*impl_->own, *impl_->import, Tpetra::INSERT);
+    const std::vector<int>& all = impl_->symmetry.fundamental();
+    for (int c = 0; c < 3; ++c) {
+      const auto column = impl_->all->getData(static_cast<size_t>(c));
+      for (size_t i = 0; i < all.size(); ++i) net(all[i], c) = column[static_cast<Teuchos::Ordinal>(i)];
+    }
+  }
+  impl_->symmetry.complete(net);
+}
+
+void Ranks::add(std::span<Net* const> nets) const {
+  if (size() == 1) return;
+  const std::vector<int>& all = impl_->symmetry.fundamental();
+  std::vector<double> numbers;
+  numbers.reserve(3 * all.size() * nets.size());
+  for (const Net* net : nets)
+    for (const int a : all)
+      for (int c = 0; c < 3; ++c) numbers.push_back((*net)(a, c));
+  add(numbers);
+  const double* next = numbers.data();
+  for (Net* net : nets) {
+    for (const int a : all)
+      for (int c = 0; c < 3; ++c) (*net)(a, c) = *next++;
+    impl_->symmetry.complete(*net);
+  }
+}
+
+void Ranks::add(std::span<double> numbers) const {
+  if (size() == 1) return;
+  const auto clock = impl_->time();
+  constexpr std::size_t at_a_time = 1 << 24;  // sends large data in parts, because MPI counts with int and each part is copied
+  for (std::size_t first = 0; first < numbers.size(); first += at_a_time) {
+    const std::span<double> part = numbers.subspan(first, std::min(at_a_time, numbers.size() - first));
+    const std::vector<double> mine(part.begin(), part.end());
+    Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_SUM, static_cast<int>(mine.size()), mine.data(), part.data());
+  }
+}
+
+void Ranks::add_all(std::span<const std::span<double>> several) const {
+  std::vector<double> numbers;
+  for (const auto& some : several) numbers.insert(numbers.end(), some.begin(), some.end());
+  add(numbers);
+  const double* next = numbers.data();
+  for (const auto& some : several) next = std::ranges::copy_n(next, static_cast<std::ptrdiff_t>(some.size()), some.begin()).in;
+}
+
+stokes::Evaluations Ranks::of_all(const stokes::Evaluations& own) const {
+  std::array sum = {static_cast<double>(own.far), static_cast<double>(own.near), static_cast<double>(own.self)};
+  add(sum);
+  return {std::llround(sum[0]), std::llround(sum[1]), std::llround(sum[2])};
+}
+
+std::vector<int> Ranks::share(int n) const {
+  std::vector<int> mine;
+  for (int k = 0; k < n; ++k)
+    if (owner(k, n) == rank()) mine.push_back(k);
+  return mine;
+}
+
+bool Ranks::any(bool mine) const {
+  const auto clock = impl_->time();
+  int local = mine, together = 0;
+  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_MAX, local, Teuchos::outArg(together));
+  return together != 0;
+}
+
+void Ranks::first(std::span<std::int64_t> numbers) const {
+  const auto clock = impl_->time();
+  Teuchos::broadcast(*impl_->comm, 0, static_cast<int>(numbers.size_bytes()), reinterpret_cast<char*>(numbers.data()));
+}
+
+}  // namespace tanktread::coupling

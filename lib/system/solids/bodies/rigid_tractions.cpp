@@ -1,0 +1,283 @@
+#include "system/solids/bodies/rigid_tractions.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "system/solids/bodies/rigid_body.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// Sets six columns to the velocities of a body's unit motions at x, in the rows of the body. If x is a control net, the columns contain control
+/// values.
+void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
+  const Net own = block.rows(x);
+  for (int k = 0; k < 6; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(rigid_velocity(own, unit_motion(k), centre));
+}
+
+constexpr int n_unit_strains = 5;
+
+/// Sets five columns to the velocities of the unit strain flows at the sites of a body.
+void set_unit_strains(const Net& at, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
+  const Net from_centre = block.rows(at).rowwise() - centre.transpose();
+  for (int k = 0; k < n_unit_strains; ++k)
+    columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
+}
+
+std::vector<Particle> bodies_among(std::span<const Particle> particles) {
+  std::vector<Particle> bodies;
+  std::ranges::copy_if(particles, std::back_inserter(bodies), [](const Particle& one) { return one.rigid.has_value(); });
+  return bodies;
+}
+
+/// Returns the indices 6 p + k of the unit motions k = 0 .. 5 of all bodies p whose motion is not prescribed.
+std::vector<int> free_motions(std::span<const RigidDrive> driven) {
+  std::vector<int> free;
+  for (std::size_t p = 0; p < driven.size(); ++p)
+    for (int k = 0; k < 6; ++k)
+      if (!driven[p].prescribed) free.push_back(static_cast<int>(6 * p) + k);
+  return free;
+}
+
+/// Returns the changes of the motions, six per body, that produce the missing forces and torques. Only the motions `free` change. Column k of
+/// `resistance`: forces and torques due to unit motion k.
+Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& missing) {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(missing.size());
+  if (free.empty()) return motion;
+  const Eigen::MatrixXd part = resistance(free, free);
+  const Eigen::VectorXd right = missing(free), solution = part.partialPivLu().solve(right);
+  motion(free) = solution;
+  return motion;
+}
+
+/// Returns the amplitudes of the unit motions: prescribed motions, and the motions that give the prescribed forces and torques. `loads_at_rest`:
+/// forces and torques if all bodies are held at rest.
+Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& loads_at_rest,
+                        std::span<const RigidDrive> driven) {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(loads_at_rest.size()), given = motion;
+  for (std::size_t p = 0; p < driven.size(); ++p) {
+    const RigidDrive& rigid = driven[p];
+    const auto first = static_cast<Eigen::Index>(6 * p);
+    if (rigid.prescribed)
+      motion.segment<6>(first) << rigid.motion.velocity, rigid.motion.angular_velocity;
+    else
+      given.segment<6>(first) << rigid.force, rigid.torque;
+  }
+  return motion + freed(free, resistance, given - loads_at_rest - resistance * motion);
+}
+
+}  // namespace
+
+CapsuleParameters single_body(const spline::Space& space, double radius, double viscosity, const quadrature::Options& quadrature,
+                              const SolverOptions& solvers, std::shared_ptr<const stokes::Medium> medium) {
+  CapsuleParameters parameters;
+  Particle& body = parameters.particles.front();
+  body.space = &space, body.block = spline::whole(space), body.radius = radius;
+  body.rigid.emplace(), body.by_traction = true;
+  parameters.viscosity = viscosity, parameters.quadrature = quadrature, parameters.medium = std::move(medium);
+  parameters.solvers = solvers, parameters.solvers.velocity = solvers.traction;
+  return parameters;
+}
+
+RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters,
+                               const FluidWalls& walls, const std::vector<int>& own, Ranks& ranks)
+    : particles_(bodies_among(parameters.particles)),
+      walls_(walls),
+      medium_(parameters.medium),
+      layer_(particles_, parameters, own, ranks),
+      residual_(space, unstressed, rest, parameters, ranks),
+      collocation_(collocation_matrix(space)),
+      mass_(space, 8),  // mass matrix by eight Gauss points per direction, because the area element is not a polynomial
+      krylov_(parameters.solvers.of(parameters.solvers.velocity)),
+      tolerance_(parameters.solvers.tolerance) {
+  if (walls.tube) walls.tube->particles().set_reference(unstressed);
+}
+
+void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
+  residual_.repeat(cell);
+  repeats_ = true;
+}
+
+/// Returns B y (see Surroundings::product), the left-hand side of the system for the unknowns y, including the regularising term of (2.10).
+Net RigidTractions::product(const Net& y) {
+  assert(around_ || !walls_.solids);  // only Surroundings::product contains the response of plates and posts
+  const Net caused = repeats_ ? Net() : layer_.velocity(y);
+  if (!around_) return walls_.tube ? Net(caused + walls_.tube->respond(load(y)).velocity) : caused;
+  Net all = around_->product(y, caused);
+  if (repeats_) all += layer_.regular(y);
+  return all;
+}
+
+/// Returns the unknowns y, one column per column of `velocities`. In rows of bodies, `velocities` are velocities at the sites; in other rows, they
+/// are the right-hand side for the velocity of deformable particles. If responds() is false (A is only the single layer of the bodies), solves only
+/// for the force densities and copies the other rows.
+Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
+  reports_.clear();
+  if (!responds()) return layer_.solved(velocities);
+  const Eigen::Index n = velocities.rows();
+  const auto precondition = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = layer_.solved(Eigen::Map<const Eigen::VectorXd>(in, n));
+  };
+  const LinearSystem system{{{"traction", n}}, on_nets(n / 3, [this](const Net& y) { return product(y); }), precondition};
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, velocities.cols());
+  for (Eigen::Index k = 0; k < all.cols(); ++k) {
+    if (velocities.col(k).isZero(0)) continue;
+    Eigen::VectorXd y = all.col(k);
+    reports_.push_back(krylov_.solve(system, velocities.col(k), y, tolerance_));
+    all.col(k) = y;
+  }
+  return all;
+}
+
+/// Returns the force densities in the unknowns y, with zero in the rows of deformable particles.
+Net RigidTractions::force_densities(const Net& y) const {
+  Net f = Net::Zero(y.rows(), 3);
+  for (const Particle& body : particles_) body.block.rows(f) = body.block.rows(y);
+  return f;
+}
+
+/// Returns the unknowns y. If responds() is false, rows of deformable particles are completed by the velocity that the force densities cause there.
+Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
+  Net y = as_net(unknowns);
+  if (responds() || all_rigid()) return y;
+  Net minus_velocity = product(force_densities(y));
+  for (const Particle& body : particles_) body.block.rows(minus_velocity).setZero();
+  return y - minus_velocity;
+}
+
+void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around) {
+  around_ = std::move(around);
+  x_ = x, sites_ = collocation_ * x;
+  centres_.assign(centres.begin(), centres.end());
+  layer_.set_shape(x, sites_, responds() && !repeats_);
+}
+
+/// Returns the collocation-error corrections (2.11) for the unknowns y. Each column of z is a force density; its correction is its work in the
+/// residual velocity, computed from Solution::residual. In a channel the residual on the wall is included (2.42).
+Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z, const Eigen::VectorXd& residual) {
+  Eigen::VectorXd work = z.transpose() * residual;
+  if (!walls_.tube || !walls_.tube->fixed() || !all_rigid()) return work;
+  const Tube::WallResidual on_wall = walls_.tube->wall_residual(load(y));
+  for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(on_wall, walls_.tube->respond(load(as_net(z.col(k)))));
+  return work;
+}
+
+const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const RigidDrive> driven,
+                                                      const stokes::AmbientFlow& flow, std::optional<Surroundings> around) {
+  const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
+  set_shape(x, centres, std::move(around));
+  const bool has_pressure = walls_.tube && all_rigid(), driven_by_pressure = flow.duct() && flow.amplitude() != 0;
+  const bool apart = has_pressure && !driven_by_pressure;  // true if the density due to the flow of the duct (2.41) needs a separate solve
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1 + apart), fields = Eigen::MatrixXd::Zero(n, m);
+  const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);
+  Net empty = around_ ? Net(-around_->flow) : at_sites;
+  for (std::size_t p = 0; p < particles_.size(); ++p) {
+    const auto column = static_cast<Eigen::Index>(6 * p);
+    const spline::Block& block = particles_[p].block;
+    set_unit_motions(sites_, block, centres[p], velocities.middleCols<6>(column));
+    set_unit_motions(x, block, centres[p], fields.middleCols<6>(column));
+    block.rows(empty) = block.rows(at_sites);
+  }
+  velocities.col(m) = flat(empty);
+  if (apart) velocities.col(m + 1) = flat(walls_.tube->flow().velocities(sites_));
+  const Eigen::MatrixXd of_all = densities(velocities), z = of_all.leftCols(m);
+
+  const Eigen::SparseMatrix<double>& mass = mass_.update(x);
+  Eigen::MatrixXd work(n, m);  // the inner product of column k with a force density is the work of the density in unit motion k
+  for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
+  const Eigen::MatrixXd resistance = work.transpose() * z;
+  const std::vector<int> free = free_motions(driven);
+  Eigen::VectorXd motion = motions(free, resistance, -work.transpose() * of_all.col(m), driven);
+  Eigen::VectorXd y = z * motion - of_all.col(m);
+  Net v = completed(y);
+  const Net unknowns = v;
+  const Eigen::VectorXd moving = fields * motion;
+  for (const Particle& body : particles_) body.block.rows(v) = body.block.rows(as_net(moving));
+  const Net between = flow.velocities(residual_.points().values * x);
+  solution_ = {};
+  solution_.shape = x, solution_.residual = flat(residual_.integrated(x, load(unknowns), v, between, walls_));
+  const Eigen::VectorXd correction = corrections(unknowns, of_all, solution_.residual), change = freed(free, resistance, -correction.head(m));
+  motion += change;
+  y += z * change;
+  solution_.unknowns = completed(y);
+  const Net f = force_densities(solution_.unknowns);
+  if (has_pressure) {
+    const double unit = apart ? 1 : flow.amplitude();
+    const Net of_duct = apart ? walls_.tube->flow().velocities(residual_.points().values * x) : Net(between / unit);
+    solution_.pressure_correction = walls_.tube->pressure_correction(residual_.points(), of_duct, f, correction[m + apart] / unit);
+  }
+  for (std::size_t p = 0; p < particles_.size(); ++p) {
+    const auto first = static_cast<Eigen::Index>(6 * p);
+    SolvedBody& body = solution_.bodies.emplace_back(integrals(p, f));
+    body.motion = {motion.segment<3>(first), motion.segment<3>(first + 3)};
+    body.force += correction.segment<3>(first), body.torque += correction.segment<3>(first + 3);
+  }
+  return solution_;
+}
+
+double RigidTractions::pressure_correction_of(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, const Net& z) {
+  const Net places = residual_.points().values * x;
+  const Eigen::VectorXd residual = flat(residual_.integrated(x, load(f), v, flow.velocities(places), walls_));
+  return walls_.tube->pressure_correction(residual_.points(), walls_.tube->flow().velocities(places), f, corrections(f, flat(z), residual)[0]);
+}
+
+Net RigidTractions::density(const Net& velocities) { return as_net(densities(flat(velocities))); }
+
+SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {
+  const spline::Block& block = particles_[p].block;
+  const Net weighted = block.rows(Net(mass_.update(x_) * f));
+  SolvedBody body;
+  body.force = weighted.colwise().sum().transpose();
+  body.moment = weighted.transpose() * (block.rows(x_).rowwise() - centres_[p].transpose());
+  body.torque = axial_vector(body.moment);
+  return body;
+}
+
+stokes::Evaluations RigidTractions::kernel_evaluations() const {
+  const stokes::Evaluations own = layer_.evaluations() + residual_.evaluations();
+  return walls_.tube ? own + walls_.tube->kernel_evaluations() : own;
+}
+
+bool RigidTractions::all_rigid() const {
+  Eigen::Index points = 0;
+  for (const Particle& body : particles_) points += body.block.n_points;
+  return points == collocation_.cols();
+}
+
+bool RigidTractions::inside(const Net& x) const {
+  return (!walls_.tube || walls_.tube->gap() > 0) && stokes::contains(medium_.get(), collocation_ * x);
+}
+
+Mat3 RigidTractions::moment(std::size_t p) {
+  assert(same(solution_.shape, x_));
+  reports_.clear();
+  if (walls_.tube) return solution_.bodies[p].moment;
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(solution_.residual.size(), n_unit_strains);
+  set_unit_strains(sites_, particles_[p].block, centres_[p], velocities);
+  return solution_.bodies[p].moment + strain_of_products(densities(velocities).transpose() * solution_.residual);
+}
+
+int RigidTractions::solve_iteratively(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns) {
+  Eigen::VectorXd found = unknowns;
+  reports_ = {krylov_.solve(system, right, found, tolerance_)};
+  const int iterations = converged_iterations();
+  unknowns = std::move(found);
+  return iterations;
+}
+
+int RigidTractions::converged_iterations() const {
+  int sum = 0;
+  for (const SolveReport& report : reports_) require_convergence(report, "the traction on the rigid body", tolerance_), sum += report.iterations;
+  return sum;
+}
+
+void RigidTractions::forget_recycled() const {
+  krylov_.forget();
+  if (walls_.tube) walls_.tube->forget_recycled();
+}
+
+}  // namespace tanktread::coupling

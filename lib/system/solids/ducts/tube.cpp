@@ -1,0 +1,192 @@
+#include "system/solids/ducts/tube.hpp"
+
+#include "system/targets/collocation.hpp"
+#include "system/solids/shared_walls.hpp"
+#include "system/solids/ducts/tube_particle.hpp"
+
+namespace tanktread::coupling {
+
+Tube::Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
+           Phases& phases)
+    : flow_(std::make_shared<stokes::DuctFlow>(flow)), phases_(phases) {
+  const auto clock = phases_.time("wall assembly");
+  wall_ = shared_wall(parameters.walls.get(), wall, parameters.quadrature, &phases_, surface::Symmetry(), {});
+  particle_ = std::make_unique<ParticleData>(particle, parameters, *wall_, phases_);
+}
+
+Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases)
+    : flow_(flow), phases_(phases) {
+  {
+    const auto clock = phases_.time("wall assembly");
+    wall_ = flow->use_symmetry(phases_, parameters.symmetry);
+    flow->pressure_drop();
+  }
+  particle_ = std::make_unique<ParticleData>(particle, parameters, *wall_, phases_);
+}
+
+Tube::Tube(const Tube& tube, const spline::Space& particle)
+    : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_),
+      particle_(std::make_unique<ParticleData>(particle, tube.particle_->parameters, *wall_, phases_)) {}
+
+Tube::~Tube() = default;
+
+const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
+ParticleSources& Tube::particles() { return particle_->sources; }
+const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
+const Net& Tube::ambient() const { return particle_->ambient; }
+const std::optional<stokes::PeriodicCell>& Tube::cell() const { return wall_->cell(); }
+
+stokes::Evaluations Tube::kernel_evaluations() const {
+  stokes::Evaluations all = particle_->sources.evaluations();
+  if (!particle_->parameters.walls) all += wall_->evaluations();
+  return between_ ? all + between_->layer.evaluations() : all;
+}
+
+Net Tube::in_wall_frame(Net x) const {
+  if (!fixed()) x.col(0).array() -= particle_->geometry.measures(x).centroid[0];
+  return x;
+}
+
+void Tube::set_shape(const Net& x, std::optional<double> origin) {
+  const auto clock = phases_.time("wall");
+  if (!origin && !fixed()) origin = particle_->geometry.measures(x).centroid[0];
+  if (!origin && cell()) origin = cell()->shift(x.colwise().mean().transpose() - (wall().start + wall().end) / 2 * Vec3::UnitX())[0];
+  particle_->set_shape(x, origin.value_or(0), *flow_, *wall_, empty_pressure_drop());
+}
+
+double Tube::pressure_of(const Net& f, const Net& v) {
+  return dot(particle_->weights_of_load, f) + pressure_of_velocity(v);
+}
+
+/// Returns the contribution of v to dp (2.7), 0 if lambda = 1. In a channel, it is the pressure drop for which the disturbance caused by v has zero
+/// net flow rate. `on_wall`: velocity of this disturbance at the wall; if null, it is computed when needed.
+double Tube::pressure_of_velocity(const Net& v, const Net* on_wall) {
+  if (v.size() == 0 || !particle_->sources.has_double()) return 0;
+  if (!fixed()) return dot(particle_->weights_of_velocity, v);
+  if (!on_wall) {
+    const Net caused = particle_on_wall({}, v);
+    return pressure_of_velocity(v, &caused);
+  }
+  weigh_flow();
+  const double taken_away = wall_->iterates() ? dot(flow_weights_, wall_->solve(*on_wall)) : dot(flow_of_wall_, *on_wall);
+  return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->sources.strength(v))) / flow_of_pressure_;
+}
+
+double Tube::pressure_correction(const BetweenSites& between, const Net& at_places, const Net& f, double work) {
+  if (fixed()) work += dot(between.weights * (at_places - between.values * particle_->interpolated_ambient), f);
+  return -work / flow_->flow_rate();
+}
+
+Net Tube::particle_on_wall(const Net& f, const Net& v) { return wall_->points().collocated(particle_->cause(f, v).at_wall); }
+
+Net Tube::wall_on_particle(const Net& traction) {
+  const auto& near = particle_->wall_on_sites;
+  return particle_->ranks.filled(particle_->sites().rows(), [&](Net& u) {
+    wall_->layer().apply(wall_->on_space(traction), particle_->sites(), particle_->own, u, near ? &*near : nullptr);
+  }) / -viscosity();
+}
+
+Net Tube::images_on_particle(const Net& f, const Net& v) { return on_particle(particle_->cause(f, v).at_sites); }
+
+/// Returns, on all ranks, a net with one row per collocation point of the particle, gathered from the rank-owned rows of `own`.
+Net Tube::on_particle(const Net& own) const {
+  return particle_->ranks.filled(own.rows(), [&](Net& u) {
+    for (const int i : particle_->own) u.row(i) = own.row(i);
+  });
+}
+
+Net Tube::wall_on_wall(const Net& traction) { return wall_->apply(traction) / viscosity(); }
+
+Net Tube::inlet_on_wall() const { return wall_->inlet_column() / viscosity(); }
+
+Net Tube::solve_wall(const Net& rhs) { return viscosity() * wall_->solve(rhs); }
+
+double Tube::viscosity() const { return particle_->parameters.viscosity; }
+
+Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correction) {
+  const auto clock = phases_.time("wall");
+  Response response;
+  response.pressure_drop = pressure_of(f) + pressure_correction;
+  if (cell()) {
+    ParticleData::Cause cause = particle_->cause(f, v);
+    const Net on_wall = wall_->points().collocated(cause.at_wall);
+    response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? nullptr : &on_wall);
+    response.wall_traction = solve_wall(on_wall);
+    response.velocity = on_particle(std::move(cause.at_sites));
+    response.load = f, response.particle_velocity = v;
+  } else {
+    Net on_wall = Net::Zero(wall_->points().sites().rows(), 3);
+    if (v.size() > 0 && particle_->sources.has_double()) on_wall += particle_on_wall({}, v);
+    response.pressure_drop += pressure_of_velocity(v, &on_wall);
+    if (f.size() > 0) on_wall += particle_on_wall(f);
+    response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->traction_per_pressure_drop();
+  }
+  response.velocity = (response.velocity.size() > 0 ? response.velocity : Net(Net::Zero(particle_->sites().rows(), 3))) +
+                      wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
+  if (const double slower = flow_rate_reduction(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
+  return response;
+}
+
+/// Returns the pressure drop of the empty duct over the modelled length, or over one period.
+double Tube::empty_pressure_drop() const { return flow_->pressure_drop(wall().length()); }
+
+/// Returns the fraction by which the particle reduces the flow rate if the pressure drop of the duct is prescribed, otherwise 0. `pressure_drop`: dp
+/// (2.7).
+double Tube::flow_rate_reduction(double pressure_drop) const {
+  return particle_->parameters.holds_pressure_drop ? pressure_drop / empty_pressure_drop() : 0;
+}
+
+/// Returns mu c (2.5) at points in the wall's frame: mu times the velocity due to a unit pressure drop, without the velocity due to the wall's
+/// traction.
+Net Tube::pressure_driven_velocity(const Net& at) const {
+  return cell() ? Net(viscosity() / empty_pressure_drop() * flow_->velocities(at)) : wall_->inlet().integral(at);
+}
+
+void Tube::velocity_at(const Eigen::SparseMatrix<double>& points, const Net& x, const Response& response, std::span<const int> rows, Net& u) {
+  Net shape = x;
+  shape.col(0).array() -= particle_->origin;  // before the product, so that a point at a far node coincides with it up to round-off (node_sum)
+  const Net at = points * shape;
+  wall_->layer().apply(wall_->on_space(response.wall_traction), at, rows, u);
+  const Net by_pressure = cell() ? Net(pressure_driven_velocity(at)(rows, Eigen::all)) : pressure_driven_velocity(at(rows, Eigen::all));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    u.row(rows[k]) = (response.pressure_drop * by_pressure.row(static_cast<Eigen::Index>(k)) - u.row(rows[k])) / viscosity();
+  if (cell()) particle_->sources.add_velocity(response.load, response.particle_velocity, at, rows, u, {.first_image_row = 0});
+  if (const double slower = flow_rate_reduction(response.pressure_drop); slower != 0) {
+    const Net ambient = flow_->velocities(points * x);
+    for (const int i : rows) u.row(i) -= slower * ambient.row(i);
+  }
+}
+
+void Tube::freeze() {
+  const auto clock = phases_.time("assembly");
+  if (wall_->iterates()) return;
+  const bool by_flow = fixed() && particle_->sources.has_double();
+  if (by_flow) weigh_flow();
+  particle_->freeze(*wall_, by_flow ? Net(flow_of_wall_ / flow_of_pressure_) : Net());
+  if (!by_flow) return;
+  const Net& through_inlet = particle_->flow_of_strength(*wall_);
+  particle_->frozen.weights_of_velocity -= particle_->sources.strength(through_inlet) / flow_of_pressure_;
+}
+
+Net Tube::frozen_response(const Net& f, const Net& v) {
+  if (wall_->iterates()) return Net::Zero(particle_->sites().rows(), 3);
+  const ParticleData::Frozen& frozen = particle_->frozen;
+  const double pressure = dot(frozen.weights_of_load, f) + dot(frozen.weights_of_velocity, v);
+  const auto add = [](double factor, const FrozenOperator& of, const Net& strength, Net& to) {
+    Net part = Net::Zero(to.rows(), 3);
+    of.apply(strength, part);
+    to += factor * part;
+  };
+  const bool loads = f.size() > 0, has_velocity = v.size() > 0 && particle_->sources.has_double();
+  const Net on_wall = wall_->points().ranks().filled(wall_->points().sites().rows(), [&](Net& u) {
+    if (loads) add(-1 / viscosity(), frozen.single, f, u);
+    if (has_velocity) add(1, frozen.dual, particle_->sources.strength(v), u);
+  });
+  const Net traction = solve_wall(on_wall) + pressure * wall_->traction_per_pressure_drop();
+  const Net u = particle_->ranks.filled(particle_->sites().rows(), [&](Net& own) {
+    frozen.wall.apply(traction, own);
+  });
+  return -u / viscosity() + pressure * frozen.inlet - flow_rate_reduction(pressure) * frozen.ambient;
+}
+
+}  // namespace tanktread::coupling

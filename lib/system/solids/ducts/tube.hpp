@@ -1,0 +1,197 @@
+#pragma once
+// Particles in a tube. The traction on the wall and the pressure drop are eliminated.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "base/timing.hpp"
+#include "base/types.hpp"
+#include "membrane/options.hpp"
+#include "quadrature/options.hpp"
+#include "spline/space.hpp"
+#include "stokes/flow/duct_flow.hpp"
+#include "stokes/kernels/kernels.hpp"
+#include "surface/symmetry.hpp"
+#include "surface/walls/tube_wall.hpp"
+#include "system/parallel/ranks.hpp"
+#include "system/solids/ducts/channel_flow.hpp"
+#include "system/solids/particle_sources.hpp"
+
+namespace tanktread::coupling {
+
+class Wall;
+struct SharedWalls;
+struct BetweenSites;
+
+struct TubeParameters {
+  double viscosity = 1;              ///< mu of the outer fluid
+  surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; Symmetry() if there is none
+  bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
+  quadrature::Options quadrature;
+  membrane::DirectSolverOptions direct;
+  std::shared_ptr<SharedWalls> walls;  ///< walls of the run, of which a straight tube takes its own; null: the tube makes its own wall
+};
+
+/// Response of the wall and the pressure drop to a load f and a velocity v on the particle, both given by control values. The response is linear in
+/// (f, v):
+///
+///   wall      (1/mu) G_W f^D - dp c = -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dGamma        at the wall      (2.6)
+///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dGamma                                                       (2.7)
+///   response  u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
+///
+/// G_W and G_C are the single layers of the wall and of the particle divided by 8 pi, and c is 1/mu times the integral over the inlet (2.13). f^D is
+/// the disturbance of the traction on the wall, and dp is the disturbance of the pressure drop between the ends. v_inf in (2.7) is the flow of the
+/// duct with any mean velocity, even if the ambient flow of the scene is another flow. f_inf is its traction on C, and Q its flow rate.
+///
+/// Several particles are treated as one surface C. A straight wall is centred on the particle: it is fixed in a frame in which x1 is measured from
+/// the particle's centroid. Operators that depend only on the wall are therefore assembled and factored once. Points of the particle are in the
+/// laboratory frame; nets of the wall are in the wall's frame. Nets are replicated on all ranks. All calls except queries are collective.
+///
+/// If the pressure drop dp_0 of the duct flow is prescribed instead of its flow rate, dp/dp_0 times that flow is subtracted from the response. dp is
+/// then the pressure drop minus the pressure drop of the empty tube at the reduced flow rate Q (1 - dp/dp_0).
+///
+/// A duct that repeats along x1 is represented by one period of its wall, without ends and with the kernels of one period (Layer::repeat). c is then
+/// the empty duct's flow v_inf per unit pressure drop of a period. This flow vanishes on the wall, so that the response without the term dp c is the
+/// response at a prescribed pressure drop. dp is the pressure drop of one period, and the response includes the effect of the particle's images on
+/// the particle.
+///
+/// The wall of a channel is fixed in the laboratory frame, and v_inf is the flow of ChannelFlow. The contribution of v to dp then follows, without
+/// f_inf, from the condition that the disturbance has zero flow rate (2.14).
+class Tube {
+ public:
+  Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
+       Phases& phases);
+
+  /// Constructs the tube for a channel. Its wall is the wall of `flow`.
+  Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
+
+  /// Constructs a tube for another mesh of the particle. The new tube shares all data of the wall with `tube`.
+  Tube(const Tube& tube, const spline::Space& particle);
+  ~Tube();
+
+  /// Returns the particles as sources of flow. Their unstressed net, and their contrasts if they are not 0, must be set before set_shape().
+  ParticleSources& particles();
+
+  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `origin`: x1 coordinate of the origin of the frame of
+  /// wall() if the wall is straight; by default the x1 coordinate of the particle's centroid.
+  void set_shape(const Net& x, std::optional<double> origin = {});
+
+  /// Returns the lattice of a periodic duct; not set for other ducts.
+  const std::optional<stokes::PeriodicCell>& cell() const;
+
+  /// Response (2.5) of the tube to the particle: the disturbance due to the wall and the pressure drop.
+  struct Response {
+    Net velocity;       ///< velocity u (2.5) that wall and pressure drop cause at the particle's collocation points, shape (N, 3)
+    Net wall_traction;  ///< disturbance f^D of the traction on the wall, control values
+    double pressure_drop = 0;  ///< disturbance dp of the pressure drop
+    Net load, particle_velocity;  ///< load f and velocity v of the particle that cause this response; set only in a periodic duct
+  };
+
+  /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `pressure_correction`: collocation-error correction of dp.
+  Response respond(const Net& f, const Net& v = {}, double pressure_correction = 0);
+
+  /// Computes rows `rows` of the velocity u of a response at points on the particle. `points`: values of its basis functions there. `x`: its control
+  /// points (laboratory frame). Not collective, except if the duct repeats or its pressure drop is prescribed: then every rank must call it with the
+  /// same x.
+  void velocity_at(const Eigen::SparseMatrix<double>& points, const Net& x, const Response& response, std::span<const int> rows, Net& u);
+
+  /// Stores the operators of the current shape as low-precision blocks for the Jacobian.
+  void freeze();
+  /// Returns the response u at the particle's collocation points, computed with the operators that freeze() stored. If the wall's system is solved by
+  /// iteration, returns 0. The Jacobian then omits u. This is accurate enough, because the contribution of u is small and smooth.
+  Net frozen_response(const Net& f, const Net& v = {});
+
+  /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
+  Net particle_on_wall(const Net& f, const Net& v = {});    ///< -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dGamma
+  Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
+  Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
+  Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity due to the particle's images in a periodic duct
+
+  /// Returns the velocity c (2.5) per unit pressure drop at the particle's collocation points. In a periodic duct it is v_inf of the empty duct per
+  /// unit pressure drop of a period.
+  const Net& inlet_on_particle() const;
+  const Net& ambient() const;                           ///< v_inf (2.7) at the particle's collocation points, with amplitude 1
+  Net inlet_on_wall() const;                            ///< c on the wall
+  double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
+
+  /// Returns the correction (2.41) of pressure_of(f) for collocation errors. v_inf is the flow of the empty duct, of amplitude 1. `work`: integral
+  /// over the particle of the density z due to v_inf times the residual velocity of f. In a channel, also corrects for the interpolation error of
+  /// v_inf. `between`: Gauss points for this error. `at_places`: exact values of v_inf at these Gauss points.
+  double pressure_correction(const BetweenSites& between, const Net& at_places, const Net& f, double work);
+  Net solve_wall(const Net& rhs);  ///< returns the wall traction f^D that solves (1/mu) G_W f^D = rhs
+
+  /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
+  struct Checks {
+    double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
+    double force = 0;         ///< unbalanced axial force of the disturbance: A dp minus the axial forces on wall and particle, divided by the product
+                              ///< of A, the radius and the pressure gradient of the empty duct, where A is the area of the cross-section
+    double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops that would make `flux` or `force` zero
+  };
+  Checks checks(const Net& f, const Net& v, const Response& response);
+
+  /// Discretisation error of the response to a load f. `velocity`: int N_A u dGamma over the wall, with u the velocity at Gauss points between the
+  /// collocation points. `flow`: flow rate of the disturbance through the inlet. Both vanish for the exact response.
+  struct WallResidual {
+    Net velocity;
+    double flow = 0;
+  };
+  WallResidual wall_residual(const Net& f);
+
+  /// Returns the inner product of f^D and residual.velocity, minus dp times residual.flow: the contribution of the wall and the inlet to the
+  /// collocation-error correction (2.42). `residual`: discretisation error of the response to one load. `of`: response (f^D, dp) to another load.
+  double work(const WallResidual& residual, const Response& of) const;
+
+  /// Returns the flow rate of the duct flow: Q times its current factor `amplitude`. If the pressure drop of the duct flow is prescribed, returns the
+  /// flow rate that remains when the particle causes the additional pressure drop dp = `pressure_drop` (2.7): Q (amplitude - dp/dp_0).
+  double flow_rate(double pressure_drop, double amplitude) const { return flow_->flow_rate() * (amplitude - flow_rate_reduction(pressure_drop)); }
+
+  /// Returns the smallest distance between the particle and the wall; negative if they intersect.
+  double gap() const;
+
+  /// Returns the particle's net in the frame of `wall()`, which moves with the particle in a straight tube.
+  Net in_wall_frame(Net x) const;
+
+  /// Returns whether the wall is fixed in the laboratory frame (a channel), so that results depend on the position along the channel.
+  bool fixed() const { return wall().channel != nullptr; }
+
+  /// Returns whether the points `rows` of x are inside the duct; in a channel, also between its ends.
+  bool inside(const Net& x, std::span<const int> rows) const;
+
+  const surface::TubeWall& wall() const;
+  void forget_recycled() const { wall_->forget_recycled(); }  ///< discards data of earlier solves that the wall's iterative solver keeps
+  const stokes::DuctFlow& flow() const { return *flow_; }
+  /// Returns the number of kernel evaluations, including the assembly of the wall unless TubeParameters::walls counts it.
+  stokes::Evaluations kernel_evaluations() const;
+
+ private:
+  struct ParticleData;
+  struct BetweenSitesOfWall;
+  double viscosity() const;
+  double cap_velocity(const Net& f, const Net& v, const Response& response);
+  double gap_to_straight_wall() const;
+  double gap_to_channel_wall() const;
+  double empty_pressure_drop() const;
+  double flow_rate_reduction(double pressure_drop) const;
+  Net pressure_driven_velocity(const Net& at) const;
+  Net on_particle(const Net& own) const;
+  double pressure_of_velocity(const Net& v, const Net* on_wall = nullptr);
+  void weigh_flow();
+
+  std::shared_ptr<const stokes::DuctFlow> flow_;
+  Phases& phases_;
+  std::shared_ptr<Wall> wall_;
+  std::unique_ptr<ParticleData> particle_;
+  std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which wall_residual() evaluates the velocity; set up at its first call
+  Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate through the inlet and in the axial force. weigh_flow() sets
+                                      // these and all following members
+  Net flow_of_wall_;  // weights w for a velocity u on the wall: w.u is the flow rate through the inlet due to the wall traction that cancels u
+  double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate through the inlet of the velocity field mu c, with c of (2.5).
+                                                // flow_of_pressure_: flow rate per unit pressure drop, due to c and the wall traction that c causes
+};
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,173 @@
+// Checks of the response of a tube by conditions that are not used to compute it, and the distance to the wall.
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "base/indices.hpp"
+#include "surface/clearance.hpp"
+#include "surface/closest_points.hpp"
+#include "system/targets/collocation.hpp"
+#include "system/solids/ducts/tube_particle.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+constexpr double check_sharpness = 1e-2, coarsest = 1e-8;  // check_sharpness: factor by which wall_residual() multiplies the tolerance of
+                                                           // integrals over the wall, because pressures are large. coarsest: upper limit of
+                                                           // this product
+
+/// Adds points of a cross-section to `points`: points on straight lines from the centroid to the outline, if they are inside the outline. `place`:
+/// maps points of the cross-section into space.
+template <class Place>
+void add_points_of_cap(const surface::Outline& outline, const Place& place, std::vector<Vec3>& points) {
+  const surface::Vec2 centre = outline.centroid();
+  for (int k = 0; k < outline.n_sides(); ++k)
+    for (const double u : outline.knots(k, std::max(2, 12 / outline.n_sides())))
+      for (const double share : {0.25, 0.5, 0.75, 0.9}) {
+        const surface::Vec2 p = centre + share * (outline.point(k, u) - centre);
+        if (outline.inside(p)) points.push_back(place(p));
+      }
+}
+
+/// Returns points on the plane caps that close both ends of the tube.
+std::vector<Vec3> points_of_caps(const surface::TubeWall& wall) {
+  std::vector<Vec3> points;
+  for (const double s : {wall.start, wall.end}) {
+    if (!wall.channel) {
+      add_points_of_cap(wall.outline, [&](const surface::Vec2& p) { return Vec3(s, p[0], p[1]); }, points);
+      continue;
+    }
+    const surface::Channel::Section at = wall.channel->section(s);
+    const auto place = [&](const surface::Vec2& p) -> Vec3 { return at.centre + p[0] * at.normal + p[1] * Vec3::UnitZ(); };
+    add_points_of_cap(wall.channel->outline(s), place, points);
+  }
+  return points;
+}
+
+}  // namespace
+
+void Tube::weigh_flow() {
+  if (flow_weights_.size() > 0) return;
+  flow_weights_ = wall_->flow_weights();
+  force_weights_ = wall_->force_weights();
+  if (!wall_->iterates()) flow_of_wall_ = wall_->solve_transposed(flow_weights_);
+  own_flow_ = cell() ? viscosity() * flow_->flow_rate() / empty_pressure_drop() : wall_->inlet().own_flow();
+  flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->traction_per_pressure_drop())) / viscosity();
+}
+
+/// Returns the errors of the response in the conditions (2.14). By reciprocity, a force f at y causes the flow rate f.c(y)/mu through the inlet, with
+/// c of (2.13). Therefore no quadrature over the inlet is needed.
+Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
+  ParticleData& particle = *particle_;
+  const double mu = viscosity(), dp = response.pressure_drop;
+  const double area = wall_->surface().outline.area();
+  weigh_flow();
+  double flow = -dot(flow_weights_, response.wall_traction) / mu + dp / mu * own_flow_;
+  double force = (cell() ? 0 : area * dp) - dot(force_weights_, response.wall_traction);  // a periodic duct has no caps on which dp acts
+  std::vector<double> value[3];
+  if (f.size() > 0) {
+    stokes::Layer& layer = particle.sources.single_layer;
+    layer.values(f, value);
+    const auto& node = layer.nodes();
+    for (std::size_t k = 0; k < value[0].size(); ++k) {
+      const Net at = (Net(1, 3) << node[0][k], node[1][k], node[2][k]).finished();
+      const Vec3 strength = layer.weights()[k] * Vec3(value[0][k], value[1][k], value[2][k]);
+      flow -= wall_->flow_of_forces(at).row(0).dot(strength) / mu;
+      force -= strength[0];
+    }
+  }
+  if (v.size() > 0 && particle.sources.has_double()) flow += dot(particle.flow_of_strength(*wall_), particle.sources.strength(v));
+  const double force_of_pressure = area - dot(force_weights_, wall_->traction_per_pressure_drop());
+
+  Checks checks;
+  checks.flux = flow / flow_->flow_rate();
+  checks.force = force / (area * flow_->pressure_gradient() * flow_->radius());
+  if (!cell()) checks.cap_velocity = cap_velocity(f, v, response) / flow_->mean_velocity();
+  checks.pressure_by_flux = dp - flow / flow_of_pressure_;
+  checks.pressure_by_force = dp - force / force_of_pressure;
+  return checks;
+}
+
+namespace {
+
+quadrature::Options for_wall_residual(quadrature::Options options) {
+  options.tolerance = std::clamp(check_sharpness * options.tolerance, 1e-12, coarsest);
+  return options;
+}
+
+}  // namespace
+
+Tube::BetweenSitesOfWall::BetweenSitesOfWall(const surface::TubeWall& wall, const std::optional<stokes::PeriodicCell>& cell,
+                                             const BetweenSites& between, const quadrature::Options& options)
+    : at(between.values * wall.net),
+      weights(between.weights),
+      layer(stokes::Layer::Kernel::single_layer, wall.space, between.sites, for_wall_residual(options)) {
+  if (cell) layer.repeat(*cell);
+  layer.set_shape(wall.net);
+}
+
+Tube::WallResidual Tube::wall_residual(const Net& f) {
+  const Response response = respond(f);
+  const surface::TubeWall& wall = wall_->surface();
+  if (!between_)
+    between_ = std::make_unique<BetweenSitesOfWall>(wall, cell(), between_sites(wall.space, wall.net), particle_->parameters.quadrature);
+  const Net &at = between_->at, by_pressure = response.pressure_drop * pressure_driven_velocity(at);
+  const Net u = wall_->points().ranks().divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& velocity) {
+    Net of_wall(at.rows(), 3);
+    between_->layer.apply(wall_->on_space(response.wall_traction), own, of_wall);
+    for (const int i : own) velocity.row(i) = (by_pressure.row(i) - of_wall.row(i)) / viscosity();
+    particle_->sources.add_velocity(f, {}, at, own, velocity);
+  });
+  return {wall_->from_space(Net(between_->weights * u)), checks(f, {}, response).flux * flow_->flow_rate()};
+}
+
+double Tube::work(const WallResidual& residual, const Response& of) const {
+  return dot(of.wall_traction, residual.velocity) - of.pressure_drop * residual.flow;
+}
+
+double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) {
+  const double mu = viscosity();
+  const std::vector<Vec3> points = points_of_caps(wall_->surface());
+  const Net at = Eigen::Map<const Net>(points.front().data(), static_cast<Eigen::Index>(points.size()), 3);
+  Net part = at;
+  const std::vector<int> all = indices(at.rows());
+  Net u = response.pressure_drop / mu * wall_->inlet().integral(at);
+  wall_->layer().apply(wall_->on_space(response.wall_traction), at, all, part);
+  u -= part / mu;
+  particle_->sources.add_velocity(f, v, at, all, u);
+  return u.rowwise().norm().maxCoeff();
+}
+
+bool Tube::inside(const Net& x, std::span<const int> rows) const {
+  const surface::TubeWall& wall = wall_->surface();
+  return std::ranges::all_of(rows, [&](int i) {
+    const Vec3 place = x.row(i).transpose();
+    return wall.channel ? wall.channel->inside(place) : wall.outline.inside(place.tail<2>());
+  });
+}
+
+double Tube::gap() const { return fixed() ? gap_to_channel_wall() : gap_to_straight_wall(); }
+
+/// Returns the gap to the wall of a straight tube, from the clearance between the particle and the outline of the cross-section.
+double Tube::gap_to_straight_wall() const {
+  return surface::clearance(surface::Patches(particle_->geometry.bezier(), particle_->shape), wall().outline).gap;
+}
+
+/// Returns the gap to the wall of a channel, from the closest points of the two surfaces. Of elements that are images of each other, searches one.
+double Tube::gap_to_channel_wall() const {
+  const auto points = [&](int e) -> std::span<const int> { return particle_->space.elements[static_cast<std::size_t>(e)].points; };
+  const std::vector<int> elements =
+      surface::fundamental_elements(particle_->parameters.symmetry, static_cast<int>(particle_->space.elements.size()), points).element;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may extend beyond the end of the period
+    const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
+    if (beyond == 0 || wall().period > 0)
+      nearest = std::min(
+          nearest, surface::closest_points(surface::ElementBoxes(seen, elements), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
+  }
+  return inside(particle_->sites(), indices(particle_->sites().rows())) ? nearest : -nearest;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,236 @@
+#include "system/solids/ducts/wall.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "quadrature/gauss.hpp"
+#include "spline/basis.hpp"
+#include "surface/geometry.hpp"
+#include "system/solids/ducts/congruence.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// Returns the lattice of a periodic wall. The reference distance l of (2.43) is well outside the duct: if it were close to the duct's radius,
+/// tractions on the wall could not move the fluid along the duct.
+std::optional<stokes::PeriodicCell> lattice(const surface::TubeWall& wall) {
+  constexpr double far = 4;
+  if (wall.period == 0) return {};
+  return stokes::PeriodicCell(wall.period * Mat3::Identity(), 1, far * wall.net.rightCols<2>().rowwise().norm().maxCoeff());
+}
+
+}  // namespace
+
+Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases,
+           const surface::Symmetry& symmetry, const WallSolver& solver)
+    : surface_(wall),
+      symmetry_(symmetry.order() > 1 ? symmetry : surface::Symmetry(static_cast<int>(wall.sites.size()))),
+      quadrature_(quadrature),
+      solver_(solver),
+      points_(surface_, symmetry_, phases),
+      cell_(lattice(wall)),
+      layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature) {
+  const auto n = static_cast<int>(wall.sites.size());
+  if (!cell_) inlet_.emplace(wall.outline, wall.start, quadrature.for_matrix().tolerance);
+  if (cell_) layer_.repeat(*cell_, {.assembled = true});
+  layer_.set_shape(wall.net);
+  if (wall.channel) boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
+  on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, points_.target_sites(wall),
+                                               quadrature.for_matrix());
+  if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
+  on_itself_->set_shape(wall.net);
+  if (cell_) find_null_vector();
+  const surface::Symmetry of_wall = reflections(surface_, points_.sites());
+  if (solver.iterates(WallFactors::bytes(of_wall, symmetry_), cell_.has_value())) {
+    patches_of_rows_.emplace(surface_, *on_itself_, symmetry_.fundamental());
+    krylov_ = std::make_unique<Krylov>(IterativeOptions{.solver = "GMRES", .preconditioner = "recycled"});
+  } else {
+    factor(of_wall);
+  }
+  inlet_column_ = cell_ ? Net(Net::Zero(n, 3)) : points_.collocated(inlet_->integral(points_.targets()));
+  traction_per_pressure_drop_ = cell_ ? inlet_column_ : solve(inlet_column_);
+}
+
+bool Wall::is_for(const surface::TubeWall& wall, const quadrature::Options& quadrature, const surface::Symmetry& symmetry,
+                  const WallSolver& solver) const {
+  const bool same_surface = same(wall.net, surface_.net) && wall.n_around == surface_.n_around && wall.period == surface_.period &&
+                            wall.start == surface_.start && wall.end == surface_.end;
+  const bool same_symmetry = symmetry.order() == symmetry_.order() && (symmetry.order() == 1 || symmetry.source() == symmetry_.source());
+  return same_surface && same_symmetry && quadrature == quadrature_ && solver == solver_;
+}
+
+/// Computes null_vector_ and flux_vector_. The outer product of these two fields is added to A, because A is singular: a uniform pressure produces no
+/// velocity. The product is scaled so that it maps a uniform pressure to about the velocity that A produces for a tangential traction of equal size.
+void Wall::find_null_vector() {
+  flux_vector_ = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
+  null_vector_.resize(n_sites(), 3);
+  for (Eigen::Index i = 0; i < null_vector_.rows(); ++i)
+    null_vector_.row(i) = surface::point(surface_.space, surface_.net, surface_.sites[static_cast<std::size_t>(i)].front()).n.transpose();
+  null_vector_ *= surface_.radius() / dot(flux_vector_, null_vector_);
+}
+
+template <class Real>
+void Wall::from_space(stokes::Rows<Real>& rows) const {
+  if (!cell_) return;
+  using RealNet = Eigen::Matrix<Real, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  const stokes::Rows<Real> on_space = std::exchange(rows, stokes::Rows<Real>(rows.rows(), 3 * n_sites()));
+  for (Eigen::Index r = 0; r < rows.rows(); ++r) {
+    const Net of_row = Eigen::Map<const RealNet>(on_space.row(r).data(), surface_.space.n_points, 3).template cast<double>();
+    Eigen::Map<RealNet>(rows.row(r).data(), n_sites(), 3) = from_space(of_row).template cast<Real>();
+  }
+}
+template void Wall::from_space(stokes::Rows<float>& rows) const;
+
+/// Assembles the rows of the single layer of the wall at targets on the wall itself. The columns belong to the control values of f.
+void Wall::assemble_rows(std::span<const int> targets, stokes::Rows<double>& rows) {
+  on_itself_->assemble(targets, rows);
+  from_space(rows);
+}
+
+/// Assembles and factors the wall's operator A. Many rows are assembled at a time, because each row is a mean over a collocation point and adjacent
+/// element midpoints (2.39), and neighbouring collocation points share these midpoints. If rotations or reflections of the cross-section map
+/// collocation points to each other, only the rows of one of these points are assembled. These maps then yield the rows of the other points.
+void Wall::factor(const surface::Symmetry& of_wall) {
+  constexpr std::size_t at_a_time = 240;
+  factors_ = WallFactors(of_wall, symmetry_);
+  const auto n = static_cast<int>(n_sites());
+  const int m = surface_.n_around;
+  const std::vector<WallSymmetry> maps = wall_symmetries(surface_, points_.sites());
+  const std::vector<OrbitRepresentative> representative = orbit_representatives(maps, m);
+  const auto representative_of = [&](int site) { return representative[static_cast<std::size_t>(site % m)]; };
+  std::vector<int> own;  // sites of this rank, sorted by OrbitRepresentative::point (congruence.hpp): equal representatives are adjacent
+  for (const int k : points_.ranks().share(static_cast<int>(of_wall.fundamental().size())))
+    own.push_back(of_wall.fundamental()[static_cast<std::size_t>(k)]);
+  std::ranges::stable_sort(own, {}, [&](int site) { return site - site % m + representative_of(site).point; });
+  // Adds the rows of `site`. `rows`: the three rows of the congruent site that `map` moves to `site`.
+  const auto add_rows = [&](int site, const WallSymmetry& map, const auto& rows) {
+    for (int p = 0; p < n; ++p) {
+      const int from = p - p % m + map.source[static_cast<std::size_t>(p % m)];
+      factors_.add(site, p, map.q * rows.template middleCols<3>(3 * from) * map.q.transpose());
+    }
+  };
+  for (std::size_t first = 0, last = 0; first < own.size(); first = last) {
+    std::vector<int> some, row;  // some: sites whose rows are assembled. row: for each site of `own`, index in `some` of the congruent site
+    for (; last < own.size() && some.size() < at_a_time; ++last) {
+      const int site = own[last] - own[last] % m + representative_of(own[last]).point;
+      if (some.empty() || some.back() != site) some.push_back(site);
+      row.push_back(static_cast<int>(some.size()) - 1);
+    }
+    stokes::Rows<double> part;
+    points_.collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { assemble_rows(targets, rows); }, part);
+    for (std::size_t k = 0; k < row.size(); ++k) add_rows(own[first + k], *representative_of(own[first + k]).from, part.middleRows<3>(3 * row[k]));
+  }
+  if (cell_ && points_.ranks().rank() == 0) factors_.add_product(null_vector_, flux_vector_);
+  factors_.factor(points_.ranks());
+}
+
+Net Wall::apply(const Net& f) const {
+  Net u(points_.targets().rows(), 3);
+  on_itself_->apply(on_space(f), points_.own_targets(), u);
+  const Net rows = points_.collocated(u);
+  return cell_ ? Net(rows + dot(flux_vector_, f) * null_vector_) : rows;
+}
+
+Net Wall::solve(const Net& rhs) const {
+  return iterates() ? iterated(rhs) : factors_.solve(symmetry_.completed(rhs));
+}
+
+void Wall::forget_recycled() const {
+  if (krylov_) krylov_->forget();
+}
+
+Net Wall::iterated(const Net& rhs) const {
+  const Eigen::VectorXd b = fundamental(rhs);
+  const auto through = [&](const std::function<void(const Net&, Net&)>& map) {
+    return [this, map, n = b.size()](const double* in, double* out) {
+      Net given = fundamental_net(Eigen::Map<const Eigen::VectorXd>(in, n)), found = given;
+      symmetry_.complete(given);
+      map(given, found);
+      Eigen::Map<Eigen::VectorXd>(out, n) = fundamental(found);
+    };
+  };
+  const LinearSystem system{{{"wall traction", b.size()}},
+                            through([this](const Net& f, Net& u) { u = apply(f); }),
+                            through([this](const Net& u, Net& f) { patches_of_rows_->apply(u, f); })};
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
+  require_convergence(krylov_->solve(system, b, x, solver_.tolerance), "the wall", solver_.tolerance);
+  Net f = fundamental_net(x);
+  symmetry_.complete(f);
+  return f;
+}
+
+Net Wall::solve_transposed(const Net& weights) const {
+  const Net everywhere = factors_.solve_transposed(weights);
+  Net folded = Net::Zero(weights.rows(), 3);
+  for (Eigen::Index p = 0; p < weights.rows(); ++p)
+    folded.row(symmetry_.source()[static_cast<std::size_t>(p)]) += symmetry_.signs().row(p).cwiseProduct(everywhere.row(p));
+  return folded;
+}
+
+/// Returns the components of a net at fundamental points as a vector, without the components that symmetry makes zero.
+Eigen::VectorXd Wall::fundamental(const Net& net) const {
+  std::vector<double> numbers;
+  for (const int a : symmetry_.fundamental())
+    for (int c = 0; c < 3; ++c)
+      if (symmetry_.signs()(a, c) != 0) numbers.push_back(net(a, c));
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+/// Returns the net whose components at fundamental points are `numbers` (inverse of `fundamental`). Rows of image points are zero.
+Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
+  Net net = Net::Zero(n_sites(), 3);
+  Eigen::Index n = 0;
+  for (const int a : symmetry_.fundamental())
+    for (int c = 0; c < 3; ++c)
+      if (symmetry_.signs()(a, c) != 0) net(a, c) = numbers[n++];
+  return net;
+}
+
+/// Returns int N_A field dGamma over the wall for every control point A. Along the wall, the map s = 3 q^2 - 2 q^3 moves the Gauss points q towards
+/// both ends of each element, because the inlet integral (2.13) is steep at the rim of the inlet.
+Net Wall::weights(const std::function<Vec3(const surface::Point&)>& field) const {
+  constexpr int along = 16, around = 6;
+  const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);
+  const spline::Space& space = surface_.space;
+  Net sum = Net::Zero(space.n_points, 3);
+  for (std::size_t e = 0; e < space.elements.size(); ++e)
+    for (int i = 0; i < along; ++i)
+      for (int j = 0; j < around; ++j) {
+        const double q = in_s.nodes[i];
+        const spline::Site site{static_cast<int>(e), q * q * (3 - 2 * q), in_t.nodes[j]};
+        const surface::Point at = surface::point(space, surface_.net, site);
+        const Vec3 value = in_s.weights[i] * 6 * q * (1 - q) * in_t.weights[j] * at.jacobian * field(at);
+        const Eigen::VectorXd basis = spline::basis(space.elements[e], site.s, site.t, 0).value;
+        for (std::size_t a = 0; a < space.elements[e].points.size(); ++a)
+          sum.row(space.elements[e].points[a]) += basis[static_cast<Eigen::Index>(a)] * value.transpose();
+      }
+  return sum;
+}
+
+Net Wall::flow_of_forces(const Net& at) const {
+  if (!cell_) return inlet_->integral(at);
+  Net flow = Net::Zero(at.rows(), 3);
+  flow.col(0) = -at.rightCols<2>().rowwise().squaredNorm() / (4 * surface_.period);
+  return flow;
+}
+
+Vec3 Wall::flow_of_double_layer(const Vec3& at, const Vec3& n) const {
+  if (!cell_) return inlet_->double_layer_flow(at, n);
+  const Vec3 across(0, at[1], at[2]);
+  return (at[0] * n - (n.dot(across) * Vec3::UnitX() + n[0] * across) / 2) / surface_.period;
+}
+
+Net Wall::flow_weights() const {
+  return from_space(weights([&](const surface::Point& at) -> Vec3 { return flow_of_forces(Net(at.x.transpose())).row(0).transpose(); }));
+}
+
+Net Wall::force_weights() const {
+  return from_space(weights([](const surface::Point&) -> Vec3 { return Vec3::UnitX(); }));
+}
+
+stokes::Evaluations Wall::evaluations() const {
+  return on_itself_->evaluations() + layer_.evaluations();
+}
+
+}  // namespace tanktread::coupling

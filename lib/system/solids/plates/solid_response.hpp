@@ -1,0 +1,93 @@
+#pragma once
+// Velocity that plates and posts add to the flow around the particles between them. The force of these solids on the fluid is eliminated.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/types.hpp"
+#include "stokes/flow/ambient_flow.hpp"
+#include "stokes/medium/plane_wall.hpp"
+#include "system/solids/particle_sources.hpp"
+#include "system/solids/plates/solids.hpp"
+
+namespace tanktread::coupling {
+
+/// Surroundings of the particles in a lattice with solids.
+struct SolidScene {
+  std::shared_ptr<Solids> solids;
+  std::vector<stokes::PlaneWall> planes;  ///< the plates among the solids, with normals into the fluid
+  Vec3 driving_gradient = Vec3::Zero();   ///< gradient of the mean pressure that drives the fluid, at the amplitude 1 of the flow, force/length^3.
+                                          ///< Between plates, the ambient velocity v_inf already includes its effect
+  quadrature::Options quadrature;
+};
+
+/// Returns the solution of (2.46) without particles, in the ambient flow v_inf. Collective.
+Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow);
+
+/// Returns the integral over the cell (2.49) of the velocity due to the solids only. `flow`: solution of (2.46).
+Vec3 solids_flow_integral(const SolidScene& scene, const Solids::Flow& flow);
+
+/// Velocity u that solids (with the surface S) add to the ambient flow v_inf and to the layers of the particles (with the surface C):
+///
+///   u = (1/mu) G_S f + U,   u = V - v_inf + (1/mu) G_C df - (1/8 pi) int_C (1 - lambda) T v n dGamma on the solids        (2.47)
+///
+/// V is the prescribed velocity of the solids, which changes in time like the flow; df and v are load and velocity of the particles. f and U are the
+/// solution of (2.46) for the force F = V_c g + int df dGamma, where V_c is the volume of the cell and g the mean pressure gradient. With this F, the
+/// total force on the fluid in one cell balances the pressure gradient g. The layers of the particles include all images. `empty` returns the
+/// solution without particles, and `respond` the part of the solution that is linear in df and v. Nets of particles are replicated on all ranks. All
+/// calls except queries are collective.
+class SolidResponse {
+ public:
+  /// `space`: common space of all particles. `flow`: ambient flow. References must outlive this object.
+  SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow);
+
+  ParticleSources& particles() { return particles_; }  ///< contrasts and unstressed net must be set before set_shape()
+
+  /// Sets the particles' control net; later calls use this shape. `at`: points on the particles at which `velocities` are needed. `own`: the rows
+  /// that this rank computes.
+  void set_shape(const Net& x, const Net& at, std::span<const int> own);
+
+  /// Returns the solution without particles.
+  const Solids::Flow& empty();
+
+  /// Returns the part of the solution of (2.46) due to the load f and the velocity v of the particles. An empty net counts as zero.
+  Solids::Flow respond(const Net& f, const Net& v);
+
+  /// Computes the rows `own` of the velocity u at the points `at`; both were passed to `set_shape`. Not collective.
+  void velocities(const Solids::Flow& flow, Net& u);
+
+  /// Computes rows of the velocity u at any points in the fluid. Not collective.
+  void velocity_at(const Net& at, std::span<const int> rows, const Solids::Flow& flow, Net& u) { scene_.solids->velocity_at(at, rows, flow, u); }
+
+  /// Returns the integral over the cell of the velocity u due to the flow `flow` of the solids, the load f and the velocity v of the particles. With
+  /// three periods the integral is the volume times U (2.46). In front of a single plate it is not defined, and zero is returned. Between two plates
+  /// at the distance D it has components along the plates only, and follows from the reciprocal theorem:
+  ///
+  ///   int u_i dV = (1/mu) (int_S f_i phi dGamma - int_C df_i phi dGamma) + int_C (1 - lambda) v.sigma_i n dGamma             (2.49)
+  ///
+  /// In this formula, f_i is the force density of the solids (`flow`) and df_i the load of the particles (the argument f). S are the surfaces of the
+  /// solids, and C the surfaces of the particles. With z the distance from one plate and phi = z (D - z)/2, a pressure that decreases along e_i with
+  /// unit gradient drives the flow phi e_i/mu, which has the stress sigma_i.
+  Vec3 flow_integral(const Solids::Flow& flow, const Net& f, const Net& v);
+
+  /// Returns the force of the particles on the fluid for a load f.
+  Vec3 force(const Net& f) const { return -f.transpose() * areas_; }
+
+  const SolidScene& scene() const { return scene_; }
+  stokes::Evaluations evaluations() const { return particles_.evaluations(); }
+
+ private:
+  SolidScene scene_;
+  const stokes::AmbientFlow& flow_;
+  ParticleSources particles_;
+  Net shape_, at_;
+  std::vector<int> own_;
+  SourceTargets on_solids_;                                 // collocation points of the solids
+  std::optional<stokes::Layer::Near> solids_on_particles_;  // corrections of the layer of the solids at the points `at`, by near-singular quadrature
+  Eigen::VectorXd areas_;  // integral of each basis function N_A over the area to which loads refer (current or unstressed)
+  std::optional<Solids::Flow> empty_;
+  Mat3 change_;  // value of AmbientFlow::change() for which empty_, the flow without particles, was computed
+};
+
+}  // namespace tanktread::coupling
