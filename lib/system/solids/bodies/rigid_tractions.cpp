@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <stdexcept>
 #include <utility>
 
 #include <Eigen/LU>
@@ -253,7 +254,7 @@ bool RigidTractions::inside(const Net& x) const {
 }
 
 Mat3 RigidTractions::moment(std::size_t p) {
-  assert(same(solution_.shape, x_));
+  if (!same(solution_.shape, x_)) throw std::logic_error("the moment of a body needs the solution at the net that was set last");
   reports_.clear();
   if (walls_.tube) return solution_.bodies[p].moment;
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(solution_.residual.size(), n_unit_strains);

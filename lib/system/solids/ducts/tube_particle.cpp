@@ -95,7 +95,7 @@ void Tube::ParticleData::weigh_pressure(const stokes::DuctFlow& flow, bool strai
     interpolated_ambient = from_sites.solve(ambient);
     layer.values(interpolated_ambient, flow_at);
   }
-  weights_of_load = Net::Zero(sites().rows(), 3);
+  weights_of_load = Net::Zero(sites().rows(), 3), weights_of_velocity.resize(0, 3);
   for (int c = 0; c < (straight ? 1 : 3); ++c) {
     for (std::size_t k = 0; k < n; ++k) weighted[k] = layer.weights()[k] * flow_at[c][k];
     weights_of_load.col(c) = layer.moments(weighted) / flow.flow_rate();

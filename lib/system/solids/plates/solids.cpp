@@ -100,9 +100,10 @@ void Solids::reach(const Net& x) {
 }
 
 bool Solids::reaches(const Net& at) const {
-  if (cell().n() == 3 || at.rows() == 0) return true;
+  if (cell().n() == 3 || at.rows() == 0 || !at.allFinite()) return true;
   const auto [low, high] = cell().range(at);
-  return low[2] >= reached_[0][2] && high[2] <= reached_[1][2];
+  const double slack = 1e-6 * (reached_[1][2] - reached_[0][2]);  // points of a surface may be outside of the range of its control points
+  return low[2] >= reached_[0][2] - slack && high[2] <= reached_[1][2] + slack;
 }
 
 bool Solids::outside(const Net& at) const {
