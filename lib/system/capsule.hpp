@@ -29,7 +29,7 @@ class RigidTractions;
 /// Order of calls: set_time() sets the time. evaluate() solves for the loads and velocities of a shape and returns them as an Evaluation.
 /// evaluate_on_demand() returns an Evaluation that solves only when a quantity is read that needs it. Implicit schemes call freeze() every few steps,
 /// linearise() in each step, and then solve() or correction(). Schemes call restore_constraints() after a step. The functions are in capsule.cpp
-/// (evaluation; solve_in_cell() lists its stages), capsule_unknowns.cpp (linear systems), capsule_cell.cpp (lattices, tubes, plates and posts) and
+/// (evaluation; solve_second_kind() lists its stages), capsule_unknowns.cpp (linear systems), capsule_cell.cpp (lattices, tubes, plates, posts) and
 /// capsule_setup.cpp (construction).
 ///
 /// Basic equation, without a wall (2.4), (4.2):

@@ -237,7 +237,9 @@ class CoupledParticles : public ParticleSystem {
       around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
     else
       around = tube(scene_, body(), phases_);
-    power_.reset(), fields_.reset(), capsule_.reset();
+    power_.reset(), fields_.reset();
+    if (!stacked_) members_.front().geometry.reset(), members_.front().membrane.reset();  // they belong to the system
+    capsule_.reset();
     capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around), solids_);
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
