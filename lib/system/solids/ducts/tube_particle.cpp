@@ -37,8 +37,8 @@ Tube::ParticleData::ParticleData(const spline::Space& particle, const TubeParame
   ranks.measure(phases);
 }
 
-void Tube::ParticleData::set_shape(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
-  this->origin = origin;
+void Tube::ParticleData::set_shape(const Net& x, double x1, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
+  origin = x1;
   shape = x;
   shape.col(0).array() -= origin;
   sources.set_shape(shape);

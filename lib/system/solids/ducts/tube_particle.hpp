@@ -21,8 +21,8 @@ namespace tanktread::coupling {
 struct Tube::ParticleData {
   ParticleData(const spline::Space& space, const TubeParameters& parameters, const Wall& wall, Phases& phases);
 
-  /// Sets the shape. `origin`: position along x1 of the origin of the wall's frame. `pressure_drop`: pressure drop of the empty duct.
-  void set_shape(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
+  /// Sets the shape. `x1`: position along x1 of the origin of the wall's frame. `pressure_drop`: pressure drop of the empty duct.
+  void set_shape(const Net& x, double x1, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
 
   /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights with which a velocity on the wall contributes to
   /// the pressure drop dp, or empty. If it is not empty, also computes the weights with which the particle's velocity v contributes to dp: the
