@@ -55,9 +55,9 @@ class Layer {
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(+-1)                                                         (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
 
-  /// Sets the medium, by default unbounded fluid. All later shapes must be in it. Throws std::logic_error if called after share(), unless share() has
-  /// no effect, and if the layer has a medium or a lattice already. Call set_shape() afterwards. Blocks that are assembled for near control points
-  /// do not include what the medium adds.
+  /// Sets the medium, by default unbounded fluid. All later shapes must be in it. Throws std::logic_error if the layer has a medium or a lattice
+  /// already, or if share() has divided its far sums. Call set_shape() afterwards. Blocks that are assembled for near control points do not include
+  /// what the medium adds.
   void set_medium(const Medium& medium);
 
   /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again, and before

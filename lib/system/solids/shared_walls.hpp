@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "system/solids/plates/solids.hpp"
 #include "system/solids/ducts/wall.hpp"
+#include "system/solids/plates/solids.hpp"
 
 namespace tanktread::coupling {
 

@@ -56,7 +56,7 @@ struct Tube::ParticleData {
   double origin = 0;                           ///< x1 of the origin of the wall's frame, which is the particle's centroid in a straight open tube
   Net inlet;                                   ///< velocity c (2.5) per unit pressure drop, at the sites
   Net ambient, interpolated_ambient;           ///< duct flow v_inf at the sites, and its control values (in a channel only)
-  Net weights_of_load, weights_of_velocity;  ///< weights of f and v in dp (2.7). Weights of v are set only in a straight tube, if lambda != 1
+  Net weights_of_load, weights_of_velocity;    ///< weights of f and v in dp (2.7). Weights of v are set only in a straight tube, if lambda != 1
   Net target_points;                           ///< targets of the wall; in a periodic duct also the particle's collocation points, in later rows
   int n_on_wall = 0;                           ///< number of targets on the wall
   std::vector<int> own_targets;                ///< rank-owned rows of `target_points`
