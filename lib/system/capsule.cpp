@@ -16,14 +16,14 @@ void Capsule::set_time(double time, double start) {
   if (other_flow || other_cell) latest_.reset();
 }
 
-/// Returns dE/dx of all loads minus the virtual work of the forces set by set_forces(), one row per control point; 0 for rigid bodies. Sets `sums` to
-/// the surface integrals of the loads, summed over all ranks.
-Net Capsule::work_of_loads(const Net& x, std::vector<Net>& sums) {
-  Net work = membranes_.work(x, sums);
+/// Returns the virtual work of the loads and of the forces set by set_forces().
+WorkOfLoads Capsule::work_of_loads(const Net& x) {
+  WorkOfLoads found;
+  found.work = membranes_.work(x, found.sums);
   for (const Net* of_forces : {&forces_.contacts, &forces_.fields})
-    if (of_forces->size() > 0) work -= *of_forces;
-  clear_rigid(particles(), work);  // rows of rigid bodies are 0; push_bodies() applies the forces on rigid bodies instead
-  return work;
+    if (of_forces->size() > 0) found.work -= *of_forces;
+  clear_rigid(particles(), found.work);  // rows of rigid bodies are 0; push_bodies() applies the forces on rigid bodies instead
+  return found;
 }
 
 void Capsule::set_forces(Net Forces::* of, Net work) {
@@ -52,9 +52,10 @@ void Capsule::push_bodies(const Net& x) {
   bodies_.rigid.push(push);
 }
 
-/// Returns the load of the membranes at x. `x`: shape of `e`; on a lattice, each particle may be moved into the cell, which changes no load. If
-/// `volume` is given, it is set to the constraint on velocities at x, and remains inactive if the volumes are free.
-Net Capsule::membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume) {
+/// Returns the load of the membranes at x. `known`: virtual work of the loads at x, computed here if it has no rows. On a lattice, particles may be
+/// moved into the cell, which changes no load. If `volume` is given, it is set to the constraint on velocities at x, and remains inactive if the
+/// volumes are free.
+Net Capsule::membrane_load(const Net& x, WorkOfLoads& known, VolumeConstraint* volume) {
   Net* response = nullptr;
   if (volume && parameters_.constrained()) {
     volume->gradient = volume->response = volumes_.gradient(x);
@@ -65,8 +66,8 @@ Net Capsule::membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume
     if (response) *response = membranes_.solved(std::move(*response));
     return targets_.collocated(membranes_.strong_load(x));
   }
-  if (e.work_.size() == 0) e.work_ = work_of_loads(x, e.load_sums_);
-  return membranes_.load(x, e.work_, response);
+  if (known.work.size() == 0) known = work_of_loads(x);
+  return membranes_.load(x, known.work, response);
 }
 
 /// Returns velocity fields, with the symmetry of the scene, that do not change the shape: rotations of the meshes of drops and of membranes (4.22).
@@ -88,15 +89,11 @@ std::vector<Net> Capsule::relabellings(const Net& x) {
 
 std::shared_ptr<Evaluation> Capsule::evaluate(const Net& x, const Net& guess, double error) {
   const std::shared_ptr<Evaluation> before = latest_ && same(x, latest_->x()) ? latest_ : nullptr;
-  if (before && before->error_ <= error) return before;
+  if (before && before->solved(error)) return before;
   ++counts_.evaluations;
   latest_.reset();
-  const auto e = std::make_shared<Evaluation>(*this, x);
-  e->error_ = error;
-  e->velocity_ = symmetric(in_cell(*e, before ? before->velocity_ : guess));
-  e->solved_ = true;
-  if (!bodies_.rigid.empty()) e->rigid_ = bodies_.rigid;
-  if (e->velocity_.allFinite()) latest_ = e;
+  const auto e = std::make_shared<Evaluation>(*this, x, solve_shape(x, before ? before->velocity() : guess, error));
+  if (e->velocity().allFinite()) latest_ = e;
   return e;
 }
 
@@ -105,49 +102,52 @@ std::shared_ptr<Evaluation> Capsule::evaluate_on_demand(const Net& x, const Net&
   return latest_;
 }
 
-/// Computes (4.2) in the cell. Tube and rigid bodies must be set to the shape x. Returns the velocity of the control points.
-Net Capsule::solve_in_cell(Evaluation& e, const Net& x, const Net& guess) {
+/// Computes (4.2) in the cell. Tube and rigid bodies must be set to the shape x. Returns the velocity of the control points. Sets the other quantities
+/// of `found`; its allowed error is given.
+Net Capsule::solve_in_cell(const Net& x, const Net& guess, SolvedShape& found) {
   if (!in_fluid(x)) return not_a_number(x);
   push_bodies(x);
   VolumeConstraint volume;
-  const Net fluid = bodies_.tractions ? solve_first_kind(e, x, volume) : solve_second_kind(e, x, guess, volume);
+  const Net fluid = bodies_.tractions ? solve_first_kind(x, volume, found) : solve_second_kind(x, guess, volume, found);
   if (!interface_) return fluid;
-  e.fluid_ = symmetric(fluid);
+  found.fluid = symmetric(fluid);
   const auto clock = phases_.time("interface motion");
-  Net v = interface_->velocity(x, volume.active() ? volume.gradient : volumes_.gradient(x), fluid, e.slip_);
+  Net v = interface_->velocity(x, volume.active() ? volume.gradient : volumes_.gradient(x), fluid, found.slip);
   volumes_.constrain(v, volume);  // removes the small change of volume that the spline interpolation of the normal velocity causes
   return v;
 }
 
 /// Computes the fluid velocity of (4.2) step by step: the load of membranes and rigid bodies, the velocity that this load causes plus the ambient
 /// velocity, the projection onto constant volumes, and the solution of the linear system for the velocity, if one is needed. The unknowns of rigid
-/// bodies are the densities w of (2.23), which are replaced by the velocities of the bodies at the end. Sets `volume`.
-Net Capsule::solve_second_kind(Evaluation& e, const Net& x, const Net& guess, VolumeConstraint& volume) {
+/// bodies are the densities w of (2.23), which are replaced by the velocities of the bodies at the end. Sets `volume` and
+/// the loads and unknowns of `found`.
+Net Capsule::solve_second_kind(const Net& x, const Net& guess, VolumeConstraint& volume, SolvedShape& found) {
   RigidParticles& rigid = bodies_.rigid;
-  Net f = membrane_load(e, x, &volume);
+  Net f = membrane_load(x, found.loads, &volume);
   rigid.add_load(f);
-  e.load_ = f;
-  Net v = explicit_velocity(x, f, {}, &e.response_);
+  found.load = f;
+  Net v = explicit_velocity(x, f, {}, &found.response);
   rigid.add_load_correction(v);
   rigid.subtract_prescribed(v);
   volumes_.constrain(v, volume);
-  if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, e.error_);
-  e.unknowns_ = v;
-  if (viscous()) e.load_ += membranes_.viscous_load(x, symmetric(v));
+  if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, found.error);
+  found.unknowns = v;
+  if (viscous()) found.load += membranes_.viscous_load(x, symmetric(v));
   if (rigid.empty()) return v;
-  e.unknowns_ = symmetric(v);
-  e.load_ += rigid.completing_load(v);
+  found.unknowns = symmetric(v);
+  found.load += rigid.completing_load(v);
   rigid.store_density(v);
   return v;
 }
 
-/// Computes the fluid velocity of (4.2) as solve_second_kind() does, but with the tractions on rigid bodies as unknowns (2.40). Sets `volume`.
-Net Capsule::solve_first_kind(Evaluation& e, const Net& x, VolumeConstraint& volume) {
-  e.load_ = bodies_.tractions->all_rigid() ? Net(Net::Zero(x.rows(), 3)) : membrane_load(e, x, &volume);
-  Net v = explicit_velocity(x, e.load_, {}, &e.response_);
+/// Computes the fluid velocity of (4.2) as solve_second_kind() does, but with the tractions on rigid bodies as unknowns (2.40). Sets `volume`
+/// and the loads and unknowns of `found`.
+Net Capsule::solve_first_kind(const Net& x, VolumeConstraint& volume, SolvedShape& found) {
+  found.load = bodies_.tractions->all_rigid() ? Net(Net::Zero(x.rows(), 3)) : membrane_load(x, found.loads, &volume);
+  Net v = explicit_velocity(x, found.load, {}, &found.response);
   volumes_.constrain(v, volume);
-  e.unknowns_ = solve_tractions(e, x, volume, symmetric(v));
-  return e.unknowns_;
+  found.unknowns = solve_tractions(x, volume, symmetric(v), found);
+  return found.unknowns;
 }
 
 /// Returns v_inf - (1/mu) R^-1 A f of (4.2), with the ambient velocity v_inf, the collocation matrix R and the single layer A. Adds the velocity that
@@ -204,8 +204,8 @@ Net Capsule::defect(const Net& at, const Net& given) {
   if (!in_fluid(x)) return not_a_number(x);
   VolumeConstraint volume;
   Net projected = u;
-  Evaluation e(*this, x);
-  Net f = membrane_load(e, x, &volume);
+  WorkOfLoads work;
+  Net f = membrane_load(x, work, &volume);
   volumes_.constrain(projected, volume);
   if (viscous()) f += membranes_.viscous_load(x, projected);
   Net residual = explicit_velocity(x, f, layers_.has_double() ? projected : Net(), nullptr) - projected;
@@ -230,7 +230,7 @@ void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++counts_.tangents;
   const auto e = evaluate_on_demand(x, {}, 0);
-  jacobian_.linearise(x, slides() ? e->work() : Net(), e->load_sums(), e->slip_);
+  jacobian_.linearise(x, slides() ? e->work() : Net(), e->load_sums(), e->slip());
 }
 
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {

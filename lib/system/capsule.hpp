@@ -200,19 +200,19 @@ class Capsule : public Dynamics {
   bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // true if all unknowns are velocities of control points
   bool has_forces() const { return forces_.contacts.size() > 0 || forces_.fields.size() > 0; }
   // Evaluation of a shape (capsule.cpp).
-  Net solve_in_cell(Evaluation& e, const Net& x, const Net& guess);
-  Net solve_second_kind(Evaluation& e, const Net& x, const Net& guess, VolumeConstraint& volume);
-  Net solve_first_kind(Evaluation& e, const Net& x, VolumeConstraint& volume);
+  SolvedShape solve_shape(const Net& x, const Net& guess, double error);
+  Net solve_in_cell(const Net& x, const Net& guess, SolvedShape& found);
+  Net solve_second_kind(const Net& x, const Net& guess, VolumeConstraint& volume, SolvedShape& found);
+  Net solve_first_kind(const Net& x, VolumeConstraint& volume, SolvedShape& found);
   bool inside_tube(const Net& x) const;
   bool in_fluid(const Net& x) const;
   void push_bodies(const Net& x);
-  Net work_of_loads(const Net& x, std::vector<Net>& sums);
-  Net membrane_load(Evaluation& e, const Net& x, VolumeConstraint* volume = nullptr);
+  WorkOfLoads work_of_loads(const Net& x);
+  Net membrane_load(const Net& x, WorkOfLoads& known, VolumeConstraint* volume = nullptr);
   Net explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer);
   // Cells of lattices, tubes, plates and posts (capsule_cell.cpp).
   bool deform_cell(double time);
   Vec3 cell_origin(const Net& x) const;
-  Net in_cell(Evaluation& e, const Net& guess);
   void set_tube_shape(const Net& x, std::optional<double> origin);
   void set_solid_shape(const Net& x);
   Tube::Response add_walls(const Net& x, const Net& f, const Net& v, bool with_empty, Net& u);
@@ -225,8 +225,8 @@ class Capsule : public Dynamics {
   Net deformable_velocity(const VolumeConstraint& volume, const Net& y) const;
   Net traction_load(const Net& x, const Net& y, const Net& v);
   Net traction_product(const Net& x, const VolumeConstraint& volume, const Net& y, const Net& caused);
-  Net solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint& volume, const Net& flow);
-  Mat3 moment_by_traction(Evaluation& at, std::size_t p);
+  Net solve_tractions(const Net& x, const VolumeConstraint& volume, const Net& flow, SolvedShape& found);
+  Mat3 moment_by_traction(const Net& x, const SolvedShape& at, std::size_t p);
   void record_solve(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
 
   const spline::Space& space_;

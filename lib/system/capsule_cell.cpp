@@ -83,21 +83,24 @@ void Capsule::set_solid_shape(const Net& x) {
   surroundings_.solids->set_shape(x, targets_.values() * x, targets_.own());
 }
 
-/// Evaluates the shape with each particle replaced by its image in the cell of a lattice. Converts the velocities of the images
-/// to velocities of the particles.
-Net Capsule::in_cell(Evaluation& e, const Net& guess) {
-  if (!e.x().allFinite()) return not_a_number(e.x());
-  Net x = e.x(), v = guess;
+/// Solves (4.2) at a shape, with each particle replaced by its image in the cell of a lattice, and converts the velocities of the images to
+/// velocities of the particles. `guess`: see evaluate(). `error`: see Evaluation::solve.
+SolvedShape Capsule::solve_shape(const Net& shape, const Net& guess, double error) {
+  SolvedShape found{.error = error, .velocity = not_a_number(shape)};
+  if (!shape.allFinite()) return found;
+  Net x = shape, v = guess;
   const auto [shifts, origin] = move_into_cell(x, &v);
   bodies_.rigid.move_into_cell(shifts);
   bodies_.rigid.fit_to(x);
   set_tube_shape(x, origin);
-  v = solve_in_cell(e, x, v);
+  v = solve_in_cell(x, v, found);
   for (std::size_t p = 0; p < shifts.size(); ++p)
-    for (Net* net : {&v, &e.fluid_})
+    for (Net* net : {&v, &found.fluid})
       if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += shifts[p].velocity.transpose();
   bodies_.rigid.move_out_of_cell(shifts);
-  return v;
+  found.velocity = symmetric(v);
+  if (!bodies_.rigid.empty()) found.rigid = bodies_.rigid;
+  return found;
 }
 
 }  // namespace tanktread::coupling

@@ -139,12 +139,13 @@ Net Capsule::traction_product(const Net& x, const VolumeConstraint& volume, cons
 }
 
 /// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). Returns the velocity of all particles. `flow`:
-/// part of the velocity that does not depend on these unknowns. Adds the loads that depend on the unknowns to e.load_.
-Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint& volume, const Net& flow) {
+/// part of the velocity that does not depend on these unknowns. Adds the loads that depend on the unknowns to the load
+/// of `found`, and sets its response of a tube.
+Net Capsule::solve_tractions(const Net& x, const VolumeConstraint& volume, const Net& flow, SolvedShape& found) {
   const auto clock = phases_.time("tractions");
   layers_.assemble(x, viscous());
   const auto product = [this, x, volume](const Net& y, const Net& caused) { return traction_product(x, volume, y, caused); };
-  const auto load = [this, x, volume, known = e.load_](const Net& y) {
+  const auto load = [this, x, volume, known = found.load](const Net& y) {
     return Net(known + traction_load(x, y, deformable_velocity(volume, y)));
   };
   std::vector<Vec3> centres;
@@ -158,21 +159,19 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const VolumeConstraint
   auto body = solution.bodies.begin();
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) bodies_.rigid.set_motion(p, body->motion, body->force, body->torque, v), ++body;
-  e.load_ = load(solution.unknowns);
+  found.load = load(solution.unknowns);
   for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, flat(v), parameters_.solvers.tolerance);
-  if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, solution.pressure_correction);
+  if (duct_.tube) found.response = duct_.tube->respond(found.load, v, solution.pressure_correction);
   return v;
 }
 
 /// Returns the first moment int df_i r_j dGamma of the load df on particle p, a rigid body whose unknown is its traction. r is the position relative
-/// to the centre of the body. `at`: evaluation of the shape. Its system is solved again if another shape was solved last.
-Mat3 Capsule::moment_by_traction(Evaluation& at, std::size_t p) {
-  if (!at.solved_ && at.near_) return moment_by_traction(*at.near_, p);
-  at.require_solution();
-  if (!latest_ || !same(at.x(), latest_->x())) at.solve_again();
+/// to the centre of the body. `at`: solution at the shape x. The system is solved again if another shape was solved last.
+Mat3 Capsule::moment_by_traction(const Net& x, const SolvedShape& at, std::size_t p) {
+  evaluate(x, at.velocity, at.error);
   const Mat3 moment = bodies_.tractions->moment(static_cast<std::size_t>(std::ranges::count_if(
       std::span(particles()).first(p), [](const Particle& one) { return one.rigid.has_value(); })));
-  for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, flat(at.x()), parameters_.solvers.tolerance);
+  for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, flat(x), parameters_.solvers.tolerance);
   return -moment;
 }
 

@@ -8,20 +8,13 @@
 namespace tanktread::coupling {
 
 Evaluation::Evaluation(Capsule& system, Net x, Net velocity, std::shared_ptr<Evaluation> near)
-    : system_(&system), x_(std::move(x)), known_(std::move(velocity)), near_(std::move(near)) {}
+    : system_(&system), x_(std::move(x)), given_(std::move(velocity)), near_(std::move(near)) {}
+
+Evaluation::Evaluation(Capsule& system, Net x, SolvedShape solution)
+    : system_(&system), x_(std::move(x)), solved_(true), known_(std::move(solution)) {}
 
 void Evaluation::solve(double error) {
-  if (solved_ && error_ <= error) return;
-  const std::shared_ptr<Evaluation> found = system_->evaluate(x_, solved_ ? velocity_ : known_, error);
-  Net known = std::move(known_);
-  *this = *found;
-  known_ = std::move(known);
-}
-
-void Evaluation::solve_again() {
-  known_ = velocity_;
-  solved_ = false;
-  solve(error_);
+  if (!solved(error)) *this = *system_->evaluate(x_, solved_ ? known_.velocity : given_, error);
 }
 
 void Evaluation::require_solution() {
@@ -29,16 +22,16 @@ void Evaluation::require_solution() {
 }
 
 const Net& Evaluation::velocity() {
-  if (!solved_ && known_.size() > 0) return known_;
+  if (!solved_ && given_.size() > 0) return given_;
   require_solution();
-  return velocity_;
+  return known_.velocity;
 }
 
 const Net& Evaluation::fluid_velocity() {
   if (!system_->slides()) return velocity();
   if (!solved_ && near_) return near_->fluid_velocity();
   require_solution();
-  return fluid_;
+  return known_.fluid;
 }
 
 const Net& Evaluation::solved_fluid_velocity() {
@@ -46,45 +39,42 @@ const Net& Evaluation::solved_fluid_velocity() {
   return fluid_velocity();
 }
 
-const Net& Evaluation::work() {
-  if (work_.size() == 0) work_ = system_->work_of_loads(x_, load_sums_);
-  return work_;
+const WorkOfLoads& Evaluation::loads() {
+  if (known_.loads.work.size() == 0) known_.loads = system_->work_of_loads(x_);
+  return known_.loads;
 }
 
-const std::vector<Net>& Evaluation::load_sums() {
-  if (system_->membranes_.loads().n_sums() > 0) work();
-  return load_sums_;
-}
+const std::vector<Net>& Evaluation::load_sums() { return system_->membranes().loads().n_sums() > 0 ? loads().sums : known_.loads.sums; }
 
 const Net& Evaluation::load() {
-  if (load_.size() == 0) {
+  if (known_.load.size() == 0) {
     if (!system_->bodies_.rigid.empty() || system_->viscous()) require_solution();  // because the load depends on the solution of the velocity system
-    else load_ = system_->membrane_load(*this, x_);
+    else known_.load = system_->membrane_load(x_, known_.loads);
   }
-  return load_;
+  return known_.load;
 }
 
 const RigidParticles& Evaluation::rigid() {
   if (!solved_ && near_) return near_->rigid();
   require_solution();
-  return rigid_ ? *rigid_ : system_->bodies_.rigid;
+  return known_.rigid ? *known_.rigid : system_->bodies_.rigid;
 }
 
 /// Computes the load and the unknowns from the velocity if it is known; otherwise solves for them.
 void Evaluation::find_unknowns() {
-  if (known_.size() == 0 || !system_->unknowns_are_velocities()) require_solution();
+  if (given_.size() == 0 || !system_->unknowns_are_velocities()) require_solution();
   if (solved_) return;
-  unknowns_ = known_;
-  load_ = system_->membrane_load(*this, x_);
-  if (system_->viscous()) load_ += system_->membranes_.load(x_, viscous_work());
+  known_.unknowns = given_;
+  known_.load = system_->membrane_load(x_, known_.loads);
+  if (system_->viscous()) known_.load += system_->membranes_.load(x_, viscous_work());
 }
 
 const Tube::Response& Evaluation::response() {
-  if (!response_) find_unknowns();
+  if (!known_.response) find_unknowns();
   Net inside = x_;
   system_->place(inside);
-  if (!response_) response_ = system_->duct_.tube->respond(load_, unknowns_);
-  return *response_;
+  if (!known_.response) known_.response = system_->duct_.tube->respond(known_.load, known_.unknowns);
+  return *known_.response;
 }
 
 Evaluation::SolidFlow Evaluation::solid_flow() {
@@ -93,16 +83,16 @@ Evaluation::SolidFlow Evaluation::solid_flow() {
   system_->move_into_cell(inside);
   system_->set_solid_shape(inside);
   SolidResponse& solids = *system_->solids();
-  SolidFlow found{.flow = {}, .caused = solids.respond(load_, unknowns_)};
+  SolidFlow found{.flow = {}, .caused = solids.respond(known_.load, known_.unknowns)};
   found.flow = found.caused + solids.empty();
-  found.caused_integral = solids.flow_integral(found.caused, load_, unknowns_);
+  found.caused_integral = solids.flow_integral(found.caused, known_.load, known_.unknowns);
   found.velocity_integral = found.caused_integral + solids_flow_integral(solids.scene(), solids.empty());
   return found;
 }
 
 Tube::Checks Evaluation::checks() {
-  const Tube::Response& known = response();
-  return system_->duct_.tube->checks(load_, unknowns_, known);
+  const Tube::Response& found = response();
+  return system_->duct_.tube->checks(known_.load, known_.unknowns, found);
 }
 
 const Net& Evaluation::viscous_work() {
@@ -116,7 +106,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
   const auto own = [&](const Net& net) { return particle.block.rows(net); };
   Mat3 moment;
   if (particle.rigid) {
-    moment = particle.by_traction ? system.moment_by_traction(*this, p) : rigid().load_moment(p);
+    moment = particle.by_traction ? moment_by_traction(p) : rigid().load_moment(p);
   } else {
     Net of_particle = own(work());
     if (system.viscous()) of_particle += own(viscous_work());
@@ -131,6 +121,12 @@ Mat3 Evaluation::stresslet(std::size_t p) {
     moment -= 2 * contrast * system.parameters_.viscosity * v.transpose() * own(flux);
   }
   return coupling::stresslet(moment);
+}
+
+Mat3 Evaluation::moment_by_traction(std::size_t p) {
+  if (!solved_ && near_) return near_->moment_by_traction(p);
+  require_solution();
+  return system_->moment_by_traction(x_, known_, p);
 }
 
 double Evaluation::membrane_dissipation(std::size_t p) {

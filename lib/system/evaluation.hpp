@@ -15,6 +15,26 @@ namespace tanktread::coupling {
 
 class Capsule;
 
+/// Virtual work of the loads. `work`: dE/dx of all loads minus the virtual work of the additional forces (Capsule::set_forces), one row per control
+/// point; 0 for rigid bodies. `sums`: surface integrals on which the loads depend (see Loads), summed over all ranks.
+struct WorkOfLoads {
+  Net work;
+  std::vector<Net> sums;
+};
+
+/// Solution of (4.2) at one shape. Nets have one row per control point of all particles.
+struct SolvedShape {
+  double error = 0;  ///< allowed error of the velocity, see Evaluation::solve
+  Net velocity;      ///< velocity of the control points
+  Net fluid;         ///< velocity of the fluids; no rows if no control point slides
+  Slip slip;         ///< slip of the fluids along the meshes of interfaces; empty if no control point slides
+  Net unknowns;      ///< unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies
+  WorkOfLoads loads;
+  Net load;                                ///< see Evaluation::load
+  std::optional<Tube::Response> response;  ///< response of the tube, unless the solution of a velocity system changes it
+  std::optional<RigidParticles> rigid;     ///< rigid bodies with their motion, if there are any
+};
+
 /// Loads, unknowns and velocities of a shape under the forces that act on it (4.2). The Evaluation returned by Capsule::evaluate contains all of
 /// them. An Evaluation constructed from a shape and its velocity computes the other quantities at first use and caches them. It solves the linear
 /// system for the unknowns only if they do not follow from the velocity. Nets have one row per control point of all particles. The Capsule must
@@ -25,12 +45,15 @@ class Evaluation {
   /// `near`: evaluation at nearly the same shape, or null. Until the linear system is solved at x, the motions of rigid bodies and, if control points
   /// slide along interfaces, the fluid velocity are taken from `near`.
   Evaluation(Capsule& system, Net x, Net velocity = {}, std::shared_ptr<Evaluation> near = nullptr);
+  Evaluation(Capsule& system, Net x, SolvedShape solution);  ///< evaluation of a shape whose system is solved already
 
   const Net& x() const { return x_; }                    ///< shape, (N, 3)
   const Net& velocity();                                 ///< velocity of the control points, length/time
   const Net& fluid_velocity();                           ///< velocity of the fluids on the surface; equals `velocity` unless control points slide
-  const Net& work();  ///< virtual work dE/dx of the loads minus the work of Capsule::set_forces(); 0 for rigid bodies
-  const std::vector<Net>& load_sums();                   ///< surface integrals on which the loads depend (see Loads), summed over all ranks
+  const WorkOfLoads& loads();                            ///< virtual work of the loads, and the surface integrals on which they depend
+  const Net& work() { return loads().work; }             ///< WorkOfLoads::work
+  const std::vector<Net>& load_sums();                   ///< WorkOfLoads::sums; empty, without computing the work, if no load has any
+  const Slip& slip() const { return known_.slip; }       ///< slip along the meshes of interfaces; empty if the system is not solved at x
 
   /// Returns the control values of the load of the fluids on the membranes, per unstressed or per current area, depending on the particle. For a
   /// rigid body, this is the load df of (2.23): a field of the form of a rigid motion whose resultants are the force and torque on the fluid. It is
@@ -54,6 +77,7 @@ class Evaluation {
   /// Solves for the unknowns, unless they are known with this error already. Uses the known velocity as initial guess. `error`: allowed error of the
   /// velocity (Capsule::norm per unit of time), if it is larger than the error due to Solvers/tolerance.
   void solve(double error = 0);
+  bool solved(double error) const { return solved_ && known_.error <= error; }  ///< returns whether solve(error) would do nothing
 
   /// Returns the stresslet of particle p (6.7), force x length, with the velocity v of the fluids,
   /// S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dGamma. Batchelor 1970; Pozrikidis 1992, section 5.1.
@@ -66,25 +90,18 @@ class Evaluation {
   double load_energy(std::size_t p = 0);
 
  private:
-  friend class Capsule;
-  void solve_again();       // solves with the same allowed error, so that RigidTractions has the results for this shape
   void require_solution();  // solves for the unknowns if they are not known; a solution with any allowed error is kept
   void find_unknowns();
   const Net& solved_fluid_velocity();  // fluid velocity from a solve at this shape. It is never a copy of the velocity of `near_`
   const Net& viscous_work();
+  Mat3 moment_by_traction(std::size_t p);  // first moment of the load on a body whose unknown is its traction
 
   Capsule* system_;
-  Net x_, known_;  // known_: velocity passed to the constructor
+  Net x_, given_;  // given_: velocity passed to the constructor
   std::shared_ptr<Evaluation> near_;
-  double error_ = 0;      // allowed error of the solution, see solve()
-  bool solved_ = false;  // true if load, velocities, unknowns and rigid bodies are computed
-  Net velocity_, fluid_;  // velocity_: velocity of the control points. fluid_: velocity of the fluid; no rows if no control point slides
-  Slip slip_;             // slip of the fluid along the meshes of interfaces; empty if the shape is not solved or no control point slides
-  Net unknowns_;          // unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies
-  Net work_, load_, viscous_work_;  // no rows until first used
-  std::vector<Net> load_sums_;
-  std::optional<Tube::Response> response_;
-  std::optional<RigidParticles> rigid_;
+  bool solved_ = false;  // true if the system is solved, so that known_ contains its solution
+  SolvedShape known_;    // if solved_ is false, those quantities that were used so far
+  Net viscous_work_;     // no rows until first used
 };
 
 }  // namespace tanktread::coupling
