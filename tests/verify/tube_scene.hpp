@@ -12,7 +12,7 @@
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/shapes.hpp"
 #include "system/parallel/ranks.hpp"
-#include "system/solids/bodies/rigid_body.hpp"
+#include "system/solids/bodies/bounded_free_body.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
 #include "system/solids/ducts/tube.hpp"
 
@@ -81,7 +81,7 @@ struct RigidSphere {
   stokes::AmbientFlow flow;
   std::unique_ptr<coupling::Tube> tube;
   std::unique_ptr<coupling::RigidTractions> tractions;
-  std::unique_ptr<coupling::BoundedFreeBody> body;
+  std::unique_ptr<coupling::FreeBodyInTube> body;
   double radius;
 
   RigidSphere(Sphere given, const Duct& duct, double tolerance = 1e-7) : sphere(std::move(given)), flow(duct.ambient()), radius(sphere.radius) {
@@ -89,10 +89,11 @@ struct RigidSphere {
     parameters.quadrature.tolerance = tolerance;
     solvers.tolerance = 1e-9;
     tube = std::make_unique<coupling::Tube>(duct.wall, *duct.flow, sphere.space, parameters, phases);
+    tube->particles().set_reference(sphere.net);
     tractions = std::make_unique<coupling::RigidTractions>(
         sphere.space, sphere.net, sphere.net, single_body(sphere.space, radius, 1.0, parameters.quadrature, solvers),
         coupling::FluidWalls{tube.get()}, std::vector<int>(), ranks);
-    body = std::make_unique<coupling::BoundedFreeBody>(*tractions, sphere.net, sphere.centre, radius, flow, 1.0);
+    body = std::make_unique<coupling::FreeBodyInTube>(*tractions, sphere.net, sphere.centre, radius, flow, 1.0);
   }
 
   /// Axial force on the fluid divided by 6 pi mu a, and the pressure drop.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -185,13 +186,14 @@ class CoupledParticles : public ParticleSystem {
   }
 
   SurfaceSnapshot snapshot(const motion::State& whole_state) override {
-    const motion::State& state = snapshot_state_ = fields_->of_shape(whole_state);
+    const auto of_shape = std::make_shared<const motion::State>(fields_->of_shape(whole_state));
+    const Net& x = of_shape->x;
     const auto here = fields_->evaluate(whole_state.x, state.history.empty() ? Net() : state.history.front(), 0);
     const Net load = here->load(), velocity = capsule_->slides() || !state.history.empty() ? here->fluid_velocity() : Net();
-    return {state.x, [this, &state, load, velocity](const output::Nodes& nodes) {
-              std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, state.x, load, velocity);
-              fields_->add_to(nodes, state.x, fields);
-              if (capsule_->cell()) fields.push_back({"into cell", into_cell(members_, *capsule_->cell(), nodes, state.x)});
+    return {x, [this, of_shape, &x, load, velocity](const output::Nodes& nodes) {
+              std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, x, load, velocity);
+              fields_->add_to(nodes, x, fields);
+              if (capsule_->cell()) fields.push_back({"into cell", into_cell(members_, *capsule_->cell(), nodes, x)});
               return fields;
             }};
   }
@@ -309,7 +311,6 @@ class CoupledParticles : public ParticleSystem {
   std::unique_ptr<Body> stacked_;  // body with the stacked nets of all particles; null if there is only one particle
   std::unique_ptr<coupling::Capsule> capsule_;
   std::unique_ptr<SurfaceFields> fields_;
-  motion::State snapshot_state_;  // state of the latest snapshot; the function that computes the snapshot's fields refers to it
   std::optional<coupling::PowerBalance> power_;  // constructed at the first use
   coupling::OperationCounts counts_;  // work (solves, iterations) of the systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // number of kernel evaluations on earlier meshes

@@ -7,7 +7,7 @@
 #include "scene/plane_wall.hpp"
 #include "scene/tube.hpp"
 #include "surface/geometry.hpp"
-#include "system/solids/bodies/rigid_body.hpp"
+#include "system/solids/bodies/bounded_free_body.hpp"
 
 namespace tanktread {
 
@@ -97,9 +97,11 @@ class Free : public ParticleSystem {
   /// Returns the free body with the given equation for its traction, in a tube or a medium if the scene has one.
   static std::unique_ptr<coupling::LoneRigidBody> driven(const ParticleScene& scene, const Body& body, coupling::RigidTractions& tractions) {
     const Vec3& centre = scene.particle.shape.center;
-    if (scene.tube.present || scene.medium())
-      return std::make_unique<coupling::BoundedFreeBody>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
-                                                         drive_of(scene, body));
+    if (scene.tube.present)
+      return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
+                                                        drive_of(scene, body));
+    if (scene.medium())
+      return std::make_unique<coupling::FreeBodyInMedium>(tractions, body.rest, centre, body.radius, body.flow, drive_of(scene, body));
     return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, drive_of(scene, body));
   }
 

@@ -45,6 +45,7 @@ void PrescribedRow::add_columns(const ParticleScene& scene, Columns& to) const {
 
 coupling::RigidTractions tractions_of(const ParticleScene& scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
   const auto single = coupling::single_body(body.space, body.radius, scene.flow.viscosity, scene.quadrature, scene.solvers, scene.medium());
+  if (tube) tube->particles().set(body.rest, single.particles);
   return {body.space, body.rest, body.rest, single, {tube}, {}, ranks};
 }
 

@@ -9,7 +9,7 @@
 
 #include "single_ellipsoid.hpp"
 #include "surface/geometry.hpp"
-#include "system/solids/bodies/rigid_body.hpp"
+#include "system/solids/bodies/bounded_free_body.hpp"
 
 namespace tanktread::coupling {
 namespace rigid_body_test {
@@ -82,8 +82,8 @@ TEST(FreeBody, SphereInParabolicFlowMovesAsByFaxen) {
   EXPECT_LT((motion.angular_velocity - 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1))).norm(), 1e-5);
 }
 
-// At one position the combination of modes must equal a direct solve for the same motion. BoundedFreeBody also solves for the motion; it corrects the
-// collocation errors of force and torque (2.11), which the modes do not.
+// At one position the combination of modes must equal a direct solve for the same motion. FreeBodyInMedium also solves for the motion; it corrects
+// the collocation errors of force and torque (2.11), which the modes do not.
 TEST(FreeBody, InAQuadraticFlowModesAgreeWithADirectSolve) {
   Fixture f(Vec3(0.7, 0.9, 1.2));
   stokes::FlowOptions options = parabolic();
@@ -91,7 +91,7 @@ TEST(FreeBody, InAQuadraticFlowModesAgreeWithADirectSolve) {
   options.history->times = {0, 2}, options.history->amplitudes = {1, 3}, options.history->angles = {0, 60}, options.history->axis = "x3";
   const stokes::AmbientFlow flow(options);
   FreeBody modes(*f.tractions, f.rest, f.shape.center, 0.9, flow);
-  BoundedFreeBody solve(*f.tractions, f.rest, f.shape.center, 0.9, flow, viscosity);
+  FreeBodyInMedium solve(*f.tractions, f.rest, f.shape.center, 0.9, flow);
   const Net place = f.turned(1.1, Vec3(1, -1, 0.5));
   for (const double time : {0.0, 1.0}) {
     modes.set_time(time, 0);

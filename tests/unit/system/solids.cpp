@@ -97,7 +97,8 @@ TEST(Solids, PostsInASquareArrayHaveTheKnownForce) {
   Phases phases;
   for (const auto& [c, expected] : {std::pair(0.05, 15.56), {0.2, 51.53}, {0.4, 217.89}}) {
     const stokes::PeriodicCell cell(Mat3(Vec3(1, 1, 0.5).asDiagonal()), 3);
-    const std::vector<Solids::Solid> post{{surface::cylinder(Vec3::Zero(), Vec3(0, 0, 0.5), std::sqrt(c / std::numbers::pi), 20, 4), Vec3::Zero(), {}}};
+    const double radius = std::sqrt(c / std::numbers::pi);
+    const std::vector<Solids::Solid> post{{surface::cylinder(Vec3::Zero(), Vec3(0, 0, 0.5), radius, 20, 4), Vec3::Zero(), {}}};
     const auto posts = std::make_shared<Solids>(post, Solids::Parameters{cell, directions(), 1, fine()}, phases);
     const SolidScene scene{posts, {}, -Vec3::UnitX(), fine()};
     const Solids::Flow flow = without_particles(scene, stokes::AmbientFlow());

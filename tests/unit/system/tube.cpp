@@ -14,7 +14,7 @@
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
 #include "system/targets/collocation.hpp"
-#include "system/solids/bodies/rigid_body.hpp"
+#include "system/solids/bodies/bounded_free_body.hpp"
 #include "system/solids/ducts/tube.hpp"
 
 namespace tanktread::coupling {
@@ -162,16 +162,17 @@ TEST(Tube, HasChecksThatAgreeForAForceFreeFlow) {
   EXPECT_NEAR(routes.pressure_by_force / pushed.pressure_drop, 1, 0.02);
 }
 
-TEST(BoundedFreeBody, IsInvariantUnderRotationAndTranslation) {
+TEST(FreeBodyInTube, IsInvariantUnderRotationAndTranslation) {
   Fixture s(1);
   SolverOptions solvers;
   solvers.tolerance = 1e-9;
   quadrature::Options quadrature;
   quadrature.tolerance = 1e-6;
+  s.tube->particles().set_reference(s.x);
   RigidTractions tractions(s.space, s.x, s.x, single_body(s.space, 0.5, viscosity, quadrature, solvers), {s.tube.get()}, {}, s.ranks);
   stokes::FlowOptions options;
   options.type = "duct", options.mean_velocity = 1.3;
-  const BoundedFreeBody body(tractions, s.x, s.shape.center, 0.5, stokes::AmbientFlow(options, s.flow), viscosity);
+  const FreeBodyInTube body(tractions, s.x, s.shape.center, 0.5, stokes::AmbientFlow(options, s.flow), viscosity);
   const Net here = placed(s.shape.center);
   const RigidMotion motion = body.motion(here);
   const double drop = body.pressure_drop(here);

@@ -1,37 +1,48 @@
+#include "system/solids/bodies/bounded_free_body.hpp"
+
 #include <limits>
 #include <numbers>
 
 #include <Eigen/LU>
 
-#include "system/solids/bodies/rigid_body.hpp"
-
 namespace tanktread::coupling {
 
-BoundedFreeBody::BoundedFreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
-                                 double viscosity, const RigidDrive& driven)
-    : LoneRigidBody(surface, centre, radius, flow, driven), body_(body), viscosity_(viscosity) {
-  if (body.tube()) modes_.emplace(body, surface, centre, false);
-}
-
-/// Returns the motion, force density and stresslet of the body at `position`.
 const BoundedFreeBody::Solution& BoundedFreeBody::solution(const Net& position) const {
   if (same(position, position_)) return solution_;
-  const Net x = surface(position);
-  if (body_.tube()) body_.tube()->set_shape(x);
   position_ = {};  // invalidates the cached solution, also if the solve throws
-  if (!body_.inside(x))
-    solution_.motion = {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};
-  else
-    solution_ = body_.tube() ? in_tube(position) : in_medium(position);
+  solution_ = solve(position);
   position_ = position;
   return solution_;
 }
 
+BoundedFreeBody::Solution BoundedFreeBody::outside_fluid(const Net& x) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  return {{Vec3::Constant(nan), Vec3::Constant(nan)}, not_a_number(x), Mat3::Constant(nan)};
+}
+
+BoundedFreeBody::Solution FreeBodyInMedium::solve(const Net& position) const {
+  const Net x = surface(position);
+  if (!body_.inside(x)) return outside_fluid(x);
+  const Vec3 centre = centre_of(position);
+  const RigidTractions::Solution& solution = body_.solve(x, {&centre, 1}, {&driven_, 1}, flow_);
+  const SolvedBody& found = solution.bodies.front();
+  return {found.motion, solution.unknowns, -found.stresslet()};
+}
+
+FreeBodyInTube::FreeBodyInTube(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
+                               double viscosity, const RigidDrive& driven)
+    : BoundedFreeBody(body, surface, centre, radius, flow, driven), viscosity_(viscosity), modes_(body, surface, centre, false) {}
+
+BoundedFreeBody::Solution FreeBodyInTube::solve(const Net& position) const {
+  const Net x = surface(position);
+  body_.tube()->set_shape(x);
+  return body_.inside(x) ? in_body_axes(position) : outside_fluid(x);
+}
+
 /// Returns the pressure drop due to the body, corrected for the collocation error (2.41) by the integral of the residual velocity times the density z
 /// due to the flow of the empty duct. For a body without forces in this flow, -f takes the place of z, and no further solve is needed.
-double BoundedFreeBody::pressure_drop(const Net& position) const {
+double FreeBodyInTube::pressure_drop(const Net& position) const {
   Tube* const tube = body_.tube();
-  if (!tube) return 0;
   const auto& [motion, f, stresslet] = solution(position);
   const Net x = surface(position);
   const bool carried = flow_.duct() && flow_.amplitude() != 0 && driven_.force.isZero(0) && driven_.torque.isZero(0);
@@ -41,12 +52,12 @@ double BoundedFreeBody::pressure_drop(const Net& position) const {
 
 /// Returns the velocity that the force density f causes at the sites in the tube. f and the velocity have components in axes that turn with the body,
 /// by `turn` since the start.
-Net BoundedFreeBody::caused(const Net& f, const Mat3& turn) const {
+Net FreeBodyInTube::caused(const Net& f, const Mat3& turn) const {
   return body_.layer().velocity(f) + body_.tube()->respond(-f * turn.transpose()).velocity * turn;
 }
 
 /// Returns the force density on the body at rest at `position` in the tube, which causes the given velocities at its sites.
-Net BoundedFreeBody::density_at_rest(const Net& position, const Net& velocities) const {
+Net FreeBodyInTube::density_at_rest(const Net& position, const Net& velocities) const {
   const Mat3 turn = rotation_of(position);
   const Eigen::Index n = 3 * surface_.rows();
   const Apply apply = on_nets(n / 3, [&](const Net& f) { return caused(f, turn); });
@@ -61,7 +72,7 @@ Net BoundedFreeBody::density_at_rest(const Net& position, const Net& velocities)
 
 /// Solves for the force density f and the motion U, Omega. The unknowns are scaled to velocities: f R_C/mu, U and Omega R_C. The force balance is
 /// divided by 6 pi mu R_C and the torque balance by 6 pi mu R_C^2, so that their residuals are velocities too.
-BoundedFreeBody::Solution BoundedFreeBody::in_tube(const Net& position) const {
+BoundedFreeBody::Solution FreeBodyInTube::in_body_axes(const Net& position) const {
   using Six = Eigen::Matrix<double, 6, 1>;
   const Mat3 turn = rotation_of(position);
   const Eigen::Index n = surface_.rows();
@@ -84,8 +95,8 @@ BoundedFreeBody::Solution BoundedFreeBody::in_tube(const Net& position) const {
     const Eigen::MatrixXd solved = body_.layer().solved(Eigen::Map<const Eigen::VectorXd>(in, 3 * n));
     Net f = as_net(solved.col(0));
     const Six missing = Eigen::Map<const Six>(in + 3 * n).cwiseProduct(of_force) - balance(f);
-    const Six motion = modes_->response.leftCols<6>().partialPivLu().solve(missing);
-    for (int k = 0; k < 6; ++k) f += motion[k] * modes_->density[static_cast<std::size_t>(k)];
+    const Six motion = modes_.response.leftCols<6>().partialPivLu().solve(missing);
+    for (int k = 0; k < 6; ++k) f += motion[k] * modes_.density[static_cast<std::size_t>(k)];
     Eigen::Map<Net>(out, n, 3) = f / unit;
     Eigen::Map<Six>(out + 3 * n) = motion.cwiseQuotient(of_motion);
   };
@@ -98,13 +109,6 @@ BoundedFreeBody::Solution BoundedFreeBody::in_tube(const Net& position) const {
   const RigidMotion motion = motion_of(Six(unknowns_.tail<6>()).cwiseProduct(of_motion));
   return {{turn * motion.velocity, turn * motion.angular_velocity}, f * turn.transpose(),
           -turn * body_.integrals(0, f).stresslet() * turn.transpose()};
-}
-
-BoundedFreeBody::Solution BoundedFreeBody::in_medium(const Net& position) const {
-  const Vec3 centre = centre_of(position);
-  const RigidTractions::Solution& solution = body_.solve(surface(position), {&centre, 1}, {&driven_, 1}, flow_);
-  const SolvedBody& found = solution.bodies.front();
-  return {found.motion, solution.unknowns, -found.stresslet()};
 }
 
 }  // namespace tanktread::coupling

@@ -94,9 +94,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed
       collocation_(collocation_matrix(space)),
       mass_(space, 8),  // mass matrix by eight Gauss points per direction, because the area element is not a polynomial
       krylov_(parameters.solvers.of(parameters.solvers.velocity)),
-      tolerance_(parameters.solvers.tolerance) {
-  if (walls.tube) walls.tube->particles().set_reference(unstressed);
-}
+      tolerance_(parameters.solvers.tolerance) {}
 
 void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
   residual_.repeat(cell);
