@@ -102,8 +102,8 @@ std::shared_ptr<Evaluation> Capsule::evaluate_on_demand(const Net& x, const Net&
   return latest_;
 }
 
-/// Computes (4.2) in the cell. Tube and rigid bodies must be set to the shape x. Returns the velocity of the control points. Sets the other quantities
-/// of `found`; its allowed error is given.
+/// Computes (4.2) in the cell. Tube and rigid bodies must be set to the shape x. Returns the velocity of the control points, and sets the other
+/// quantities of `found`, whose allowed error is given.
 Net Capsule::solve_in_cell(const Net& x, const Net& guess, SolvedShape& found) {
   if (!in_fluid(x)) return not_a_number(x);
   push_bodies(x);
