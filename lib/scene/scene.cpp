@@ -235,7 +235,7 @@ void Scene::declare(deck::Section& root) {
       "Spectrum", spectrum,
       "growth rates of small perturbations of a steady shape, instead of a run in time. The shape is the result of Steady, or, without Steady, the "
       "initial shape, which should be steady");
-  solvers.in_lattice = domain.present && !tube.present;  // read by the declaration of Solvers
+  solvers.in_lattice = domain.present && !tube.present, solvers.in_duct = tube.present;  // read by the declaration of Solvers
   root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);

@@ -345,6 +345,9 @@ def several_ranks_print_one_message():
 def keys_without_effect_are_named():
     said = run(deck(GOOD), "--set", "Flow/gravity=[0, 0, -1]", "--check").stderr
     check("Flow/gravity has no effect without Particle/density difference" in said, said)
+    for key, value in (("tube", "block"), ("wall", "iterative")):
+        said = run(deck(GOOD), "--set", f"Solvers/{key}={value}", "--check").stderr
+        check(f"Solvers/{key} has no effect without Tube or Channel: remove the key." in said, said)
     said = run(SOURCE / "inputs/posts.yaml", "--set", "Surface/elements per side=7", "--check").stderr
     check("Surface/elements per side has no effect on a particle of the shape" in said, said)
 

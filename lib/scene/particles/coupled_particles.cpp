@@ -188,8 +188,9 @@ class CoupledParticles : public ParticleSystem {
   SurfaceSnapshot snapshot(const motion::State& whole_state) override {
     const auto of_shape = std::make_shared<const motion::State>(fields_->of_shape(whole_state));
     const Net& x = of_shape->x;
-    const auto here = fields_->evaluate(whole_state.x, state.history.empty() ? Net() : state.history.front(), 0);
-    const Net load = here->load(), velocity = capsule_->slides() || !state.history.empty() ? here->fluid_velocity() : Net();
+    const std::vector<Net>& history = of_shape->history;
+    const auto here = fields_->evaluate(whole_state.x, history.empty() ? Net() : history.front(), 0);
+    const Net load = here->load(), velocity = capsule_->slides() || !history.empty() ? here->fluid_velocity() : Net();
     return {x, [this, of_shape, &x, load, velocity](const output::Nodes& nodes) {
               std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, x, load, velocity);
               fields_->add_to(nodes, x, fields);

@@ -37,6 +37,7 @@ struct SolverOptions {
   std::string double_layer = "auto";  ///< double layer. assembled: once per velocity evaluation. matrix-free: summed in each iteration. auto:
                                       ///< matrix-free if far sums use a treecode, unless there are rigid bodies and the matrix is small
   bool in_lattice = false;                        ///< true in a Domain without a tube, where the double layer is always matrix-free
+  bool in_duct = true;                            ///< false in scenes without a tube or channel, where `tube` and `wall` have no effect
   std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values:
                                                   ///< preconditioner of one system for all unknowns (TubeSystem)
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (see WallSolver)
