@@ -200,6 +200,7 @@ coupling::LoadList loads(const ParticleScene& scene, const Body& body, const sur
   if (const Vec3 force = scene.body_force(); !force.isZero(0)) all.push_back(std::make_shared<membrane::Weight>(body.space, force));
   if (!given.forces.all.empty())
     all.push_back(std::make_shared<membrane::PatchLoad>(given.forces, body.space, given.stress_free == "resting" ? body.unstressed : body.rest));
+  // Loads that a program registers are the last entries, because SurfaceFields::add_to finds their values there.
   for (const auto& part : scene.loads) all.push_back(part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}));
   return all;
 }

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -42,19 +46,38 @@ Net net_of_file(const spline::Space& space, const std::string& name, const std::
   return surface.net;
 }
 
+UserError several_particles(const std::string& name) {
+  return UserError(key + "run: " + name + " is a run of several particles, but must be a run of one particle.");
+}
+
 /// Throws UserError if the scene cannot start from the surface of the run: the run has several particles, its mesh options differ from the scene's,
 /// or the mesh adapts and the resting shapes differ. Material properties may differ.
 void check_surface(const ParticleScene& scene, const output::Checkpoint& run, const std::string& name) {
   Scene of_run(*scene.registry);
   deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
   deck.declare(of_run);
-  if (of_run.particles.size() > 1) throw UserError(key + "run: " + name + " is a run of several particles, but must be a run of one particle.");
+  if (of_run.particles.size() > 1) throw several_particles(name);
   const ParticleScene before = of_run.first();
   const auto refuse = [&](const char* what) { throw UserError(key + "run: " + what + " must be the same as in " + name + "."); };
   if (!(before.surface == scene.surface)) refuse("Surface");
   const motion::AdaptationOptions &then = before.adaptation, &now = scene.adaptation;
   if (then.enabled != now.enabled || (now.enabled && then.levels != now.levels)) refuse("Adaptation/enabled and Adaptation/levels");
   if (now.enabled && !before.particle.shape.same_rest(scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
+}
+
+/// If the run's deck names its only particle, removes this name from the names of the run's arrays: `cell: unstressed` becomes `unstressed`. Throws
+/// UserError if the run has several particles, which may be copies of one.
+void drop_name(output::Checkpoint& run, const std::string& name) {
+  const std::string kept_for_each = ": unstressed";
+  std::vector<std::string> prefixes;
+  for (const auto& [array, values] : run.arrays)
+    if (array.ends_with(kept_for_each)) prefixes.push_back(array.substr(0, array.size() - kept_for_each.size()) + ": ");
+  if (prefixes.size() > 1) throw several_particles(name);
+  if (prefixes.empty()) return;
+  std::map<std::string, Eigen::MatrixXd> arrays;
+  for (auto& [array, values] : run.arrays)
+    arrays[array.starts_with(prefixes.front()) ? array.substr(prefixes.front().size()) : array] = std::move(values);
+  run.arrays = std::move(arrays);
 }
 
 /// Returns the control net in the last state x of a run. The rows of x after this net, if any, are coefficients of surface fields.
@@ -91,6 +114,7 @@ std::optional<output::Checkpoint> run_before(const ParticleScene& scene) try {
     run = output::read_checkpoint(*initial->run);
   }
   check_surface(scene, run, name);
+  drop_name(run, name);
   return run;
 } catch (const std::runtime_error& error) {
   if (dynamic_cast<const UserError*>(&error)) throw;

@@ -39,7 +39,7 @@ double bytes_a_pair(const ParticleScene& scene) {
   const bool viscous = scene.particle.viscosity_ratio != 1;
   const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
   const bool relaxed = scene.interface_motion() == coupling::MeshMotion::relaxed;
-  return doubles * ((viscous + scene.viscous_membrane()) * (scene.solvers.double_layer == "assembled") + relaxed) +
+  return doubles * ((viscous + scene.kelvin_voigt_membrane()) * (scene.solvers.double_layer == "assembled") + relaxed) +
          coupling::FrozenOperator::bytes_a_pair * frozen;
 }
 

@@ -140,12 +140,16 @@ struct Scene : SharedOptions {
   Scene() = default;
   explicit Scene(const Registry& parts) { registry = &parts; }
 
+  /// Reads the deck. Sections are declared in an order in which each may use those before it: Flow, Tube and Channel before Surface, whose default
+  /// mesh depends on the width of the duct; Domain before Solvers. Options that follow from several sections are set at the end (complete_derived).
   void declare(deck::Section& root);
 
   /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
   void check() const;
 
-  bool named() const { return !particles.front().name.empty(); }  ///< returns true if the deck has the section Particles
+  /// Returns true if the deck has the section Particles, even with one particle. Names of series and arrays depend on it; what the particles do
+  /// depends only on their number.
+  bool named() const { return !particles.front().name.empty(); }
 
   /// Return the scenes of all particles, and of the first one. In them, Solvers/rigid bodies is not `auto`.
   std::vector<ParticleScene> particle_scenes() const;

@@ -90,7 +90,7 @@ void reject_with_tube(const ParticleScene& scene, Rejections& to) {
   to.pair(tube && scene.quadrature.rule == quadrature::LayerRule::desingularised, "Quadrature/rule `desingularised`", confined,
           "its identities hold for closed surfaces, and the wall is not closed");
   to.pair(solvers.wall == "iterative" && straight, "Solvers/wall `iterative`", "Tube", "the wall of a straight tube is always factored");
-  to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,
+  to.pair(tube && solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,
           "that system needs the factored wall; give `schur`");
   to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `pressure drop`", system,
           "the system of all blocks prescribes the flow rate; give `schur`");

@@ -119,8 +119,8 @@ Net Capsule::solve_in_cell(const Net& x, const Net& guess, SolvedShape& found) {
 
 /// Computes the fluid velocity of (4.2) step by step: the load of membranes and rigid bodies, the velocity that this load causes plus the ambient
 /// velocity, the projection onto constant volumes, and the solution of the linear system for the velocity, if one is needed. The unknowns of rigid
-/// bodies are the densities w of (2.23), which are replaced by the velocities of the bodies at the end. Sets `volume` and
-/// the loads and unknowns of `found`.
+/// bodies are the densities w of (2.23), which are replaced by the velocities of the bodies at the end. Sets `volume`, and
+/// loads, unknowns and the response of a tube in `found`.
 Net Capsule::solve_second_kind(const Net& x, const Net& guess, VolumeConstraint& volume, SolvedShape& found) {
   RigidParticles& rigid = bodies_.rigid;
   Net f = membrane_load(x, found.loads, &volume);
@@ -140,8 +140,8 @@ Net Capsule::solve_second_kind(const Net& x, const Net& guess, VolumeConstraint&
   return v;
 }
 
-/// Computes the fluid velocity of (4.2) as solve_second_kind() does, but with the tractions on rigid bodies as unknowns (2.40). Sets `volume`
-/// and the loads and unknowns of `found`.
+/// Computes the fluid velocity of (4.2) as solve_second_kind() does, but with the tractions on rigid bodies as unknowns (2.40). Sets `volume`,
+/// and loads, unknowns and the response of a tube in `found`.
 Net Capsule::solve_first_kind(const Net& x, VolumeConstraint& volume, SolvedShape& found) {
   found.load = bodies_.tractions->all_rigid() ? Net(Net::Zero(x.rows(), 3)) : membrane_load(x, found.loads, &volume);
   Net v = explicit_velocity(x, found.load, {}, &found.response);
@@ -170,24 +170,12 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& particle_v
   return v;
 }
 
-/// Returns whether all collocation sites of the shape x are inside the tube, which set_tube_shape() has set to this shape.
-bool Capsule::inside_tube(const Net& x) const {
-  const Net at_sites = targets_.at_sites() * x;
-  if (duct_.tube->fixed()) return !layout_.any(!duct_.tube->inside(at_sites, layout_.points()));
-  const surface::Outline& outline = duct_.tube->wall().outline;
-  const bool outside = std::ranges::any_of(layout_.points(), [&](int i) {
-    const surface::Vec2 place(at_sites(i, 1), at_sites(i, 2));
-    return (place - outline.centroid()).norm() >= duct_.inner_radius && !outline.inside(place);
-  });
-  return !layout_.any(outside);
-}
-
-/// Returns whether all collocation sites are in the medium, inside the tube, in front of plates and outside posts, if there are any. The tube must be
-/// set to the shape x.
+/// Returns whether all collocation sites are in the medium, inside the tube, in front of plates and outside posts, if there are any.
 bool Capsule::in_fluid(const Net& x) const {
-  if (duct_.tube && !inside_tube(x)) return false;
-  if (surroundings_.solids) return surroundings_.solids->scene().solids->outside(targets_.at_sites() * x);
-  return stokes::contains(parameters_.medium.get(), targets_.at_sites() * x);
+  const Net at_sites = targets_.at_sites() * x;
+  if (duct_.tube && layout_.any(!duct_.tube->inside(at_sites, layout_.points()))) return false;
+  if (surroundings_.solids) return surroundings_.solids->scene().solids->outside(at_sites);
+  return stokes::contains(parameters_.medium.get(), at_sites);
 }
 
 /// Returns whether defect() uses (3.14), which does not require a solve for the velocity.

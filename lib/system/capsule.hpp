@@ -183,7 +183,6 @@ class Capsule : public Dynamics {
     std::unique_ptr<Tube> tube;
     Net net;
     std::optional<double> origin;
-    double inner_radius = 0;  ///< radius of the largest circle about the centroid that fits in the cross-section of a straight tube
   };
   /// Rigid bodies among the particles. `tractions`: set if the unknowns on the bodies are their tractions. `isolated`: inverses of the system (2.23)
   /// for isolated bodies, used as a preconditioner; set up at the first use.
@@ -204,7 +203,6 @@ class Capsule : public Dynamics {
   Net solve_in_cell(const Net& x, const Net& guess, SolvedShape& found);
   Net solve_second_kind(const Net& x, const Net& guess, VolumeConstraint& volume, SolvedShape& found);
   Net solve_first_kind(const Net& x, VolumeConstraint& volume, SolvedShape& found);
-  bool inside_tube(const Net& x) const;
   bool in_fluid(const Net& x) const;
   void push_bodies(const Net& x);
   WorkOfLoads work_of_loads(const Net& x);
@@ -229,6 +227,16 @@ class Capsule : public Dynamics {
   Mat3 moment_by_traction(const Net& x, const SolvedShape& at, std::size_t p);
   void record_solve(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
 
+  // Order of initialisation: a member may use those before it. The constructor's body sets up plates and posts, the tube, tractions and the cell.
+  // Members that depend on the latest shape, and what sets them:
+  //   latest_                 evaluate(); reset by set_time() and set_forces() if they change something
+  //   duct_                   place() and solve_shape(), by set_tube_shape()
+  //   surroundings_.solids    add_walls() and Evaluation::solid_flow(), by set_solid_shape()
+  //   bodies_.rigid           solve_shape() and restore_constraints()
+  //   bodies_.tractions       solve_tractions()
+  //   layers_                 each call with its shape; rows that are stored, by assemble() in solve_velocity() and solve_tractions()
+  //   frozen_                 freeze()
+  //   jacobian_               linearise()
   const spline::Space& space_;
   Net resting_;
   Surroundings surroundings_;

@@ -47,6 +47,7 @@ void Capsule::place(Net& x, Net* v) {
 /// Sets the tube, if there is one, to the shape x. `origin`: see CellMove.
 void Capsule::set_tube_shape(const Net& x, std::optional<double> origin) {
   if (!duct_.tube || (same(duct_.net, x) && duct_.origin == origin)) return;
+  duct_.net = {};  // no shape is set if the next call throws
   duct_.tube->set_shape(x, origin);
   duct_.net = x, duct_.origin = origin;
 }

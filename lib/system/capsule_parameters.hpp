@@ -29,6 +29,7 @@ struct OperationCounts {
   long most_velocity_iterations = 0;  ///< largest number of iterations of one velocity or traction solve
 };
 
+static_assert(sizeof(OperationCounts) == 8 * sizeof(long), "add the new count to the sum below, to each_count() and to counts() of free bodies");
 inline OperationCounts operator+(OperationCounts a, const OperationCounts& b) {
   using Of = OperationCounts;
   for (long Of::*count : {&Of::evaluations, &Of::assemblies, &Of::tangents, &Of::solves, &Of::solver_iterations, &Of::velocity_iterations,

@@ -46,13 +46,11 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& r
     surroundings_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, surroundings_.flow);
     solids()->particles().set(membranes_.unstressed(), particles());
   }
+  if (duct_.tube) duct_.tube->particles().set(unstressed, particles());
   if (std::ranges::any_of(particles(), &Particle::by_traction))
     bodies_.tractions = std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, FluidWalls{duct_.tube.get(), solids()},
                                                          layout_.points(), ranks);
   if (parameters_.cell) deform_cell(0);
-  if (!duct_.tube) return;
-  if (!duct_.tube->fixed()) duct_.inner_radius = duct_.tube->wall().outline.distance(duct_.tube->wall().outline.centroid());
-  duct_.tube->particles().set(unstressed, particles());
 }
 
 Capsule::~Capsule() = default;

@@ -26,6 +26,7 @@ class Dynamics {
 
   /// Corrects x so that it satisfies the constraints again that a step satisfies only approximately: rigid bodies keep their shape, quaternions have
   /// the norm 1, and particles have the prescribed volumes if the volume constraint is `exact`. If the iteration fails, x becomes NaN.
+  /// The displacements that restore volumes may use the Jacobian of the last linearisation.
   virtual void restore_constraints(Net& x) = 0;
 
   /// Returns the norm in which `Time/tolerance` is measured: the root mean square of the control points' displacement, divided by R_C.
@@ -55,7 +56,8 @@ class Dynamics {
   /// Returns how much a shape differs from the shape at which operators were assembled: by default the norm of the displacement.
   virtual double distance(const Net& from, const Net& to) const { return norm(to - from); }
 
-  /// Evaluates the membrane tangent H of the Jacobian (4.3) at x.
+  /// Evaluates the membrane tangent H of the Jacobian (4.3) at x. If velocity(x) was the latest evaluation, the Jacobian includes the change of the
+  /// mesh motion along interfaces, which depends on the fluid velocity.
   virtual void linearise(const Net& /*x*/) {}
 
   /// Solves delta = (I - shift J)^{-1} r to the relative residual `tolerance`, with the Jacobian J (4.3) corrected by `secants`. `shift` is gamma dt.
@@ -91,7 +93,7 @@ class Dynamics {
   // Searches for steady shapes and periodic motions, and spectra.
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
-  /// there are any, and otherwise a finite difference of velocities, which takes one evaluation.
+  /// there are any, and otherwise a finite difference of velocities, which takes one evaluation. The Jacobian may then be that at x.
   virtual Net derivative(const Net& x, const Net& v, const Net& delta) { return difference(x, v, delta); }
 
   /// Returns the change of the mesh relaxation velocity along interfaces due to the displacement delta, at the last linearisation. Returns no rows if

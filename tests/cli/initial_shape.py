@@ -14,6 +14,16 @@ Tanktread:
   Output: { surface text: true }
   Adaptation: { enabled: %s, interval: 1, surface tolerance: 1.0e-4 }
 """
+NAMED = """
+Tanktread:
+  Flow: { type: planar hyperbolic }
+  Particles:
+    cell:
+      Membrane: { law: Skalak, capillary number: 0.3 }
+      Surface: { elements per side: 4, extraordinary points: catmull-clark }
+      Adaptation: { enabled: true, interval: 1, surface tolerance: 1.0e-4 }
+  Time: { scheme: bs3, final time: 0.05 }
+"""
 THEN = """
 Tanktread:
   Flow: { type: quiescent }
@@ -68,6 +78,16 @@ def a_run_starts_from_the_end_of_another_and_a_resumed_run_does_not_need_it():
     shutil.rmtree("first")
     run("--resume", "then", "--quiet", "--set", "Time/final time=0.05")
     close(series("then", "time")[-1], 0.05, 0, "time")
+
+
+def a_run_whose_deck_names_its_particle_is_the_run_of_one_particle():
+    run(deck(NAMED), "--output", "first", "--quiet")
+    run(deck(THEN % "run: first" + ADAPTS), "--output", "then", "--quiet")
+    for name in ("taylor_inertia", "area"):
+        close(series("then", name)[0], series("first", "cell/" + name)[-1], 1e-9, name)
+    run(deck(NAMED), "--output", "two", "--quiet", "--set", "Particles/cell/copies/lattice=[2, 1, 1]", "--set", "Particles/cell/copies/spacing=[4, 4, 4]")
+    said = run(deck(THEN % "run: two" + ADAPTS), "--output", "wrong", "--quiet", code=2).stderr
+    check("two is a run of several particles" in said, said)
 
 
 def copies_translate_and_rotate_a_shape_from_a_file_or_run():

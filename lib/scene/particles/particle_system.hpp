@@ -62,7 +62,8 @@ class ParticleSystem {
   /// Returns the phase angle of each particle when the series were last computed.
   virtual std::vector<PhaseAngle> phase_angle() const = 0;
   virtual stokes::Evaluations kernel_evaluations() const = 0;  ///< on this rank, without those of walls, which SharedOptions::walls counts
-  /// Returns a row of results: the data of the particles and of `progress`, with the time and the work of the run.
+  /// Returns a row of results: the data of the particles and of `progress`, with the time and the work of the run. To be called once per row, in the
+  /// order of times, because phase angles advance by the step since the row before.
   virtual Columns row(const motion::State& state, ProgressRow progress) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfaceSnapshot snapshot(const motion::State& state) = 0;

@@ -167,7 +167,9 @@ std::string Warnings::stretch(const StepFindings& signs) const {
 std::string Warnings::gap(const StepFindings& signs) const {
   if (!signs.gap || *signs.gap > signs.element / 2) return {};
   return formatted("the gap to the wall (%.2g) is less than half an element (%.2g): ", *signs.gap, signs.element) +
-         (scene_.tube.present ? "set finer meshes of particle and tube" : finer_mesh(scene_)) + ", or Adaptation/enabled";
+         (!scene_.tube.present           ? finer_mesh(scene_)
+          : scene_.adaptation.enabled ? "set a finer mesh of the tube, and of the particle smaller limits in Adaptation"
+                                      : "set finer meshes of particle and tube, or Adaptation/enabled");
 }
 
 std::string Warnings::volume(const StepFindings& signs) const {

@@ -43,8 +43,7 @@ class SurfaceFields {
   Net shape(const Net& y) const { return motion_ && y.rows() > 0 ? motion_->shape(y) : y; }
   Net with_shape(const Net& y, const Net& shape) const { return motion_ && y.rows() > 0 ? motion_->with_shape(y, shape) : shape; }
 
-  /// Returns time, slopes and shapes of a state without the coefficients of fields; the state itself if there are no fields. The result is valid
-  /// until the next call.
+  /// Returns time, slopes and shapes of a state without the coefficients of fields; the state itself if there are no fields.
   motion::State of_shape(const motion::State& state) const;
   /// Copies the shapes and slopes of `own`, which of_shape() returned and the caller modified, back into the state.
   void put_back(const motion::State& own, motion::State& state) const;

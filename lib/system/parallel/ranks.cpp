@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
@@ -127,6 +128,7 @@ std::vector<int> Ranks::divide_in_order(const surface::Symmetry& symmetry) {
 void Ranks::replicate(Net& net) const {
   const auto clock = impl_->time();
   if (size() > 1) {
+    assert(!impl_->import.is_null());
     for (int c = 0; c < 3; ++c) {
       const auto column = impl_->own->getDataNonConst(static_cast<size_t>(c));
       for (size_t i = 0; i < impl_->rows.size(); ++i) column[static_cast<Teuchos::Ordinal>(i)] = net(impl_->rows[i], c);

@@ -56,10 +56,11 @@ class Ranks {
   std::vector<int> divide_points(const spline::Space& space, const surface::Symmetry& symmetry);
   std::vector<int> divide_in_order(const surface::Symmetry& symmetry);  ///< divides fundamental points in their order; returns the part of this rank
 
-  /// Copies the rows that other ranks own from these ranks, and sets the rows of symmetry images. Collective.
+  /// Copies the rows that other ranks own from these ranks, and sets the rows of symmetry images. set_owned_rows(), divide_points() or
+  /// divide_in_order() must have been called. Collective.
   void replicate(Net& net) const;
 
-  /// Returns a net of n rows on every rank. `fill` sets the rank-owned rows in a net of zeros. Collective.
+  /// Returns a net of n rows on every rank. `fill` sets the rank-owned rows in a net of zeros, see replicate(). Collective.
   template <class Fill>
   Net filled(Eigen::Index n, const Fill& fill) const {
     Net net = Net::Zero(n, 3);

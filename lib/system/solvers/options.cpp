@@ -65,7 +65,7 @@ void SolverOptions::declare(deck::Section& section) {
               "solver of the linear system for the traction on the wall of a Channel. `factored`: LU factors, computed once. `iterative`: "
               "GMRES for each velocity, with sums over clusters of nodes; the wall is then neglected in the Jacobian. `auto`: `iterative` if "
               "the factors would take more than 4 GB");
-  if (!in_duct) section.without_effect({"tube", "wall"}, "without Tube or Channel");
+  if (!in_duct) section.without_effect({"tube"}, "without Tube or Channel"), section.without_effect({"wall"}, "without Channel");
   section.key(
       "rigid bodies", rigid_bodies, deck::Choice{"auto", "second kind", "first kind"},
       "boundary integral equation for rigid bodies. `second kind`: double-layer equation (2.23), solved iteratively, for many bodies. `first "

@@ -1,8 +1,6 @@
 #pragma once
 // Motion of a single free body in a tube or in a medium.
 
-#include <optional>
-
 #include "base/types.hpp"
 #include "system/solids/bodies/rigid_body.hpp"
 

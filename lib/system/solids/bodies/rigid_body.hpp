@@ -1,7 +1,6 @@
 #pragma once
 // Rigid body, free or driven by a given force and torque, in an unbounded flow, in a tube or in a medium.
 
-#include <optional>
 #include <vector>
 
 #include "base/types.hpp"

@@ -46,6 +46,9 @@ struct SelfCorrection {
 /// 1991, chapter 15.
 ///
 /// Nets stack the control points of all particles. The rows of a body in a net x represent the position of the rigid body that fits them best.
+///
+/// Order of calls at a shape: move_into_cell() on a lattice, fit_to(), push(); then add_load() and the others that the solve for the velocities
+/// needs; store_density() or, for bodies by tractions, set_motion(); move_out_of_cell().
 class RigidParticles {
  public:
   /// `rest`: net of all particles at rest; only rows of rigid bodies are stored. `viscosity`: mu of the outer fluid.

@@ -12,6 +12,7 @@ Tube::Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const sp
   const auto clock = phases_.time("wall assembly");
   wall_ = shared_wall(parameters.walls.get(), wall, parameters.quadrature, &phases_, surface::Symmetry(), {});
   particle_ = std::make_unique<ParticleData>(particle, parameters, *wall_, phases_);
+  inner_radius_ = wall.outline.distance(wall.outline.centroid());
 }
 
 Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases)
@@ -25,7 +26,7 @@ Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particl
 }
 
 Tube::Tube(const Tube& tube, const spline::Space& particle)
-    : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_),
+    : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_), inner_radius_(tube.inner_radius_),
       particle_(std::make_unique<ParticleData>(particle, tube.particle_->parameters, *wall_, phases_)) {}
 
 Tube::~Tube() = default;

@@ -61,6 +61,17 @@ struct TubeParameters {
 ///
 /// The wall of a channel is fixed in the laboratory frame, and v_inf is the flow of ChannelFlow. The contribution of v to dp then follows, without
 /// f_inf, from the condition that the disturbance has zero flow rate (2.14).
+///
+/// The four kinds of duct:
+///
+///                             straight tube                     channel
+///   frame of the wall         moves with the particle           fixed
+///   part of dp due to v       f_inf in (2.7)                    zero flow rate of the disturbance (2.14)
+///   equation of the wall      LU factors                        LU factors, or iteration; with iteration the Jacobian omits the response
+///
+///                             open                              periodic
+///   c                         integral over the inlet (2.13)    v_inf per unit pressure drop of a period
+///   images of the particle    none                              in the kernels of one period
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
@@ -69,7 +80,7 @@ class Tube {
   /// Constructs the tube for a channel. Its wall is the wall of `flow`.
   Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
-  /// Constructs a tube for another mesh of the particle. The new tube shares all data of the wall with `tube`.
+  /// Constructs a tube for another mesh of the particle. The new tube shares the wall of `tube`.
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
@@ -185,6 +196,7 @@ class Tube {
   std::shared_ptr<const stokes::DuctFlow> flow_;
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
+  double inner_radius_ = 0;  // straight tubes: radius of the largest circle about the centroid that fits in the cross-section
   std::unique_ptr<ParticleData> particle_;
   std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which wall_residual() evaluates the velocity; set up at its first call
   Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate through the inlet and in the axial force. weigh_flow() sets

@@ -144,7 +144,8 @@ bool Tube::inside(const Net& x, std::span<const int> rows) const {
   const surface::TubeWall& wall = wall_->surface();
   return std::ranges::all_of(rows, [&](int i) {
     const Vec3 place = x.row(i).transpose();
-    return wall.channel ? wall.channel->inside(place) : wall.outline.inside(place.tail<2>());
+    if (wall.channel) return wall.channel->inside(place);
+    return (place.tail<2>() - wall.outline.centroid()).norm() < inner_radius_ || wall.outline.inside(place.tail<2>());
   });
 }
 

@@ -6,6 +6,7 @@
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
 #include "surface/geometry.hpp"
+#include "system/solids/ducts/channel_flow.hpp"
 #include "system/solids/ducts/congruence.hpp"
 
 namespace tanktread::coupling {
@@ -230,7 +231,8 @@ Net Wall::force_weights() const {
 }
 
 stokes::Evaluations Wall::evaluations() const {
-  return on_itself_->evaluations() + layer_.evaluations();
+  const stokes::Evaluations own = on_itself_->evaluations() + layer_.evaluations();
+  return empty_channel ? own + empty_channel->layer.evaluations() : own;
 }
 
 }  // namespace tanktread::coupling

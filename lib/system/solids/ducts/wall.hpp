@@ -121,7 +121,7 @@ class Wall {
   /// Returns the bounding boxes of the elements of a channel wall, used to compute distances from the wall.
   const surface::ElementBoxes& boxes() const { return *boxes_; }
 
-  stokes::Evaluations evaluations() const;
+  stokes::Evaluations evaluations() const;  ///< kernel evaluations, including those of the empty channel
 
  private:
   Eigen::Index n_sites() const { return points_.sites().rows(); }

@@ -39,12 +39,13 @@ void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> 
   Solids& solids = *scene_.solids;
   solids.reach(x);  // always, because another system may share the solids
   if (same(shape_, x) && same(at_, at) && std::ranges::equal(own, own_)) return;
-  shape_ = x, at_ = at;
+  shape_ = {}, at_ = at;  // no shape is set if one of the next calls throws
   own_.assign(own.begin(), own.end());
   particles_.set_shape(x);
   areas_ = particles_.single_layer.moments(particles_.single_layer.weights());
   solids_on_particles_ = solids.layer().near(at_, own_);
   on_solids_ = particles_.prepared(solids.sites(), solids.own());
+  shape_ = x;
 }
 
 const Solids::Flow& SolidResponse::empty() {

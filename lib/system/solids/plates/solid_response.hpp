@@ -71,9 +71,6 @@ class SolidResponse {
   /// unit gradient drives the flow phi e_i/mu, which has the stress sigma_i.
   Vec3 flow_integral(const Solids::Flow& flow, const Net& f, const Net& v);
 
-  /// Returns the force of the particles on the fluid for a load f.
-  Vec3 force(const Net& f) const { return -f.transpose() * areas_; }
-
   const SolidScene& scene() const { return scene_; }
   stokes::Evaluations evaluations() const { return particles_.evaluations(); }
 
