@@ -171,8 +171,8 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   set_shape(x, centres, std::move(around));
   const bool has_pressure = walls_.tube && all_rigid(), driven_by_pressure = flow.duct() && flow.amplitude() != 0;
   const bool apart = has_pressure && !driven_by_pressure;  // true if the density due to the flow of the duct (2.41) needs a separate solve
-  const Eigen::Index of_flow = m, of_duct = m + apart;  // columns, after those of the unit motions: the ambient flow, and the flow of the duct
-  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, of_duct + 1), fields = Eigen::MatrixXd::Zero(n, m);
+  const Eigen::Index with_flow = m, with_duct = m + apart;  // columns, after those of the unit motions: the ambient flow, and the flow of the duct
+  Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, with_duct + 1), fields = Eigen::MatrixXd::Zero(n, m);
   const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);
   Net empty = around_ ? Net(-around_->flow) : at_sites;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
@@ -182,8 +182,8 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
     set_unit_motions(x, block, centres[p], fields.middleCols<6>(column));
     block.rows(empty) = block.rows(at_sites);
   }
-  velocities.col(of_flow) = flat(empty);
-  if (apart) velocities.col(of_duct) = flat(walls_.tube->flow().velocities(sites_));
+  velocities.col(with_flow) = flat(empty);
+  if (apart) velocities.col(with_duct) = flat(walls_.tube->flow().velocities(sites_));
   const Eigen::MatrixXd of_all = densities(velocities), z = of_all.leftCols(m);
 
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
@@ -191,8 +191,8 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
   const Eigen::MatrixXd resistance = work.transpose() * z;
   const std::vector<int> free = free_motions(driven);
-  Eigen::VectorXd motion = motions(free, resistance, -work.transpose() * of_all.col(of_flow), driven);
-  Eigen::VectorXd y = z * motion - of_all.col(of_flow);
+  Eigen::VectorXd motion = motions(free, resistance, -work.transpose() * of_all.col(with_flow), driven);
+  Eigen::VectorXd y = z * motion - of_all.col(with_flow);
   Net v = completed(y);
   const Net unknowns = v;
   const Eigen::VectorXd moving = fields * motion;
@@ -208,7 +208,7 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   if (has_pressure) {
     const double unit = apart ? 1 : flow.amplitude();
     const Net of_duct = apart ? walls_.tube->flow().velocities(residual_.points().values * x) : Net(between / unit);
-    solution_.pressure_correction = walls_.tube->pressure_correction(residual_.points(), of_duct, f, correction[of_duct] / unit);
+    solution_.pressure_correction = walls_.tube->pressure_correction(residual_.points(), of_duct, f, correction[with_duct] / unit);
   }
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);
