@@ -329,7 +329,6 @@ Tanktread:
       Adaptation: {enabled: true, film resolution: 0.5}
     one: {velocity: [1.0, 0.0, 0.0]}
     two: {center: [2.1, 0.0, 0.0]}
-  Time: {final time: 1.0e-3, fixed step: 1.0e-3, scheme: bs3}
 """)
     run("deck.yaml", "--output", "fine", "--quiet")
     run("deck.yaml", "--output", "coarse", "--quiet", "--set", "Particles/defaults/Adaptation/enabled=false")
