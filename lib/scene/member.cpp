@@ -198,6 +198,9 @@ std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& memb
   return all;
 }
 
+/// Name of the surfactant's mass in checkpoints. At the start it is equal to the area, where the concentration is 1.
+constexpr const char* stored_mass = "initial area";
+
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
   for (const Member& member : members) {
     const Body& body = *member.body;
@@ -205,7 +208,7 @@ void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
     checkpoint.arrays[member.label(stored_rest)] = body.rest;
     checkpoint.numbers[member.label("initial volume")] = body.volume;
     checkpoint.numbers[member.label("refit error")] = body.refit_error;
-    if (member.scene.surfactant) checkpoint.numbers[member.label("initial area")] = body.surfactant_mass;
+    if (member.scene.surfactant) checkpoint.numbers[member.label(stored_mass)] = body.surfactant_mass;
     if (!member.scene.adaptation.enabled) continue;
     checkpoint.arrays[member.label("mesh edges")] = numbers_of(body.mesh.edges);
     checkpoint.arrays[member.label("mesh spacing")] = numbers_of(body.mesh.spacing);
@@ -225,7 +228,7 @@ bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members)
   bool another = false;
   for (Member& member : members) {
     member.body->volume = checkpoint.numbers.at(member.label("initial volume"));
-    if (member.scene.surfactant) member.body->surfactant_mass = checkpoint.numbers.at(member.label("initial area"));
+    if (member.scene.surfactant) member.body->surfactant_mass = checkpoint.numbers.at(member.label(stored_mass));
     if (!checkpoint.arrays.contains(member.label("mesh edges"))) continue;
     another = true;
     lay_out(member.scene, stored_mesh(member.body->mesh, checkpoint, member.label("")), *member.body);

@@ -53,7 +53,8 @@ void follow(Member& member);
 void arrange(std::vector<Member>& members);
 
 /// Returns one body that represents all members: its nets are the stacked nets of the members, its radius is the largest R_C, and its volume is the
-/// total volume. Returns null if there is only one member.
+/// total volume. Returns null if there is only one member. Its mesh and `plain` are not set, the wall of a tube is added later, and quantities
+/// of the membrane are those of the first member.
 std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
 /// Builds the coupled system of all members, with the given tube or solids (plates and posts) if there are any. Only the operators that the members

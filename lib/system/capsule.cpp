@@ -183,11 +183,11 @@ bool Capsule::defect_spares_system() const { return jacobian_.flows_by_system() 
 
 /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14). P is the volume projection (2.8). B v = w is the linear system for the
 /// velocity v at x (see solve_velocity). Adds the viscous load due to u to the elastic load, so that one evaluation of the single layer is enough.
-Net Capsule::defect(const Net& at, const Net& given) {
-  if (!defect_spares_system()) return velocity(at) - given;
+Net Capsule::defect(const Net& shape, const Net& given) {
+  if (!defect_spares_system()) return velocity(shape) - given;
   ++counts_.evaluations;
-  if (!at.allFinite()) return not_a_number(at);
-  Net x = at, u = given;
+  if (!shape.allFinite()) return not_a_number(shape);
+  Net x = shape, u = given;
   place(x, &u);
   if (!in_fluid(x)) return not_a_number(x);
   VolumeConstraint volume;
@@ -205,12 +205,12 @@ Net Capsule::defect(const Net& at, const Net& given) {
   return symmetric(residual - (u - projected));
 }
 
-void Capsule::freeze(const Net& at) {
-  Net x = at;
+void Capsule::freeze(const Net& shape) {
+  Net x = shape;
   const auto clock = phases_.time("assembly");
   place(x);
   ++counts_.assemblies;
-  frozen_.assemble(at, x);
+  frozen_.assemble(shape, x);
   if (duct_.tube) duct_.tube->freeze();
 }
 

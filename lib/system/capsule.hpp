@@ -195,11 +195,12 @@ class Capsule : public Dynamics {
   bool flow_at_targets() const { return duct_.tube || parameters_.solids || !surroundings_.flow.affine(); }
   /// Returns whether the wall traction is eliminated from the velocity system, so that only the particles have unknowns in the system.
   bool eliminates_walls() const { return !duct_.tube || bodies_.tractions || parameters_.solvers.eliminates_walls(); }
-  bool has_velocity_system() const { return layers_.has_double() || viscous() || !eliminates_walls(); }
+  bool has_velocity_system() const { return jacobian_.has_system() || !eliminates_walls(); }
   bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }  // true if all unknowns are velocities of control points
   bool has_forces() const { return forces_.contacts.size() > 0 || forces_.fields.size() > 0; }
+  // In the functions below, x is a shape whose particles are in the cell (place), if there is a lattice, and `shape` is any shape.
   // Evaluation of a shape (capsule.cpp).
-  SolvedShape solve_shape(const Net& x, const Net& guess, double error);
+  SolvedShape solve_shape(const Net& shape, const Net& guess, double error);
   Net solve_in_cell(const Net& x, const Net& guess, SolvedShape& found);
   Net solve_second_kind(const Net& x, const Net& guess, VolumeConstraint& volume, SolvedShape& found);
   Net solve_first_kind(const Net& x, VolumeConstraint& volume, SolvedShape& found);
@@ -225,7 +226,7 @@ class Capsule : public Dynamics {
   Net traction_product(const Net& x, const VolumeConstraint& volume, const Net& y, const Net& caused);
   Net solve_tractions(const Net& x, const VolumeConstraint& volume, const Net& flow, SolvedShape& found);
   Mat3 moment_by_traction(const Net& x, const SolvedShape& at, std::size_t p);
-  void record_solve(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
+  void record_solve(const SolveReport& report, bool finite, double tolerance);
 
   // Order of initialisation: a member may use those before it. The constructor's body sets up plates and posts, the tube, tractions and the cell.
   // Members that depend on the latest shape, and what sets them:

@@ -40,6 +40,8 @@ class CapsuleJacobian {
   /// at x. `slip`: slip at x, required only if control points slide; empty if it is unknown.
   void linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums, const Slip& slip);
 
+  /// Returns whether velocities are the solution of a linear system, because of the double layer or of membrane viscosity.
+  bool has_system() const { return frozen_.has_double() || membranes_.viscous(); }
   /// Returns whether all control points move with the fluid and the velocity is the solution of a linear system.
   bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }
 
@@ -75,7 +77,6 @@ class CapsuleJacobian {
   void forget_recycled() const;  ///< discards the data of earlier solves that the preconditioner `recycled` keeps
 
  private:
-  bool has_system() const { return frozen_.has_double() || membranes_.viscous(); }
   std::vector<Mat3> gradients_at(const Net& x) const;
   Net product(const Net& v, const Net& dx, double shift, const Net& added_work);
   Net without_pressure(Net work, const Net& db) const;

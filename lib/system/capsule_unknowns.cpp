@@ -13,7 +13,8 @@
 
 namespace tanktread::coupling {
 
-void Capsule::record_solve(const SolveReport& report, const Eigen::VectorXd& v, double tolerance) {
+/// Adds an iterative solve to the counts. Throws RunFailure if it did not converge although its solution is finite (`finite`).
+void Capsule::record_solve(const SolveReport& report, bool finite, double tolerance) {
   ++counts_.velocity_solves;
   counts_.velocity_iterations += report.iterations;
   counts_.most_velocity_iterations = std::max<long>(counts_.most_velocity_iterations, report.iterations);
@@ -21,7 +22,7 @@ void Capsule::record_solve(const SolveReport& report, const Eigen::VectorXd& v, 
   const double ratio = std::ranges::max_element(particles(), {}, contrast)->viscosity_ratio;
   const std::string system =
       bodies_.rigid.empty() ? formatted("the velocity at viscosity ratio %g", ratio) : "the velocity of rigid bodies and others";
-  if (v.allFinite()) require_convergence(report, system, tolerance);
+  if (finite) require_convergence(report, system, tolerance);
 }
 
 /// Returns the load that depends on the velocity v: viscous stresses of membranes, and loads of bodies with prescribed motion. No rows if there is no
@@ -80,7 +81,8 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const VolumeConstraint& 
   const auto least = [](const Particle& one) { return one.radius * std::sqrt(static_cast<double>(one.block.n_points)); };
   const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
   const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
-  record_solve(velocity_solver_.solve(system, right, v, tolerance), v, tolerance);
+  const SolveReport report = velocity_solver_.solve(system, right, v, tolerance);
+  record_solve(report, v.allFinite(), tolerance);
   Net solution = as_net(v);
   volumes_.constrain(solution, volume);
   return solution;
@@ -101,7 +103,8 @@ Net Capsule::solve_blocks(const Net& x, const Net& f, const VolumeConstraint& vo
   Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(right.size());
   unknowns.head(rhs.size()) = right.head(rhs.size());
   const LinearSystem linear = system.linear_system(velocity_blocks(particles()), parameters_.solvers.tube);
-  record_solve(velocity_solver_.solve(linear, right, unknowns, parameters_.solvers.tolerance), unknowns, parameters_.solvers.tolerance);
+  const SolveReport report = velocity_solver_.solve(linear, right, unknowns, parameters_.solvers.tolerance);
+  record_solve(report, unknowns.allFinite(), parameters_.solvers.tolerance);
   return as_net(unknowns.head(rhs.size()));
 }
 
@@ -160,7 +163,7 @@ Net Capsule::solve_tractions(const Net& x, const VolumeConstraint& volume, const
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) bodies_.rigid.set_motion(p, body->motion, body->force, body->torque, v), ++body;
   found.load = load(solution.unknowns);
-  for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, flat(v), parameters_.solvers.tolerance);
+  for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, v.allFinite(), parameters_.solvers.tolerance);
   if (duct_.tube) found.response = duct_.tube->respond(found.load, v, solution.pressure_correction);
   return v;
 }
@@ -171,7 +174,7 @@ Mat3 Capsule::moment_by_traction(const Net& x, const SolvedShape& at, std::size_
   evaluate(x, at.velocity, at.error);
   const Mat3 moment = bodies_.tractions->moment(static_cast<std::size_t>(std::ranges::count_if(
       std::span(particles()).first(p), [](const Particle& one) { return one.rigid.has_value(); })));
-  for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, flat(x), parameters_.solvers.tolerance);
+  for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, true, parameters_.solvers.tolerance);
   return -moment;
 }
 

@@ -28,7 +28,8 @@ struct SolvedShape {
   Net velocity;      ///< velocity of the control points
   Net fluid;         ///< velocity of the fluids; no rows if no control point slides
   Slip slip;         ///< slip of the fluids along the meshes of interfaces; empty if no control point slides
-  Net unknowns;      ///< unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies
+  Net unknowns;      ///< unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies. On a lattice, velocities of
+                     ///< the particles' images in the cell, unlike `velocity` and `fluid`
   WorkOfLoads loads;
   Net load;                                ///< see Evaluation::load
   std::optional<Tube::Response> response;  ///< response of the tube, unless the solution of a velocity system changes it

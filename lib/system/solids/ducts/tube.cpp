@@ -27,7 +27,7 @@ Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particl
 
 Tube::Tube(const Tube& tube, const spline::Space& particle)
     : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_), inner_radius_(tube.inner_radius_),
-      particle_(std::make_unique<ParticleData>(particle, tube.particle_->parameters, *wall_, phases_)) {}
+      particle_(std::make_unique<ParticleData>(particle, tube.particle_->parameters, *wall_, phases_)), flow_weights_(tube.flow_weights_) {}
 
 Tube::~Tube() = default;
 
@@ -68,9 +68,9 @@ double Tube::pressure_of_velocity(const Net& v, const Net* on_wall) {
     const Net caused = particle_on_wall({}, v);
     return pressure_of_velocity(v, &caused);
   }
-  weigh_flow();
-  const double taken_away = wall_->iterates() ? dot(flow_weights_, wall_->solve(*on_wall)) : dot(flow_of_wall_, *on_wall);
-  return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->sources.strength(v))) / flow_of_pressure_;
+  const FlowWeights& weights = flow_weights();
+  const double taken_away = wall_->iterates() ? dot(weights.of_traction, wall_->solve(*on_wall)) : dot(weights.of_velocity, *on_wall);
+  return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->sources.strength(v))) / weights.of_pressure;
 }
 
 double Tube::pressure_correction(const BetweenSites& between, const Net& at_places, const Net& f, double work) {
@@ -162,11 +162,10 @@ void Tube::freeze() {
   const auto clock = phases_.time("assembly");
   if (wall_->iterates()) return;
   const bool by_flow = fixed() && particle_->sources.has_double();
-  if (by_flow) weigh_flow();
-  particle_->freeze(*wall_, by_flow ? Net(flow_of_wall_ / flow_of_pressure_) : Net());
+  particle_->freeze(*wall_, by_flow ? Net(flow_weights().of_velocity / flow_weights().of_pressure) : Net());
   if (!by_flow) return;
   const Net& through_inlet = particle_->flow_of_strength(*wall_);
-  particle_->frozen.weights_of_velocity -= particle_->sources.strength(through_inlet) / flow_of_pressure_;
+  particle_->frozen.weights_of_velocity -= particle_->sources.strength(through_inlet) / flow_weights().of_pressure;
 }
 
 Net Tube::frozen_response(const Net& f, const Net& v) {

@@ -182,6 +182,15 @@ class Tube {
  private:
   struct ParticleData;
   struct BetweenSitesOfWall;
+  /// Flow rates through the inlet and the axial force as functions of what causes them. They do not depend on the particle.
+  struct FlowWeights {
+    Net of_traction;       ///< weights of the wall traction in mu times the flow rate
+    Net force;             ///< weights of the wall traction in the axial force
+    Net of_velocity;       ///< weights w for a velocity u on the wall: w.u is the flow rate due to the wall traction that cancels u. No rows if the
+                           ///< equation of the wall is solved by iteration
+    double own = 0;          ///< flow rate of the velocity field mu c, with c of (2.5)
+    double of_pressure = 0;  ///< flow rate per unit pressure drop, due to c and the wall traction that c causes
+  };
   double viscosity() const;
   double cap_velocity(const Net& f, const Net& v, const Response& response);
   double gap_to_straight_wall() const;
@@ -191,7 +200,7 @@ class Tube {
   Net pressure_driven_velocity(const Net& at) const;
   Net on_particle(const Net& own) const;
   double pressure_of_velocity(const Net& v, const Net* on_wall = nullptr);
-  void weigh_flow();
+  const FlowWeights& flow_weights();
 
   std::shared_ptr<const stokes::DuctFlow> flow_;
   Phases& phases_;
@@ -199,11 +208,7 @@ class Tube {
   double inner_radius_ = 0;  // straight tubes: radius of the largest circle about the centroid that fits in the cross-section
   std::unique_ptr<ParticleData> particle_;
   std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which wall_residual() evaluates the velocity; set up at its first call
-  Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate through the inlet and in the axial force. weigh_flow() sets
-                                      // these and all following members
-  Net flow_of_wall_;  // weights w for a velocity u on the wall: w.u is the flow rate through the inlet due to the wall traction that cancels u
-  double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate through the inlet of the velocity field mu c, with c of (2.5).
-                                                // flow_of_pressure_: flow rate per unit pressure drop, due to c and the wall traction that c causes
+  std::optional<FlowWeights> flow_weights_;  // set at the first call of flow_weights()
 };
 
 }  // namespace tanktread::coupling

@@ -48,13 +48,15 @@ std::vector<Vec3> points_of_caps(const surface::TubeWall& wall) {
 
 }  // namespace
 
-void Tube::weigh_flow() {
-  if (flow_weights_.size() > 0) return;
-  flow_weights_ = wall_->flow_weights();
-  force_weights_ = wall_->force_weights();
-  if (!wall_->iterates()) flow_of_wall_ = wall_->solve_transposed(flow_weights_);
-  own_flow_ = cell() ? viscosity() * flow_->flow_rate() / empty_pressure_drop() : wall_->inlet().own_flow();
-  flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->traction_per_pressure_drop())) / viscosity();
+const Tube::FlowWeights& Tube::flow_weights() {
+  if (flow_weights_) return *flow_weights_;
+  FlowWeights& found = flow_weights_.emplace();
+  found.of_traction = wall_->flow_weights();
+  found.force = wall_->force_weights();
+  if (!wall_->iterates()) found.of_velocity = wall_->solve_transposed(found.of_traction);
+  found.own = cell() ? viscosity() * flow_->flow_rate() / empty_pressure_drop() : wall_->inlet().own_flow();
+  found.of_pressure = (found.own - dot(found.of_traction, wall_->traction_per_pressure_drop())) / viscosity();
+  return found;
 }
 
 /// Returns the errors of the response in the conditions (2.14). By reciprocity, a force f at y causes the flow rate f.c(y)/mu through the inlet, with
@@ -63,9 +65,9 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   ParticleData& particle = *particle_;
   const double mu = viscosity(), dp = response.pressure_drop;
   const double area = wall_->surface().outline.area();
-  weigh_flow();
-  double flow = -dot(flow_weights_, response.wall_traction) / mu + dp / mu * own_flow_;
-  double force = (cell() ? 0 : area * dp) - dot(force_weights_, response.wall_traction);  // a periodic duct has no caps on which dp acts
+  const FlowWeights& weights = flow_weights();
+  double flow = -dot(weights.of_traction, response.wall_traction) / mu + dp / mu * weights.own;
+  double force = (cell() ? 0 : area * dp) - dot(weights.force, response.wall_traction);  // a periodic duct has no caps on which dp acts
   std::vector<double> value[3];
   if (f.size() > 0) {
     stokes::Layer& layer = particle.sources.single_layer;
@@ -79,13 +81,13 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
     }
   }
   if (v.size() > 0 && particle.sources.has_double()) flow += dot(particle.flow_of_strength(*wall_), particle.sources.strength(v));
-  const double force_of_pressure = area - dot(force_weights_, wall_->traction_per_pressure_drop());
+  const double force_of_pressure = area - dot(weights.force, wall_->traction_per_pressure_drop());
 
   Checks checks;
   checks.flux = flow / flow_->flow_rate();
   checks.force = force / (area * flow_->pressure_gradient() * flow_->radius());
   if (!cell()) checks.cap_velocity = cap_velocity(f, v, response) / flow_->mean_velocity();
-  checks.pressure_by_flux = dp - flow / flow_of_pressure_;
+  checks.pressure_by_flux = dp - flow / weights.of_pressure;
   checks.pressure_by_force = dp - force / force_of_pressure;
   return checks;
 }

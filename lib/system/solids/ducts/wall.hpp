@@ -2,6 +2,7 @@
 // Operators that depend only on the wall of a tube, constructed once per wall.
 
 #include <array>
+#include <cassert>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -69,7 +70,7 @@ class Wall {
   const surface::Symmetry& symmetry() const { return symmetry_; }
   const WallPoints& points() const { return points_; }  ///< collocation points, and the points at which the velocity is evaluated
   stokes::Layer& layer() { return layer_; }             ///< single layer at points off the wall, for control values on the layer's space
-  const stokes::Cap& inlet() const { return *inlet_; }  ///< inlet of an open wall; not available for a periodic wall
+  const stokes::Cap& inlet() const { return assert(inlet_), *inlet_; }  ///< inlet of an open wall; not available for a periodic wall
 
   /// Returns the lattice of a periodic wall; not set for an open wall.
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }
@@ -119,7 +120,7 @@ class Wall {
   std::shared_ptr<EmptyChannel> empty_channel;  ///< what ChannelFlow keeps for all systems that share this wall; null until it is needed
 
   /// Returns the bounding boxes of the elements of a channel wall, used to compute distances from the wall.
-  const surface::ElementBoxes& boxes() const { return *boxes_; }
+  const surface::ElementBoxes& boxes() const { return assert(boxes_), *boxes_; }
 
   stokes::Evaluations evaluations() const;  ///< kernel evaluations, including those of the empty channel
 
