@@ -29,6 +29,7 @@
 #include "record/files/file.hpp"
 #include "record/plan.hpp"
 #include "record/results.hpp"
+#include "record/series_manual.hpp"
 #include "scene/scene.hpp"
 #include "scene/series/series.hpp"
 #include "system/parallel/agreement.hpp"

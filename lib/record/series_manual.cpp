@@ -1,3 +1,5 @@
+#include "record/series_manual.hpp"
+
 #include <map>
 #include <set>
 #include <string_view>
@@ -24,14 +26,14 @@ constexpr Entry fields[] = {
     {"load", "force/length^2", "capsule, drop",
      "load of the fluids on the membrane, force per unstressed area (3.7) or per current area (3.6), depending on Membrane/load measure"},
     {"traction", "force/length^2", "all",
-     "load of the fluids on the membrane per current area; for a single rigid body the traction on it, for one of several bodies the load "
-     "Delta f of equation (2.23)"},
+     "load of the fluids on the membrane per current area; for a rigid body the traction on it, but with Solvers/rigid bodies `second "
+     "kind` for one of several bodies the load Delta f of equation (2.23)"},
     {"displacement", "length", "capsule, drop", "displacement x - X of the surface from the unstressed shape X"},
     {"velocity", "length/time", "capsule, drop, free body",
      "velocity of the surface; for a free rigid body the velocity of its rigid motion"},
     {"smallest tension", "1", "capsule, drop",
-     "smaller principal tension of the membrane (3.2), divided by the surface shear modulus, for a drop by the surface tension; without "
-     "the tension of Membrane/global area dilatation (3.26)"},
+     "smaller principal tension of the membrane (3.2), divided by the surface shear modulus, for a drop by the surface tension; includes "
+     "the tension of Membrane/global area dilatation (3.26) and that of a surfactant"},
     {"largest tension", "1", "capsule, drop", "larger principal tension of the membrane, divided like `smallest tension`"},
     {"mean curvature", "1/length", "capsule, drop", "mean curvature 1/2 div n, with the unit normal n; 1/R for a sphere of radius R"},
     {"concentration", "1", "drop with surfactant", "concentration of surfactant divided by the initial concentration"},

@@ -41,7 +41,7 @@ struct Member {
 /// Returns what drives a rigid body: the prescribed motion, or the force (including the weight) and the torque.
 coupling::RigidDrive drive_of(const ParticleScene& scene, const Body& body);
 
-/// Builds all particles of a scene in their resting shapes.
+/// Builds all particles of a scene, each in its unstressed, resting and initial shape.
 std::vector<Member> members(const Scene& scene);
 
 /// If the mesh may adapt, sets `followed` to the site of the parametric point `place` on the current mesh. `place` does not change, so a resumed run

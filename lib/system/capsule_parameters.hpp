@@ -47,7 +47,7 @@ struct CapsuleParameters {
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
-  std::optional<stokes::PeriodicCell> cell;  ///< cell of the lattice at time zero, if any. The flow deforms the cell, except in ducts
+  std::optional<stokes::PeriodicCell> cell;  ///< cell of the lattice at time zero, if any. The flow deforms it, unless it has walls or posts
   std::shared_ptr<const stokes::Medium> medium;  ///< for example a plane wall; null in unbounded fluid, a lattice or a tube
   std::optional<SolidScene> solids;          ///< plates and posts in the cell
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; Symmetry() if there is none

@@ -9,8 +9,8 @@
 
 namespace tanktread::coupling {
 
-/// Motion of the control points along an interface. `material`: with the fluid. `normal`: only normal to the surface. `relaxed`: with the fluid in
-/// the normal direction, and tangentially so that elements keep their shape.
+/// Motion of the control points along an interface. `material`: with the fluid. `normal`: with the fluid in the normal direction, and
+/// tangentially with the rigid motion W of the shape (4.14). `relaxed`: in addition tangentially so that elements keep their shape.
 enum class MeshMotion { material, normal, relaxed };
 
 inline const std::vector<std::string> mesh_motions{"material", "normal", "relaxed"};  ///< words for MeshMotion in decks

@@ -78,6 +78,15 @@ def the_smallest_tension_includes_that_of_the_total_area():
     check((compressed == (tension < 0)).all(), f"compressed fractions {compressed} for tensions {tension}")
 
 
+def with_a_surfactant_the_smallest_tension_includes_both():
+    """sigma(c) + K (A/A0 - 1) with the linear equation of state sigma(c) = 1 - E c, at the largest concentration."""
+    soap = ("elasticity number=0.2", "Peclet number=10")
+    run(deck(WHOLE), "--set", "Membrane/law=surface tension", "--set", "Membrane/global area dilatation=10", "--output", "soap", "--quiet",
+        "--set", "Time/final time=0.3", *(word for key in soap for word in ("--set", "Interface/surfactant/" + key)))
+    area, tension, largest = (series("soap", name) for name in ("area", "smallest_tension", "largest_concentration"))
+    check(abs(tension - (1 - 0.2 * largest + 10 * (area / area[0] - 1))).max() < 1e-12, f"tensions {tension} for areas {area}, {largest}")
+
+
 def the_total_area_is_the_same_with_symmetry_and_on_two_ranks():
     words = ["--set", "Membrane/global area dilatation=100", "--set", "Membrane/bending number=0.05", "--set", "Membrane/area difference modulus=2",
              "--set", "Membrane/area difference=0.9", "--set", "Time/fixed step=0.05", "--set", "Time/final time=0.2", "--set", "Solvers/tolerance=1e-12"]

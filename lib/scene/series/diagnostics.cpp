@@ -162,8 +162,8 @@ void DeformingRow::add_columns(const ParticleScene& one, Columns& to) const {
       tension.smallest,
       {"smallest_tension", "1",
        "smallest principal tension anywhere on the membrane, negative under compression, divided by the surface shear modulus G_s; for a "
-       "drop divided by the surface tension. Includes the tension of Membrane/global area dilatation, but not the stresses of "
-       "Membrane/relaxation time, of surface viscosity and of a surfactant"});
+       "drop divided by the surface tension. Includes the tension of Membrane/global area dilatation and that of a surfactant, but "
+       "not the stresses of Membrane/relaxation time and of surface viscosity"});
   to.add(tension.compressed_area, {"compressed_area", "1", "fraction of the membrane's area where a principal tension is negative, so "
                                                            "that the membrane may wrinkle"});
   if (to.when(!one.membrane.fluid_interface()))

@@ -57,8 +57,4 @@ void put_in_order(Columns& columns);
 /// Sorts the columns of a row in the order of the manual and checks them. Throws RunFailure if the check fails (see Columns::check).
 void finish(Columns& row);
 
-/// Returns a page in Markdown with the series and fields of the results, the entries of the summary and the derived and dimensionless numbers of a
-/// scene, each with its unit.
-std::string series_manual(const Registry& registry);
-
 }  // namespace tanktread

@@ -143,7 +143,8 @@ void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Colum
     if (one.part) one.part->add_columns(one.field->values(), to);
     if (!one.surfactant) continue;
     const auto [smallest, largest] = one.surfactant->extremes();
-    now.tension.smallest = members_[p].scene.surfactant->tension(largest);
+    const Member& member = members_[p];
+    now.tension.smallest = member.scene.surfactant->tension(largest) + global_tension(member.scene, *member.body, member.own(shape(y)));
     const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->surfactant_mass;
     SurfactantRow{mass, smallest, largest}.add_columns(to);
   }
@@ -185,12 +186,14 @@ void SurfaceFields::add_to(const output::Nodes& nodes, const Net& x, std::vector
   const std::vector<spline::Site>& sites = nodes.mesh().sites;
   for (const One& one : all_) {
     if (!one.surfactant) continue;
-    const spline::Block& block = members_[one.particle].block;
+    const Member& member = members_[one.particle];
+    const spline::Block& block = member.block;
+    const double uniform = global_tension(member.scene, *member.body, member.own(x));
     for (output::Field& field : fields)
       if (field.name == "smallest tension" || field.name == "largest tension")
         for (Eigen::Index i = 0; i < c.size(); ++i)
           if (const int e = sites[static_cast<std::size_t>(i)].element - block.first_element; e >= 0 && e < block.n_elements)
-            field.values(i, 0) = members_[one.particle].scene.surfactant->tension(c[i]);
+            field.values(i, 0) = member.scene.surfactant->tension(c[i]) + uniform;
   }
   fields.push_back({"concentration", c});
 }

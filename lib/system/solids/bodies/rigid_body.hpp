@@ -61,7 +61,7 @@ class LoneRigidBody : public Dynamics {
   virtual Eigen::VectorXd unknowns() const { return {}; }
   virtual void start_from(const Eigen::VectorXd&) {}
 
-  virtual long linear_solves() const = 0;               ///< number of linear systems solved for the motion, including the construction
+  virtual long linear_solves() const = 0;               ///< number of linear systems solved for the motion
   virtual long solver_iterations() const { return 0; }  ///< number of iterations of the linear solver since construction
 
   Net surface(const Net& position) const { return moved(surface_, position); }  ///< control net of the surface in the laboratory frame

@@ -62,8 +62,8 @@ class RigidTractions {
   /// Sets the periodic cell of the particles, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
 
-  /// Interactions of the bodies with deformable particles and with images on a lattice. Nets have one row per control point of all particles. The
-  /// unknowns y are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
+  /// Interactions of the bodies with walls, with deformable particles and with images on a lattice. Nets have one row per control point of all
+  /// particles. The unknowns y are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
   struct Surroundings {
     Net flow;       ///< control values of the velocity (4.2) due to the ambient flow and known loads
     bool responds;  ///< true if the velocity on the bodies depends on y not only through the single layers of the bodies
@@ -76,7 +76,7 @@ class RigidTractions {
   };
 
   /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, call Tube::set_shape(x) before. `around`:
-  /// interactions with deformable particles and with images on a lattice; not set if there are neither. Collective.
+  /// interactions with all other boundaries and particles; not set for a body alone in unbounded fluid, in a medium or in a tube. Collective.
   void set_shape(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
 
   /// Solution of (2.40) for all bodies at the net `shape`.
