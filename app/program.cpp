@@ -31,7 +31,6 @@
 #include "record/results.hpp"
 #include "record/series_manual.hpp"
 #include "scene/scene.hpp"
-#include "scene/series/series.hpp"
 #include "system/parallel/agreement.hpp"
 #include "system/parallel/ranks.hpp"
 #include "system/solvers/options.hpp"
