@@ -87,8 +87,8 @@ void Capsule::set_solid_shape(const Net& x) {
 /// Solves (4.2) at a shape, with each particle replaced by its image in the cell of a lattice, and converts the velocities of the images to
 /// velocities of the particles. `guess`: see evaluate(). `error`: see Evaluation::solve.
 SolvedShape Capsule::solve_shape(const Net& shape, const Net& guess, double error) {
-  SolvedShape found{.error = error, .velocity = not_a_number(shape)};
-  if (!shape.allFinite()) return found;
+  if (!shape.allFinite()) return {.error = error, .velocity = not_a_number(shape)};
+  SolvedShape found{.error = error};
   Net x = shape, v = guess;
   const auto [shifts, origin] = move_into_cell(x, &v);
   bodies_.rigid.move_into_cell(shifts);

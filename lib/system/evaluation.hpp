@@ -37,9 +37,9 @@ struct SolvedShape {
 };
 
 /// Loads, unknowns and velocities of a shape under the forces that act on it (4.2). The Evaluation returned by Capsule::evaluate contains all of
-/// them. An Evaluation constructed from a shape and its velocity computes the other quantities at first use and caches them. It solves the linear
-/// system for the unknowns only if they do not follow from the velocity. Nets have one row per control point of all particles. These depend on
-/// the time and the forces that the Capsule has when they are computed. The Capsule must outlive this object. Calls are collective.
+/// them. An Evaluation constructed from a shape and its velocity computes the other quantities at first use, with the time and the forces that the
+/// Capsule then has, and caches them. It solves the linear system for the unknowns only if they do not follow from the velocity. Nets have one row
+/// per control point of all particles. The Capsule must outlive this object. Calls are collective.
 class Evaluation {
  public:
   /// `velocity`: velocity of the control points if it is already known, for example from the equations of an implicit step; no rows if unknown.

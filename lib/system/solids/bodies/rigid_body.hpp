@@ -1,5 +1,5 @@
 #pragma once
-// Rigid body, free or driven by a given force and torque, in an unbounded flow, in a tube or in a medium.
+// A single rigid body, free or driven by a given force and torque, and its motion in an unbounded flow.
 
 #include <vector>
 
