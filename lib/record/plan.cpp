@@ -15,7 +15,7 @@
 #include "scene/tube.hpp"
 #include "stokes/layer_surface.hpp"
 #include "system/solids/ducts/wall.hpp"
-#include "system/solvers/frozen_operator.hpp"
+#include "system/frozen/frozen_operator.hpp"
 
 namespace tanktread {
 

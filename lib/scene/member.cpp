@@ -169,8 +169,8 @@ std::vector<coupling::Particle> particles(const std::vector<Member>& members, co
 
 }  // namespace
 
-std::unique_ptr<coupling::Capsule> capsule(std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
-                                           std::unique_ptr<coupling::Tube> tube, const std::optional<coupling::SolidScene>& solids) {
+std::unique_ptr<coupling::Capsule> capsule(std::vector<Member>& members, const Body& all, Phases& phases, std::unique_ptr<coupling::Tube> tube,
+                                           const std::optional<coupling::SolidScene>& solids) {
   const ParticleScene& scene = members.front().scene;
   coupling::CapsuleParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
@@ -183,7 +183,7 @@ std::unique_ptr<coupling::Capsule> capsule(std::vector<Member>& members, const B
   parameters.cell = scene.domain.cell();
   parameters.medium = scene.medium();
   parameters.solids = solids;
-  auto system = std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
+  auto system = std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, phases, std::move(tube));
   if (members.size() == 1) {
     members.front().geometry = {std::shared_ptr<void>(), &system->geometry()};
     members.front().membrane = {std::shared_ptr<void>(), &system->membrane()};

@@ -59,8 +59,7 @@ std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
 /// Builds the coupled system of all members, with the given tube or solids (plates and posts) if there are any. Only the operators that the members
 /// need are built. `all`: body of all members (see stacked_body). The geometry and the membrane of a single member become those of the system.
-std::unique_ptr<coupling::Capsule> capsule(std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
-                                           std::unique_ptr<coupling::Tube> tube,
+std::unique_ptr<coupling::Capsule> capsule(std::vector<Member>& members, const Body& all, Phases& phases, std::unique_ptr<coupling::Tube> tube,
                                            const std::optional<coupling::SolidScene>& solids);
 
 /// Returns the particles in the shape x with the fluid velocity v, as user-defined series receive them. Empty if the deck asks for no such series.

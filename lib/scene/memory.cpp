@@ -11,7 +11,7 @@
 #include "scene/tube.hpp"
 #include "surface/walls/channel.hpp"
 #include "system/parallel/ranks.hpp"
-#include "system/solvers/frozen_operator.hpp"
+#include "system/frozen/frozen_operator.hpp"
 
 namespace tanktread {
 

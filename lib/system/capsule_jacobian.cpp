@@ -32,16 +32,15 @@ Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::Vec
 
 }  // namespace
 
-CapsuleJacobian::CapsuleJacobian(const CapsuleParameters& parameters, const stokes::AmbientFlow& flow, bool flow_at_sites, const Targets& targets,
-                                 Membranes& membranes, const Volumes& volumes, FrozenLayers& frozen, Tube* tube, InterfaceMotion* interface,
-                                 OperationCounts& counts)
-    : parameters_(parameters), flow_(flow), flow_at_sites_(flow_at_sites), targets_(targets), membranes_(membranes), volumes_(volumes),
-      frozen_(frozen), tube_(tube), interface_(interface), counts_(counts),
-      step_solver_(parameters.solvers.of(parameters.solvers.implicit_step)),
-      inner_solver_(parameters.solvers.of(parameters.solvers.velocity)) {
-  if (std::ranges::none_of(parameters.particles, [](const Particle& one) { return one.material.area_order > 0; })) return;
-  const Eigen::VectorXd areas = membranes.mass_matrix().row_sums(membranes.unstressed());
-  area_.emplace(membranes.membrane(), mobilities(parameters.particles, areas, parameters.viscosity));
+CapsuleJacobian::CapsuleJacobian(VelocitySolver& solver, FrozenLayers& frozen)
+    : parameters_(solver.parameters()), flow_(solver.flow()), flow_at_sites_(solver.flow_at_targets()), targets_(solver.targets()),
+      membranes_(solver.membranes()), volumes_(solver.volumes()), frozen_(frozen), tube_(solver.walls().tube), interface_(solver.interface()),
+      counts_(solver.counts()),
+      step_solver_(parameters_.solvers.of(parameters_.solvers.implicit_step)),
+      inner_solver_(parameters_.solvers.of(parameters_.solvers.velocity)) {
+  if (std::ranges::none_of(parameters_.particles, [](const Particle& one) { return one.material.area_order > 0; })) return;
+  const Eigen::VectorXd areas = membranes_.mass_matrix().row_sums(membranes_.unstressed());
+  area_.emplace(membranes_.membrane(), mobilities(parameters_.particles, areas, parameters_.viscosity));
   if (area_->empty()) area_.reset();
 }
 
@@ -52,7 +51,7 @@ void CapsuleJacobian::linearise(const Net& x, const Net& energy_gradient, const 
   if (flow_at_sites_) gradients_ = gradients_at(targets_.at_sites() * x);
   if (!interface_ && !parameters_.constrained()) return;
   const Net gradient = volumes_.gradient(x);
-  if (parameters_.constrained()) constraint_ = {gradient, parameters_.symmetry.completed(membranes_.solved(gradient))};
+  if (parameters_.constrained()) projection_ = volumes_.projection(gradient, parameters_.symmetry.completed(membranes_.solved(gradient)));
   if (!interface_) return;
   interface_->linearise(x, gradient, slip);
   pressures_.clear(), x_ = x;
@@ -76,13 +75,13 @@ std::vector<Mat3> CapsuleJacobian::gradients_at(const Net& x) const {
 /// Applies the volume projection P (2.8) of the last linearisation to a rate of change. Without P, the rate would include volume changes, which
 /// incompressible fluids do not allow, and the response of the membrane to these changes would dominate.
 Net CapsuleJacobian::without_flux(Net rate) const {
-  volumes_.constrain(rate, constraint_);
+  projection_.apply(rate);
   return rate;
 }
 
 Net CapsuleJacobian::inflation(const Net& c) {
   constexpr double rough = 0.1;  // relative residual
-  if (latest_shift_ == 0 || interface_ || c.rows() != constraint_.gradient.rows()) return c;
+  if (latest_shift_ == 0 || interface_ || c.rows() != projection_.gradient.rows()) return c;
   if (std::ranges::none_of(parameters_.particles, keeps_area)) return c;
   const Net along = solve(latest_shift_, c, rough, {});
   return along.allFinite() ? along : c;

@@ -5,13 +5,9 @@
 #include <vector>
 
 #include "membrane/area_constraint.hpp"
-#include "stokes/flow/ambient_flow.hpp"
-#include "system/interface_motion.hpp"
-#include "system/membranes.hpp"
-#include "system/solids/ducts/tube.hpp"
-#include "system/solvers/frozen_layers.hpp"
+#include "system/frozen/frozen_layers.hpp"
 #include "system/solvers/secants.hpp"
-#include "system/volumes.hpp"
+#include "system/velocity_solver.hpp"
 
 namespace tanktread::coupling {
 
@@ -29,21 +25,13 @@ class CapsuleJacobian {
     Net rate, slip;
   };
 
-  /// `flow_at_sites`: true if the ambient velocity is evaluated at the collocation sites, false if its uniform gradient acts on the control points.
-  /// `tube`, `interface`: null if there is no tube or if no control points slide. `counts`: counters of operations, which this object increases.
-  /// References must outlive this object.
-  CapsuleJacobian(const CapsuleParameters& parameters, const stokes::AmbientFlow& flow, bool flow_at_sites, const Targets& targets,
-                  Membranes& membranes, const Volumes& volumes, FrozenLayers& frozen, Tube* tube, InterfaceMotion* interface,
-                  OperationCounts& counts);
+  /// `solver`: computes the velocity v; this object increases its counters of operations. `frozen`: its layers, frozen. References must outlive this
+  /// object.
+  CapsuleJacobian(VelocitySolver& solver, FrozenLayers& frozen);
 
   /// Linearises at x. `energy_gradient`: dE/dx at x, required only if control points slide. `sums`: surface integrals that Membranes::work computed
   /// at x. `slip`: slip at x, required only if control points slide; empty if it is unknown.
   void linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums, const Slip& slip);
-
-  /// Returns whether velocities are the solution of a linear system, because of the double layer or of membrane viscosity.
-  bool has_system() const { return frozen_.has_double() || membranes_.viscous(); }
-  /// Returns whether all control points move with the fluid and the velocity is the solution of a linear system.
-  bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }
 
   /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.
   Net velocity_product(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
@@ -83,21 +71,22 @@ class CapsuleJacobian {
   Net fluid_velocity_change(const Net& dx, const Net& added_work);
   Net without_flux(Net rate) const;
   double tolerance_factor() const;
+  bool has_system() const { return frozen_.has_double() || membranes_.viscous(); }  // see VelocitySolver::has_system
 
   const CapsuleParameters& parameters_;
   const stokes::AmbientFlow& flow_;
-  const bool flow_at_sites_;
+  const bool flow_at_sites_;  // true if the ambient velocity is evaluated at the collocation sites, false if its uniform gradient acts on control points
   const Targets& targets_;
   Membranes& membranes_;
   const Volumes& volumes_;
   FrozenLayers& frozen_;
-  Tube* tube_;
-  InterfaceMotion* interface_;
+  Tube* tube_;                  // null if there is no tube
+  InterfaceMotion* interface_;  // null if no control points slide
   OperationCounts& counts_;
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
   Krylov step_solver_, inner_solver_;
   double latest_shift_ = 0;      // shift gamma dt of the implicit system solved last
-  VolumeConstraint constraint_;  // projection P (2.8); not active if the volumes are free
+  VolumeProjection projection_;  // projection P (2.8); not active if the volumes are free
   struct Pressure {
     spline::Block block;
     double p;

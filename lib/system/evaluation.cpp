@@ -40,16 +40,16 @@ const Net& Evaluation::solved_fluid_velocity() {
 }
 
 const WorkOfLoads& Evaluation::loads() {
-  if (known_.loads.work.size() == 0) known_.loads = system_->work_of_loads(x_);
+  if (known_.loads.work.size() == 0) known_.loads = system_->solver().work_of_loads(x_);
   return known_.loads;
 }
 
-const std::vector<Net>& Evaluation::load_sums() { return system_->membranes().loads().n_sums() > 0 ? loads().sums : known_.loads.sums; }
+const std::vector<Net>& Evaluation::load_sums() { return system_->solver().membranes().loads().n_sums() > 0 ? loads().sums : known_.loads.sums; }
 
 const Net& Evaluation::load() {
   if (known_.load.size() == 0) {
-    if (!system_->bodies_.rigid.empty() || system_->viscous()) require_solution();  // because the load depends on the solution of the velocity system
-    else known_.load = system_->membrane_load(x_, known_.loads);
+    if (!system_->solver().rigid().empty() || system_->solver().viscous()) require_solution();  // because the load depends on the solution of the velocity system
+    else known_.load = system_->solver().membrane_load(x_, known_.loads);
   }
   return known_.load;
 }
@@ -57,31 +57,31 @@ const Net& Evaluation::load() {
 const RigidParticles& Evaluation::rigid() {
   if (!solved_ && near_) return near_->rigid();
   require_solution();
-  return known_.rigid ? *known_.rigid : system_->bodies_.rigid;
+  return known_.rigid ? *known_.rigid : system_->solver().rigid();
 }
 
 /// Computes the load and the unknowns from the velocity if it is known; otherwise solves for them.
 void Evaluation::find_unknowns() {
-  if (given_.size() == 0 || !system_->unknowns_are_velocities()) require_solution();
+  if (given_.size() == 0 || !system_->solver().unknowns_are_velocities()) require_solution();
   if (solved_) return;
   known_.unknowns = given_;
-  known_.load = system_->membrane_load(x_, known_.loads);
-  if (system_->viscous()) known_.load += system_->membranes_.load(x_, viscous_work());
+  known_.load = system_->solver().membrane_load(x_, known_.loads);
+  if (system_->solver().viscous()) known_.load += system_->solver().membranes().load(x_, viscous_work());
 }
 
 const Tube::Response& Evaluation::response() {
   if (!known_.response) find_unknowns();
   Net inside = x_;
-  system_->place(inside);
-  if (!known_.response) known_.response = system_->duct_.tube->respond(known_.load, known_.unknowns);
+  system_->solver().place(inside);
+  if (!known_.response) known_.response = system_->tube()->respond(known_.load, known_.unknowns);
   return *known_.response;
 }
 
 Evaluation::SolidFlow Evaluation::solid_flow() {
   find_unknowns();
   Net inside = x_;
-  system_->move_into_cell(inside);
-  system_->set_solid_shape(inside);
+  system_->solver().move_into_cell(inside);
+  system_->solver().set_solid_shape(inside);
   SolidResponse& solids = *system_->solids();
   SolidFlow found{.flow = {}, .caused = solids.respond(known_.load, known_.unknowns)};
   found.flow = found.caused + solids.empty();
@@ -92,11 +92,11 @@ Evaluation::SolidFlow Evaluation::solid_flow() {
 
 Tube::Checks Evaluation::checks() {
   const Tube::Response& found = response();
-  return system_->duct_.tube->checks(known_.load, known_.unknowns, found);
+  return system_->tube()->checks(known_.load, known_.unknowns, found);
 }
 
 const Net& Evaluation::viscous_work() {
-  if (viscous_work_.size() == 0) viscous_work_ = system_->membranes_.viscous_work(x_, solved_fluid_velocity());
+  if (viscous_work_.size() == 0) viscous_work_ = system_->solver().membranes().viscous_work(x_, solved_fluid_velocity());
   return viscous_work_;
 }
 
@@ -109,16 +109,16 @@ Mat3 Evaluation::stresslet(std::size_t p) {
     moment = particle.by_traction ? moment_by_traction(p) : rigid().load_moment(p);
   } else {
     Net of_particle = own(work());
-    if (system.viscous()) of_particle += own(viscous_work());
+    if (system.solver().viscous()) of_particle += own(viscous_work());
     moment = of_particle.transpose() * own(x_);  // first moment int df x dGamma of the load, with x = sum N_A x_A
-    if (!particle.loads.empty() || system.has_forces())  // refers the moment to the centroid, because the load has a net force
+    if (!particle.loads.empty() || system.solver().has_forces())  // refers the moment to the centroid, because the load has a net force
       moment -= of_particle.colwise().sum().transpose() * surface::measures(*particle.space, own(x_)).centroid.transpose();
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0) {
     const Net v = particle.rigid ? rigid().density(p) : Net(own(solved_fluid_velocity()));
     Net flux;
     system.geometry().volume_gradient(x_, indices(particle.block.n_elements, particle.block.first_element), flux);
-    moment -= 2 * contrast * system.parameters_.viscosity * v.transpose() * own(flux);
+    moment -= 2 * contrast * system.parameters().viscosity * v.transpose() * own(flux);
   }
   return coupling::stresslet(moment);
 }
@@ -126,15 +126,16 @@ Mat3 Evaluation::stresslet(std::size_t p) {
 Mat3 Evaluation::moment_by_traction(std::size_t p) {
   if (!solved_ && near_) return near_->moment_by_traction(p);
   require_solution();
-  return system_->moment_by_traction(x_, known_, p);
+  system_->evaluate(x_, known_.velocity, known_.error);  // solves again if another shape was solved last
+  return system_->solver().moment_by_traction(p);
 }
 
 double Evaluation::membrane_dissipation(std::size_t p) {
-  if (!system_->viscous()) return 0;
+  if (!system_->solver().viscous()) return 0;
   const spline::Block& block = system_->particles()[p].block;
   return block.rows(solved_fluid_velocity()).cwiseProduct(block.rows(viscous_work())).sum();
 }
 
-double Evaluation::load_energy(std::size_t p) { return system_->membranes_.loads().energy(x_, load_sums(), p); }
+double Evaluation::load_energy(std::size_t p) { return system_->solver().membranes().loads().energy(x_, load_sums(), p); }
 
 }  // namespace tanktread::coupling

@@ -2,39 +2,14 @@
 // Loads, unknowns and velocities at one shape.
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "base/types.hpp"
-#include "system/interface_motion.hpp"
-#include "system/solids/bodies/rigid_particles.hpp"
-#include "system/solids/plates/solids.hpp"
-#include "system/solids/ducts/tube.hpp"
+#include "system/velocity_solver.hpp"
 
 namespace tanktread::coupling {
 
 class Capsule;
-
-/// Virtual work of the loads. `work`: dE/dx of all loads minus the virtual work of the additional forces (Capsule::set_forces), one row per control
-/// point; 0 for rigid bodies. `sums`: surface integrals on which the loads depend (see Loads), summed over all ranks.
-struct WorkOfLoads {
-  Net work;
-  std::vector<Net> sums;
-};
-
-/// Solution of (4.2) at one shape. Nets have one row per control point of all particles.
-struct SolvedShape {
-  double error = 0;  ///< allowed error of the velocity, see Evaluation::solve
-  Net velocity;      ///< velocity of the control points
-  Net fluid;         ///< velocity of the fluids; no rows if no control point slides
-  Slip slip;         ///< slip of the fluids along the meshes of interfaces; empty if no control point slides
-  Net unknowns;      ///< unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies. On a lattice, velocities of
-                     ///< the particles' images in the cell, unlike `velocity` and `fluid`
-  WorkOfLoads loads;
-  Net load;                                ///< see Evaluation::load
-  std::optional<Tube::Response> response;  ///< response of the tube, unless the solution of a velocity system changes it
-  std::optional<RigidParticles> rigid;     ///< rigid bodies with their motion, if there are any
-};
 
 /// Loads, unknowns and velocities of a shape under the forces that act on it (4.2). The Evaluation returned by Capsule::evaluate contains all of
 /// them. An Evaluation constructed from a shape and its velocity computes the other quantities at first use, with the time and the forces that the

@@ -46,22 +46,22 @@ void Powers::add_columns(Columns& to) const {
 PowerBalance::PowerBalance(Capsule& capsule, const Ranks& ranks)
     : capsule_(capsule), space_(capsule.membrane().space()), ranks_(ranks), gauss_points_(gauss_points(space_)),
       values_(value_matrix(space_, gauss_points_)), mass_(space_),
-      layers_(space_, gauss_points_, capsule.membranes().unstressed(), capsule.particles(), capsule.parameters().quadrature,
+      layers_(space_, gauss_points_, capsule.solver().membranes().unstressed(), capsule.particles(), capsule.parameters().quadrature,
               capsule.parameters().medium.get()) {}
 
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const std::shared_ptr<Evaluation> e = capsule_.evaluate_on_demand(x, slope, 0);
-  if (capsule_.slides() || capsule_.viscous()) e->solve();
+  if (capsule_.slides() || capsule_.solver().viscous()) e->solve();
   const Net load = e->load(), v = e->fluid_velocity();
   const RigidParticles rigid = capsule_.rigid_at(x);
-  const Net measured = capsule_.membranes().measured_net(x);
+  const Net measured = capsule_.solver().membranes().measured_net(x);
   const Net work = mass_.update(measured) * load, inside = density(v, rigid);
   Powers powers;
   powers.flow = flow_power(*e, work, inside);
   Net stored = Net::Zero(x.rows(), 3);
   const std::vector<int> all = indices(space_.elements.size());
   capsule_.membrane().load(x, all, stored);
-  capsule_.membranes().loads().add_stored_work(x, stored);
+  capsule_.solver().membranes().loads().add_stored_work(x, stored);
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p) {
     const Particle& particle = capsule_.particles()[p];
     if (particle.rigid) continue;
@@ -92,7 +92,7 @@ double PowerBalance::flow_power(Evaluation& e, const Net& work, const Net& insid
     return solids->scene().solids->power(found.caused.force * change) + (change * solids->scene().driving_gradient).dot(found.caused_integral);
   }
   const Net& x = e.x();
-  const Targets& targets = capsule_.targets();
+  const Targets& targets = capsule_.solver().targets();
   const Net flux = capsule_.geometry().volume_gradient(x), at = targets.at_sites() * x;
   const std::vector<Mat3> gradients = flow.gradients(at);
   Net stressed = targets.at_sites() * inside;  // `inside` at the sites; multiplied by the stress of the flow below
@@ -142,16 +142,17 @@ Net PowerBalance::residual_velocity(Evaluation& e, Net v, const RigidParticles& 
   Net x = e.x();
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (const auto& cell = capsule_.cell(); cell && !capsule_.tube()) layers_.repeat(*cell);
-  capsule_.move_into_cell(x, &v);
+  capsule_.solver().move_into_cell(x, &v);
   const Net inside = density(v, rigid);
-  const FluidWalls walls{capsule_.tube(), capsule_.solids()};
-  const Tube::Response response = walls.tube ? e.response() : Tube::Response();
-  const Solids::Flow by_solids = walls.solids ? e.solid_flow().flow : Solids::Flow();
+  const FluidWalls& walls = capsule_.solver().walls();
+  FluidWalls::Response response;
+  if (walls.tube) response.tube = e.response();
+  if (walls.solids) response.solids = e.solid_flow().flow;
   const Net at = values_ * x;
   layers_.set_shape(x);
   return values_ * v - flow.velocities(at) - ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
     layers_.apply(load, inside, capsule_.parameters().viscosity, own, u);
-    walls.add_velocity_at(values_, x, response, by_solids, own, u);
+    walls.add_velocity_at(values_, x, response, own, u);
   });
 }
 

@@ -3,8 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tanktread::coupling {
+
+void VolumeProjection::apply(Net& v) const {
+  const Net &b = gradient, &c = direction;
+  for (const spline::Block& block : blocks) {
+    const auto rows = [&block](const Net& net) { return block.rows(net).array(); };
+    block.rows(v) -= (rows(b) * rows(v)).sum() / (rows(b) * rows(c)).sum() * block.rows(c);
+  }
+}
 
 Volumes::Volumes(const spline::Space& space, const Net& initial, const std::vector<Particle>& particles, const Layout& layout, Phases& phases)
     : particles_(particles), layout_(layout), phases_(phases), geometry_(space) {
@@ -20,14 +29,11 @@ Net Volumes::gradient(const Net& x) const {
   return b;
 }
 
-void Volumes::constrain(Net& v, const VolumeConstraint& constraint) const {
-  if (!constraint.active()) return;
-  const auto& [b, c] = constraint;
-  for (const Particle& particle : particles_) {
-    if (particle.rigid) continue;
-    const auto rows = [&particle](const Net& net) { return particle.block.rows(net).array(); };
-    particle.block.rows(v) -= (rows(b) * rows(v)).sum() / (rows(b) * rows(c)).sum() * particle.block.rows(c);
-  }
+VolumeProjection Volumes::projection(Net gradient, Net direction) const {
+  VolumeProjection found{std::move(gradient), std::move(direction), {}};
+  for (const Particle& one : particles_)
+    if (!one.rigid) found.blocks.push_back(one.block);
+  return found;
 }
 
 void Volumes::restore(Net& x, const std::function<Net(const Net& b)>& along) const {

@@ -10,12 +10,14 @@
 
 namespace tanktread::coupling {
 
-/// The constraint (2.8) that conserves the volumes at one shape. No rows if the volumes are free.
-struct VolumeConstraint {
-  Net gradient;  ///< b = dV/dx: the rows of each particle contain the gradient of the volume of this particle
-  Net response;  ///< c, for example M0^-1 b: field along which velocities are corrected
+/// The projection P = 1 - c b^T/(b.c) of (2.8), applied to each deformable particle, at one shape. Without rows, P = 1.
+struct VolumeProjection {
+  Net gradient;                       ///< b = dV/dx: the rows of each particle contain the gradient of the volume of this particle
+  Net direction;                      ///< c, for example M0^-1 b: field along which velocities are corrected
+  std::vector<spline::Block> blocks;  ///< rows of the deformable particles
 
   bool active() const { return gradient.size() > 0; }
+  void apply(Net& v) const;  ///< replaces the velocity v by P v, which changes no volume
 };
 
 /// The volumes V of all particles and their prescribed volumes V0. Rigid bodies are excluded from all corrections. Calls with a shape are collective.
@@ -28,12 +30,11 @@ class Volumes {
   const surface::Geometry& geometry() const { return geometry_; }
   double error(double volume, std::size_t p) const { return volume / kept_[p] - 1; }  ///< V/V0 - 1 of particle p
 
-  /// Returns b = dV/dx, see VolumeConstraint.
+  /// Returns b = dV/dx, see VolumeProjection.
   Net gradient(const Net& x) const;
 
-  /// Applies the projection P of (2.8) to v for each particle, so that its volume does not change: subtracts c (b.v)/(b.c). Does nothing if the
-  /// constraint is not active.
-  void constrain(Net& v, const VolumeConstraint& constraint) const;
+  /// Returns the projection with these fields b and c.
+  VolumeProjection projection(Net gradient, Net direction) const;
 
   /// Moves x so that the volumes become V0, by Newton's method. V is a cubic form in x, so V = x.(dV/dx)/3. Sets x to NaN if the iteration fails.
   /// `along(b)`: returns the direction in which each particle is displaced to change its volume, for b = dV/dx.

@@ -17,7 +17,6 @@
 #include "stokes/kernels/far_kernel.hpp"
 #include "surface/shapes.hpp"
 #include "system/capsule.hpp"
-#include "system/parallel/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
 #include "tests/layers.hpp"
 
@@ -111,12 +110,11 @@ BENCHMARK(assembled_rows)->Arg(6)->Arg(12)->Unit(benchmark::kMillisecond)->Itera
 /// minimal far sum, the mean fraction of each phase, and the time of the membrane tangent divided by the time of the evaluation.
 void velocity_evaluation(benchmark::State& state) {
   const Scene scene(static_cast<int>(state.range(0)));
-  coupling::Ranks ranks;
   Phases phases;
   coupling::CapsuleParameters parameters;
   parameters.particles.front().material.law = membrane::NeoHookean{1 / 0.3};
   stokes::FlowOptions shear;
-  coupling::Capsule capsule(scene.space, scene.unstressed, scene.unstressed, stokes::AmbientFlow(shear), parameters, ranks, phases);
+  coupling::Capsule capsule(scene.space, scene.unstressed, scene.unstressed, stokes::AmbientFlow(shear), parameters, phases);
   const auto x = in_turns(scene.x);
   int turn = 0;
   benchmark::DoNotOptimize(capsule.velocity(x[1]));
@@ -143,7 +141,6 @@ BENCHMARK(velocity_evaluation)->Arg(6)->Arg(12)->Arg(24)->Unit(benchmark::kMilli
 /// Measures the time of a velocity evaluation with the Catmull-Clark rule divided by its time with the G1 rule. Catmull-Clark has more elements at
 /// the extraordinary points. The two are evaluated alternately; the smallest time of each counts.
 void catmull_clark_over_g1(benchmark::State& state) {
-  coupling::Ranks ranks;
   Phases phases[2];
   coupling::CapsuleParameters parameters;
   parameters.particles.front().material.law = membrane::NeoHookean{1 / 0.3};
@@ -151,8 +148,8 @@ void catmull_clark_over_g1(benchmark::State& state) {
   const int n = static_cast<int>(state.range(0));
   const Scene scene[2] = {Scene(n), Scene(n, spline::ExtraordinaryRule::catmull_clark)};
   coupling::Capsule capsule[2] = {
-      {scene[0].space, scene[0].unstressed, scene[0].unstressed, flow, parameters, ranks, phases[0]},
-      {scene[1].space, scene[1].unstressed, scene[1].unstressed, flow, parameters, ranks, phases[1]},
+      {scene[0].space, scene[0].unstressed, scene[0].unstressed, flow, parameters, phases[0]},
+      {scene[1].space, scene[1].unstressed, scene[1].unstressed, flow, parameters, phases[1]},
   };
   const std::array<Net, 2> x[2] = {in_turns(scene[0].x), in_turns(scene[1].x)};
   for (int k : {0, 1}) benchmark::DoNotOptimize(capsule[k].velocity(x[k][1]));

@@ -17,7 +17,6 @@
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/shapes.hpp"
 #include "system/capsule.hpp"
-#include "system/parallel/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
 #include "tests/layers.hpp"
 
@@ -77,14 +76,13 @@ void growth(benchmark::State& state) {
   }
   const double before = bytes();
   peak(true);
-  coupling::Ranks ranks;
   Phases phases;
   coupling::CapsuleParameters parameters;
   parameters.particles.front().material.law = membrane::NeoHookean{1 / 0.3};
   parameters.quadrature.tolerance = asked;
   if (state.range(1) != 0) parameters.quadrature.far_sum = "dense";
   const double start = now();
-  coupling::Capsule capsule(space, unstressed, unstressed, stokes::AmbientFlow(stokes::FlowOptions()), parameters, ranks, phases);
+  coupling::Capsule capsule(space, unstressed, unstressed, stokes::AmbientFlow(stokes::FlowOptions()), parameters, phases);
   const double setup = now() - start;
   const Net shapes[2] = {x, (1 + 1e-6) * x};              // evaluated alternately, because the velocity of the last shape is cached
   benchmark::DoNotOptimize(capsule.velocity(shapes[1]));  // computes and stores the singular quadrature rules, outside the measured time

@@ -15,7 +15,6 @@
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/shapes.hpp"
 #include "system/capsule.hpp"
-#include "system/parallel/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
 
 namespace {
@@ -66,12 +65,11 @@ struct Surface {
 void refinement(benchmark::State& state) {
   Surface surface;
   const auto marks = random_marks(surface.mesh, static_cast<int>(state.range(0)), surface.generator);
-  coupling::Ranks ranks;
   Phases phases;
   coupling::CapsuleParameters parameters;
   parameters.particles.front().material.law = membrane::NeoHookean{1 / 0.3};
   const stokes::AmbientFlow flow{stokes::FlowOptions()};
-  coupling::Capsule capsule(surface.space, surface.unstressed, surface.unstressed, flow, parameters, ranks, phases);
+  coupling::Capsule capsule(surface.space, surface.unstressed, surface.unstressed, flow, parameters, phases);
   const std::vector<const Net*> fields = {&surface.unstressed, &surface.x, &surface.x, &surface.x, &surface.x};
   double mesh = 1e9, space = 1e9, transfer = 1e9, all = 1e9, evaluation = 1e9, setup = 1e9, residual = 0;
   const Net shapes[2] = {surface.x, (1 + 1e-6) * surface.x};  // evaluated alternately, because the velocity of the last shape is cached
@@ -98,7 +96,7 @@ void refinement(benchmark::State& state) {
     elements = static_cast<int>(next.elements.size());
 
     const double before = now();
-    const coupling::Capsule finer_capsule(next, carried[0], carried[0], flow, parameters, ranks, phases);
+    const coupling::Capsule finer_capsule(next, carried[0], carried[0], flow, parameters, phases);
     setup = std::min(setup, now() - before);
     const double begin = now();
     benchmark::DoNotOptimize(capsule.velocity(shapes[turn++ % 2]));

@@ -12,7 +12,6 @@
 #include "surface/shapes.hpp"
 #include "surface/walls/tube_wall.hpp"
 #include "system/capsule.hpp"
-#include "system/parallel/ranks.hpp"
 #include "tests/benchmark/clock.hpp"
 
 namespace {
@@ -38,9 +37,9 @@ struct Capsule {
     parameters.particles.front().radius = 0.6;
   }
 
-  double seconds(const stokes::AmbientFlow& flow, coupling::Ranks& ranks, Phases& phases, std::unique_ptr<coupling::Tube> tube,
+  double seconds(const stokes::AmbientFlow& flow, Phases& phases, std::unique_ptr<coupling::Tube> tube,
                  long& iterations) const {
-    coupling::Capsule capsule(space, unstressed, x, flow, parameters, ranks, phases, std::move(tube));
+    coupling::Capsule capsule(space, unstressed, x, flow, parameters, phases, std::move(tube));
     const Net shapes[2] = {x, (1 + 1e-6) * x};  // evaluated alternately, because the velocity of the last shape is cached
     double best = 1e9;
     for (int k = 0; k < 12; ++k) {
@@ -67,7 +66,6 @@ double milliseconds(const Action& action) {
 
 void velocity_evaluation_in_a_tube(benchmark::State& state) {
   const Capsule capsule(static_cast<double>(state.range(0)));
-  coupling::Ranks ranks;
   Phases phases;
   surface::TubeOptions options;
   options.radius = 1;
@@ -81,8 +79,8 @@ void velocity_evaluation_in_a_tube(benchmark::State& state) {
   in_duct.mean_velocity = 1;
   for (auto _ : state) {
     long without = 0, with = 0;
-    const double free = capsule.seconds(stokes::AmbientFlow(shear), ranks, phases, nullptr, without);
-    const double confined = capsule.seconds(stokes::AmbientFlow(in_duct, duct), ranks, phases,
+    const double free = capsule.seconds(stokes::AmbientFlow(shear), phases, nullptr, without);
+    const double confined = capsule.seconds(stokes::AmbientFlow(in_duct, duct), phases,
                                             std::make_unique<coupling::Tube>(wall, *duct, capsule.space, parameters, phases), with);
     state.counters["tube ms"] = 1e3 * confined;
     coupling::Tube tube(wall, *duct, capsule.space, parameters, phases);

@@ -55,7 +55,7 @@ Steady steady(int n, const std::vector<std::string>& settings) {
     return surface::jacobian(surface::jet(surface::ElementPoints(space, net, site.element).patch(), site.s, site.t));
   };
   double traction = surface::value(space, run.capsule->evaluate(run.state.x)->load(), site).norm();
-  if (run.capsule->measure() == stokes::Measure::reference) traction *= area(run.body().unstressed) / area(run.state.x);
+  if (run.capsule->solver().membranes().measure() == stokes::Measure::reference) traction *= area(run.body().unstressed) / area(run.state.x);
   return {traction, run.deformation().taylor_inertia};
 }
 

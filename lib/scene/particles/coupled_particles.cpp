@@ -243,7 +243,7 @@ class CoupledParticles : public ParticleSystem {
     power_.reset(), fields_.reset();
     if (!stacked_) members_.front().geometry.reset(), members_.front().membrane.reset();  // they belong to the system
     capsule_.reset();
-    capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around), solids_);
+    capsule_ = tanktread::capsule(members_, body(), phases_, std::move(around), solids_);
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
 

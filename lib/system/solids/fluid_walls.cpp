@@ -2,11 +2,30 @@
 
 namespace tanktread::coupling {
 
-void FluidWalls::add_velocity_at(const Eigen::SparseMatrix<double>& values, const Net& x, const Tube::Response& response, const Solids::Flow& flow,
-                                 std::span<const int> own, Net& u) const {
+FluidWalls::Response FluidWalls::respond(const Net& f, const Net& v, bool with_empty) const {
+  Response found;
+  if (solids) found.solids = solids->respond(f, v);
+  if (solids && with_empty) found.solids = found.solids + solids->empty();
+  if (tube) found.tube = tube->respond(f, v);
+  return found;
+}
+
+void FluidWalls::add_velocity_at(const Eigen::SparseMatrix<double>& values, const Net& x, const Response& response, std::span<const int> own,
+                                 Net& u) const {
   Net part(u.rows(), 3);
-  if (tube) tube->velocity_at(values, x, response, own, part), u(own, Eigen::all) += part(own, Eigen::all);
-  if (solids) solids->velocity_at(values * x, own, flow, part), u(own, Eigen::all) += part(own, Eigen::all);
+  if (tube) tube->velocity_at(values, x, response.tube, own, part), u(own, Eigen::all) += part(own, Eigen::all);
+  if (solids) solids->velocity_at(values * x, own, response.solids, part), u(own, Eigen::all) += part(own, Eigen::all);
+}
+
+void FluidWalls::forget_recycled() const {
+  if (tube) tube->forget_recycled();
+}
+
+stokes::Evaluations FluidWalls::evaluations() const {
+  stokes::Evaluations sum;
+  if (tube) sum += tube->kernel_evaluations();
+  if (solids) sum += solids->evaluations();
+  return sum;
 }
 
 }  // namespace tanktread::coupling

@@ -11,15 +11,30 @@
 
 namespace tanktread::coupling {
 
-/// Boundaries of the fluid that are meshed, other than particles. A member is null if there is no such boundary.
+/// Boundaries of the fluid that are meshed, other than particles. A member is null if there is no such boundary. The boundaries must be set to the
+/// shape of the particles (Tube::set_shape, SolidResponse::set_shape) before they respond.
 struct FluidWalls {
   Tube* tube = nullptr;
   SolidResponse* solids = nullptr;
 
-  /// Adds to rows `own` of u the velocity that tube and solids cause at points on the particles. `values`: values of the basis functions at the
-  /// points. x: net of the particles. `response`, `flow`: responses of tube and solids. Collective if Tube::velocity_at() is.
-  void add_velocity_at(const Eigen::SparseMatrix<double>& values, const Net& x, const Tube::Response& response, const Solids::Flow& flow,
-                       std::span<const int> own, Net& u) const;
+  bool any() const { return tube || solids; }
+
+  /// Responses of the boundaries that exist.
+  struct Response {
+    Tube::Response tube;
+    Solids::Flow solids;
+  };
+
+  /// Returns the responses to the load f and the velocity v of the particles; an empty v counts as zero. `with_empty`: also includes the flow that the
+  /// solids cause without particles; the ambient flow of a tube contains it already. Collective.
+  Response respond(const Net& f, const Net& v, bool with_empty) const;
+
+  /// Adds to rows `own` of u the velocity of a response at points on the particles. `values`: values of the basis functions at the points. x: net of
+  /// the particles. Collective if Tube::velocity_at() is.
+  void add_velocity_at(const Eigen::SparseMatrix<double>& values, const Net& x, const Response& response, std::span<const int> own, Net& u) const;
+
+  void forget_recycled() const;             ///< discards data of earlier solves that iterative solvers of the boundaries keep
+  stokes::Evaluations evaluations() const;  ///< kernel evaluations of all boundaries
 };
 
 }  // namespace tanktread::coupling

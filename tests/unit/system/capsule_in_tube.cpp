@@ -19,7 +19,6 @@ namespace {
 /// A capsule with a = 0.6 R_T off the axis, on a coarse mesh in a coarse tube; or, if `interface` is given, a drop with this motion of the control
 /// points.
 struct Confined {
-  Ranks ranks;
   Phases phases;
   spline::Space space;
   Net unstressed, x;
@@ -63,7 +62,7 @@ struct Confined {
       parameters.particles.front().interface_speed = 1;
     }
     in_tube.viscosity = 1.3;
-    capsule = std::make_unique<Capsule>(space, unstressed, unstressed, stokes::AmbientFlow(flow, duct), parameters, ranks, phases,
+    capsule = std::make_unique<Capsule>(space, unstressed, unstressed, stokes::AmbientFlow(flow, duct), parameters, phases,
                                         std::make_unique<Tube>(*wall, *duct, space, in_tube, phases));
   }
 };

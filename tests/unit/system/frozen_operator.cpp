@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "system/solvers/frozen_operator.hpp"
+#include "system/frozen/frozen_operator.hpp"
 
 namespace tanktread::coupling {
 namespace {

@@ -7,7 +7,7 @@
 #include "spline/t_mesh.hpp"
 #include "surface/shapes.hpp"
 #include "system/targets/collocation.hpp"
-#include "system/solvers/nodal_operator.hpp"
+#include "system/frozen/nodal_operator.hpp"
 #include "tests/layers.hpp"
 
 namespace tanktread::coupling {

@@ -68,7 +68,7 @@ struct Bodies {
     options.type = "linear", options.gradient = gradient;
     flow = stokes::AmbientFlow(options);
   }
-  Capsule system() { return Capsule(space, rest, rest, flow, parameters, ranks, phases); }
+  Capsule system() { return Capsule(space, rest, rest, flow, parameters, phases); }
 };
 
 Mat3 some_gradient() {

@@ -27,7 +27,6 @@ struct Several {
   spline::Space space;
   Net rest, x;
   CapsuleParameters parameters;
-  Ranks ranks;
   Phases phases;
 
   explicit Several(const std::vector<Kind>& kinds) {
@@ -61,7 +60,7 @@ struct Several {
   Capsule system(const char* type = "simple shear") {
     stokes::FlowOptions flow;
     flow.type = type;
-    return Capsule(space, rest, rest, stokes::AmbientFlow(flow), parameters, ranks, phases);
+    return Capsule(space, rest, rest, stokes::AmbientFlow(flow), parameters, phases);
   }
   Net velocity_of(size_t p, const Net& v) const { return parameters.particles[p].block.rows(v); }
 };

@@ -14,12 +14,11 @@ struct SphereInFlow {
   Net sphere = surface::resting_shape(space, mesh, {});
   stokes::FlowOptions flow;
   CapsuleParameters parameters;
-  Ranks ranks;
   Phases phases;
 
   SphereInFlow(int elements_per_side, const char* type) : mesh(spline::cube(elements_per_side)) { flow.type = type; }
 
-  Capsule capsule() { return Capsule(space, sphere, sphere, stokes::AmbientFlow(flow), parameters, ranks, phases); }
+  Capsule capsule() { return Capsule(space, sphere, sphere, stokes::AmbientFlow(flow), parameters, phases); }
 };
 
 }  // namespace tanktread::coupling

@@ -24,7 +24,7 @@ spline::Space common_space(std::span<const Particle> bodies) {
 
 }  // namespace
 
-BodyLayer::BodyLayer(std::span<const Particle> bodies, const CapsuleParameters& parameters, std::span<const int> own, Ranks& ranks)
+BodyLayer::BodyLayer(std::span<const Particle> bodies, const CapsuleParameters& parameters, std::span<const int> own, const Ranks& ranks)
     : bodies_(without_others(bodies)),
       space_(common_space(bodies_)),
       viscosity_(parameters.viscosity),

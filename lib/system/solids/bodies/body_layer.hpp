@@ -20,7 +20,7 @@ class BodyLayer {
  public:
   /// `bodies`: the rigid bodies; their blocks are rows of nets of all particles. `own`: indices, in these nets, of the collocation points at which
   /// this rank computes velocities. `ranks` must outlive this object.
-  BodyLayer(std::span<const Particle> bodies, const CapsuleParameters& parameters, std::span<const int> own, Ranks& ranks);
+  BodyLayer(std::span<const Particle> bodies, const CapsuleParameters& parameters, std::span<const int> own, const Ranks& ranks);
 
   /// Sets the shape x with the collocation sites `at`. Assembles and factors the single layer A at the sites of the bodies, without images on a
   /// lattice. `keep_rows`: true to store the matrix for many calls of velocity(); false to save memory, and velocity() is then zero in the rows of
@@ -48,7 +48,7 @@ class BodyLayer {
   std::vector<int> points_, rows_, others_;  // points_: control points of the bodies; rows_: indices of their components; others_: points of `own`
                                              // (see the constructor) on other particles
   double viscosity_;
-  Ranks& ranks_;
+  const Ranks& ranks_;
   stokes::Layer layer_;                  // single layer at the sites of the bodies
   std::optional<stokes::Layer> beyond_;  // single layer at the points `others_`; empty if there are none
   Net at_, flux_, outward_;  // at_: collocation sites. flux_: flux vector b of each body. outward_: vector s R c/(b.c) of (2.10), which makes the

@@ -26,7 +26,7 @@ quadrature::Options for_residual(quadrature::Options options) {
 
 }  // namespace
 
-RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, Ranks& ranks)
+RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, const Ranks& ranks)
     : viscosity_(parameters.viscosity),
       ranks_(ranks),
       between_(between_sites(space, rest, blocks_of_bodies(parameters.particles))),
@@ -34,11 +34,10 @@ RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, 
 
 Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls) {
   layers_.set_shape(x);
-  const Tube::Response response = walls.tube ? walls.tube->respond(load, v) : Tube::Response();
-  const Solids::Flow by_solids = walls.solids ? walls.solids->respond(load, v) + walls.solids->empty() : Solids::Flow();
+  const FluidWalls::Response response = walls.respond(load, v, true);
   flow += ranks_.divided<Net>(static_cast<int>(between_.values.rows()), 3, [&](std::span<const int> own, Net& u) {
     layers_.apply(load, v, viscosity_, own, u);
-    walls.add_velocity_at(between_.values, x, response, by_solids, own, u);
+    walls.add_velocity_at(between_.values, x, response, own, u);
   });
   return between_.weights * (between_.values * v - flow);
 }

@@ -20,7 +20,7 @@ namespace tanktread::coupling {
 class RigidResidual {
  public:
   /// The arguments are explained at the constructor of RigidTractions. Only rigid bodies have Gauss points.
-  RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, Ranks& ranks);
+  RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, const Ranks& ranks);
 
   void repeat(const stokes::PeriodicCell& cell) { layers_.repeat(cell); }
 
@@ -33,7 +33,7 @@ class RigidResidual {
 
  private:
   double viscosity_;
-  Ranks& ranks_;
+  const Ranks& ranks_;
   BetweenSites between_;  // Gauss points on the bodies
   LayerPair layers_;      // layers of all particles at the Gauss points
 };

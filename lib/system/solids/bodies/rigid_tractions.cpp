@@ -85,7 +85,7 @@ CapsuleParameters single_body(const spline::Space& space, double radius, double 
 }
 
 RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters,
-                               const FluidWalls& walls, const std::vector<int>& own, Ranks& ranks)
+                               const FluidWalls& walls, const std::vector<int>& own, const Ranks& ranks)
     : particles_(bodies_among(parameters.particles)),
       walls_(walls),
       medium_(parameters.medium),
@@ -238,8 +238,7 @@ SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {
 }
 
 stokes::Evaluations RigidTractions::kernel_evaluations() const {
-  const stokes::Evaluations own = layer_.evaluations() + residual_.evaluations();
-  return walls_.tube ? own + walls_.tube->kernel_evaluations() : own;
+  return layer_.evaluations() + residual_.evaluations() + walls_.evaluations();
 }
 
 bool RigidTractions::all_rigid() const {
@@ -277,7 +276,7 @@ int RigidTractions::converged_iterations() const {
 
 void RigidTractions::forget_recycled() const {
   krylov_.forget();
-  if (walls_.tube) walls_.tube->forget_recycled();
+  walls_.forget_recycled();
 }
 
 }  // namespace tanktread::coupling

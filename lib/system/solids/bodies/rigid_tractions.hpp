@@ -57,7 +57,7 @@ class RigidTractions {
   /// single_body() for a body without other particles. `walls`: a tube must know the unstressed particles (ParticleSources::set). `own`: collocation
   /// points whose rows this rank computes. References, except `parameters`, and the walls must outlive this object.
   RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, const FluidWalls& walls,
-                 const std::vector<int>& own, Ranks& ranks);
+                 const std::vector<int>& own, const Ranks& ranks);
 
   /// Sets the periodic cell of the particles, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
@@ -128,7 +128,7 @@ class RigidTractions {
   int solve_iteratively(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
   void forget_recycled() const;  ///< discards the data of earlier solves that the iterative solvers of this equation and of the tube's wall keep
   Tube* tube() const { return walls_.tube; }
-  stokes::Evaluations kernel_evaluations() const;  ///< of the layers of the bodies and of the tube
+  stokes::Evaluations kernel_evaluations() const;  ///< of the layers of the bodies and of the walls
 
  private:
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);

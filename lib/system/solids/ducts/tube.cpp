@@ -49,10 +49,13 @@ Net Tube::in_wall_frame(Net x) const {
 }
 
 void Tube::set_shape(const Net& x, std::optional<double> origin) {
+  if (same(latest_shape_, x) && latest_origin_ == origin) return;
   const auto clock = phases_.time("wall");
+  latest_shape_ = {}, latest_origin_ = origin;  // no shape is set if one of the next calls throws
   if (!origin && !fixed()) origin = particle_->geometry.measures(x).centroid[0];
   if (!origin && cell()) origin = cell()->shift(x.colwise().mean().transpose() - (wall().start + wall().end) / 2 * Vec3::UnitX())[0];
   particle_->set_shape(x, origin.value_or(0), *flow_, *wall_, empty_pressure_drop());
+  latest_shape_ = x;
 }
 
 double Tube::pressure_of(const Net& f, const Net& v) {

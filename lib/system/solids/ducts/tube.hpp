@@ -87,8 +87,9 @@ class Tube {
   /// Returns the particles as sources of flow. Their unstressed net, and their contrasts if they are not 0, must be set before set_shape().
   ParticleSources& particles();
 
-  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `origin`: x1 coordinate of the origin of the frame of
-  /// wall() if the wall is straight; by default the x1 coordinate of the particle's centroid.
+  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. Does nothing if the arguments are those of the latest
+  /// call. `origin`: x1 coordinate of the origin of the frame of wall() if the wall is straight; by default the x1 coordinate of the particle's
+  /// centroid.
   void set_shape(const Net& x, std::optional<double> origin = {});
 
   /// Returns the lattice of a periodic duct; not set for other ducts.
@@ -207,6 +208,8 @@ class Tube {
   std::shared_ptr<Wall> wall_;
   double inner_radius_ = 0;  // straight tubes: radius of the largest circle about the centroid that fits in the cross-section
   std::unique_ptr<ParticleData> particle_;
+  Net latest_shape_;                      // arguments of the latest call of set_shape(); no rows if it threw
+  std::optional<double> latest_origin_;
   std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which wall_residual() evaluates the velocity; set up at its first call
   std::optional<FlowWeights> flow_weights_;  // set at the first call of flow_weights()
 };

@@ -11,7 +11,7 @@
 #include "surface/geometry.hpp"
 #include "system/solids/ducts/tube.hpp"
 #include "system/solids/ducts/wall.hpp"
-#include "system/solvers/frozen_operator.hpp"
+#include "system/frozen/frozen_operator.hpp"
 
 namespace tanktread::coupling {
 

@@ -1,9 +1,7 @@
-#include "system/solvers/frozen_operator.hpp"
+#include "system/frozen/frozen_operator.hpp"
 
 #include <algorithm>
 #include <bit>
-
-#include "base/small_matrices.hpp"
 
 namespace tanktread::coupling {
 
@@ -48,34 +46,6 @@ void FrozenOperator::apply(const Net& f, Net& u) const {
     symmetric_block_row(n_, entries_.data() + 6 * static_cast<size_t>(n_) * k, f1_.data(), f2_.data(), f3_.data(), sum);
     u.row(targets_[k]) << sum[0], sum[1], sum[2];
   }
-}
-
-Corotation::Corotation(std::span<const Particle> particles, const Net& from, const Net& to) {
-  for (const Particle& particle : particles) {
-    blocks_.push_back(particle.block);
-    rotations_.push_back(rotation_between(particle.block.rows(from), particle.block.rows(to)));
-  }
-}
-
-Net Corotation::back(const Net& f) const { return rotated(f, true); }
-Net Corotation::forth(const Net& f) const { return rotated(f, false); }
-
-Net Corotation::rotated(Net f, bool back) const {
-  for (std::size_t p = 0; p < blocks_.size(); ++p) {
-    auto rows = blocks_[p].rows(f);
-    rows = (rows * (back ? rotations_[p] : Mat3(rotations_[p].transpose()))).eval();
-  }
-  return f;
-}
-
-Net Corotation::deformation(std::span<const Particle> particles, const Net& from, const Net& to) {
-  Net difference(to.rows(), 3);
-  for (const Particle& particle : particles) {
-    const auto before = particle.block.rows(from), after = particle.block.rows(to);
-    const Net start = before.rowwise() - before.colwise().mean();
-    particle.block.rows(difference) = (after.rowwise() - after.colwise().mean()) - start * rotation_between(before, after).transpose();
-  }
-  return difference;
 }
 
 }  // namespace tanktread::coupling

@@ -1,9 +1,9 @@
-// Construction of a Capsule.
+// Construction of a VelocitySolver.
 
 #include <algorithm>
 #include <utility>
 
-#include "system/capsule.hpp"
+#include "system/velocity_solver.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
 
 namespace tanktread::coupling {
@@ -27,32 +27,28 @@ std::unique_ptr<InterfaceMotion> interface_motion(const spline::Space& space, co
 
 }  // namespace
 
-Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& resting, const stokes::AmbientFlow& flow,
-                 const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
-    : space_(space), resting_(resting), surroundings_{flow, {}, {}}, parameters_(completed(parameters, space)), phases_(phases),
+VelocitySolver::VelocitySolver(const spline::Space& space, const Net& unstressed, const Net& resting, const stokes::AmbientFlow& flow,
+                               const CapsuleParameters& parameters, Phases& phases, std::unique_ptr<Tube> tube)
+    : space_(space), resting_(resting), flow_(flow), parameters_(completed(parameters, space)), phases_(phases),
       layout_(space, parameters_.symmetry, phases),
       targets_(space, unstressed, parameters_, layout_),
       membranes_(space, unstressed, parameters_, layout_, phases),
       volumes_(space, resting, particles(), layout_, phases),
       layers_(space, unstressed, parameters_, layout_, targets_, phases),
-      frozen_(space, membranes_.unstressed(), parameters_, layout_, targets_, membranes_.mass_matrix(), layers_),
-      duct_{std::move(tube), {}, {}},
+      tube_(std::move(tube)),
+      solids_(parameters_.solids ? std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_) : nullptr),
+      walls_{tube_.get(), solids_.get()},
       bodies_{RigidParticles(particles(), resting, parameters.viscosity, parameters.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
-      velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
-      jacobian_(parameters_, surroundings_.flow, flow_at_targets(), targets_, membranes_, volumes_, frozen_, duct_.tube.get(), interface_.get(),
-                counts_) {
-  if (parameters_.solids) {
-    surroundings_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, surroundings_.flow);
-    solids()->particles().set(membranes_.unstressed(), particles());
-  }
-  if (duct_.tube) duct_.tube->particles().set(unstressed, particles());
+      krylov_(parameters.solvers.of(parameters.solvers.velocity)) {
+  if (solids_) solids_->particles().set(membranes_.unstressed(), particles());
+  if (tube_) tube_->particles().set(unstressed, particles());
   if (std::ranges::any_of(particles(), &Particle::by_traction))
-    bodies_.tractions = std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, FluidWalls{duct_.tube.get(), solids()},
-                                                         layout_.points(), ranks);
+    bodies_.tractions = std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, walls_, layout_.points(),
+                                                         layout_.ranks());
   if (parameters_.cell) deform_cell(0);
 }
 
-Capsule::~Capsule() = default;
+VelocitySolver::~VelocitySolver() = default;
 
 }  // namespace tanktread::coupling

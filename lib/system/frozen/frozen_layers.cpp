@@ -1,4 +1,4 @@
-#include "system/solvers/frozen_layers.hpp"
+#include "system/frozen/frozen_layers.hpp"
 
 #include <cmath>
 #include <span>

@@ -1,4 +1,4 @@
-// The unknowns of Capsule: the linear system for the velocity, and the tractions on rigid bodies.
+// The unknowns of VelocitySolver: the linear system for the velocity, and the tractions on rigid bodies.
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,14 @@
 #include <utility>
 
 #include "base/formatted.hpp"
-#include "system/capsule.hpp"
+#include "system/velocity_solver.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
-#include "system/solvers/tube_system.hpp"
+#include "system/solids/ducts/tube_system.hpp"
 
 namespace tanktread::coupling {
 
 /// Adds an iterative solve to the counts. Throws RunFailure if it did not converge although its solution is finite (`finite`).
-void Capsule::record_solve(const SolveReport& report, bool finite, double tolerance) {
+void VelocitySolver::record_solve(const SolveReport& report, bool finite, double tolerance) {
   ++counts_.velocity_solves;
   counts_.velocity_iterations += report.iterations;
   counts_.most_velocity_iterations = std::max<long>(counts_.most_velocity_iterations, report.iterations);
@@ -27,14 +27,14 @@ void Capsule::record_solve(const SolveReport& report, bool finite, double tolera
 
 /// Returns the load that depends on the velocity v: viscous stresses of membranes, and loads of bodies with prescribed motion. No rows if there is no
 /// such load.
-Net Capsule::velocity_load(const Net& x, const Net& v) {
+Net VelocitySolver::velocity_load(const Net& x, const Net& v) {
   Net load = bodies_.rigid.prescribed() ? bodies_.rigid.completing_load(v) : Net();
   if (viscous()) load = load.size() > 0 ? Net(load + membranes_.viscous_load(x, v)) : membranes_.viscous_load(x, v);
   return load;
 }
 
 /// Returns B v with the operator B of (4.2), without the response of walls. `load`: velocity_load(x, v).
-Net Capsule::velocity_product(const Net& x, const Net& v, const Net& load) {
+Net VelocitySolver::velocity_product(const Net& x, const Net& v, const Net& load) {
   if (!layers_.has_double() && !viscous()) return v;
   Net bv = v - targets_.serial_control_values(layers_.apply(x, v, load));
   bodies_.rigid.complete(v, bv);
@@ -43,7 +43,7 @@ Net Capsule::velocity_product(const Net& x, const Net& v, const Net& load) {
 
 /// Returns the preconditioner of the velocity system at x, from inverses for isolated rigid bodies and for the thin films between bodies. Empty if no
 /// such inverses are stored. Valid until the bodies move.
-Apply Capsule::velocity_preconditioner(const Net& x) {
+Apply VelocitySolver::velocity_preconditioner(const Net& x) {
   if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, resting_, parameters_.quadrature);
   if (bodies_.isolated->empty()) return {};
   const auto films = std::make_shared<FilmInverses>(particles(), *bodies_.isolated, bodies_.rigid, x,
@@ -59,20 +59,20 @@ Apply Capsule::velocity_preconditioner(const Net& x) {
 /// Solves P B P v = rhs for v, with the operator B of (4.2), the projection P (2.8) of `volume`, and P rhs = rhs. In a tube, B includes the response
 /// of the wall to v if the option Solvers/tube is `schur`. With other values of this option, solve_blocks() solves for v and the wall tractions
 /// together. The initial guess is rhs if `guess` is empty or there are rigid bodies, and otherwise `guess`. `error`: see Evaluation::solve.
-Net Capsule::solve_velocity(const Net& x, const Net& f, const VolumeConstraint& volume, const Net& rhs, const Net& guess, double error) {
+Net VelocitySolver::solve_velocity(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs, const Net& guess, double error) {
   const auto clock = phases_.time("velocity system");
   layers_.assemble(x, viscous());
   if (!eliminates_walls()) return solve_blocks(x, f, volume, rhs);
   const auto apply = [&](Net v) {
-    volumes_.constrain(v, volume);
+    volume.apply(v);
     const Net load = velocity_load(x, v);
     Net bv = velocity_product(x, v, load);
-    if (duct_.tube || solids()) {
+    if (walls_.any()) {
       Net u = targets_.zero();
       add_walls(x, load, v, false, u);
       bv -= targets_.serial_control_values(u);
     }
-    volumes_.constrain(bv, volume);
+    volume.apply(bv);
     return bv;
   };
   const Eigen::VectorXd right = flat(rhs);
@@ -81,44 +81,41 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const VolumeConstraint& 
   const auto least = [](const Particle& one) { return one.radius * std::sqrt(static_cast<double>(one.block.n_points)); };
   const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
   const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
-  const SolveReport report = velocity_solver_.solve(system, right, v, tolerance);
+  const SolveReport report = krylov_.solve(system, right, v, tolerance);
   record_solve(report, v.allFinite(), tolerance);
   Net solution = as_net(v);
-  volumes_.constrain(solution, volume);
+  volume.apply(solution);
   return solution;
 }
 
 /// Solves for the velocity v, the wall traction f^D, the pressure drop dp (2.5)-(2.7) and the volume multipliers (2.8) in one system. The right-hand
 /// side rhs = v_inf - (1/mu) R^-1 A f is also the initial guess of v.
-Net Capsule::solve_blocks(const Net& x, const Net& f, const VolumeConstraint& volume, const Net& rhs) {
+Net VelocitySolver::solve_blocks(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs) {
   const auto load = [&](const Net& v) { return velocity_load(x, v); };
   const auto unbounded = [&](const Net& v, const Net& load_of_v) { return velocity_product(x, v, load_of_v); };
   const auto control_values = [&](const Net& at_sites) { return targets_.collocation().solve(at_sites); };
-  std::vector<spline::Block> constrained;
-  for (const Particle& one : particles())
-    if (volume.active() && !one.rigid) constrained.push_back(one.block);
-  const double unit = duct_.tube->wall().radius() / parameters_.viscosity;
-  const TubeSystem system{*duct_.tube, load, unbounded, control_values, volume.gradient, volume.response, constrained, unit};
+  const double unit = tube_->wall().radius() / parameters_.viscosity;
+  const TubeSystem system{*tube_, load, unbounded, control_values, volume, unit};
   const Eigen::VectorXd right = system.right_hand_side(rhs, f);
   Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(right.size());
   unknowns.head(rhs.size()) = right.head(rhs.size());
   const LinearSystem linear = system.linear_system(velocity_blocks(particles()), parameters_.solvers.tube);
-  const SolveReport report = velocity_solver_.solve(linear, right, unknowns, parameters_.solvers.tolerance);
+  const SolveReport report = krylov_.solve(linear, right, unknowns, parameters_.solvers.tolerance);
   record_solve(report, unknowns.allFinite(), parameters_.solvers.tolerance);
   return as_net(unknowns.head(rhs.size()));
 }
 
 /// Returns the velocity of deformable particles for the unknowns y of solve_tractions(); 0 in the rows of bodies.
-Net Capsule::deformable_velocity(const VolumeConstraint& volume, const Net& y) const {
+Net VelocitySolver::deformable_velocity(const VolumeProjection& volume, const Net& y) const {
   Net v = y;
   clear_rigid(particles(), v);
-  volumes_.constrain(v, volume);
+  volume.apply(v);
   return v;
 }
 
 /// Returns the load that depends on the unknowns y of solve_tractions(): tractions on bodies, and viscous loads of membranes. `v`:
 /// deformable_velocity() for y.
-Net Capsule::traction_load(const Net& x, const Net& y, const Net& v) {
+Net VelocitySolver::traction_load(const Net& x, const Net& y, const Net& v) {
   Net load = viscous() ? membranes_.viscous_load(x, v) : Net::Zero(y.rows(), 3);
   for (const Particle& one : particles())
     if (one.rigid) one.block.rows(load) = -one.block.rows(y);
@@ -126,7 +123,7 @@ Net Capsule::traction_load(const Net& x, const Net& y, const Net& v) {
 }
 
 /// Returns the product of the operator of solve_tractions() and the unknowns y, see RigidTractions::Surroundings.
-Net Capsule::traction_product(const Net& x, const VolumeConstraint& volume, const Net& y, const Net& caused) {
+Net VelocitySolver::traction_product(const Net& x, const VolumeProjection& volume, const Net& y, const Net& caused) {
   const Net v = deformable_velocity(volume, y), load = traction_load(x, y, v);
   Net other = viscous() || caused.size() == 0 ? load : Net();  // load whose induced velocity is not contained in `caused`
   if (viscous() && caused.size() > 0) clear_rigid(particles(), other);
@@ -135,7 +132,7 @@ Net Capsule::traction_product(const Net& x, const VolumeConstraint& volume, cons
   add_walls(x, load, v, false, u);
   if (bodies_.tractions->all_rigid()) return u;
   Net all = v - targets_.serial_control_values(u);
-  volumes_.constrain(all, volume);
+  volume.apply(all);
   for (const Particle& one : particles())
     if (one.rigid) one.block.rows(all) = one.block.rows(u);
   return all;
@@ -144,7 +141,7 @@ Net Capsule::traction_product(const Net& x, const VolumeConstraint& volume, cons
 /// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). Returns the velocity of all particles. `flow`:
 /// part of the velocity that does not depend on these unknowns. Adds the loads that depend on the unknowns to the load
 /// of `found`, and sets its response of a tube.
-Net Capsule::solve_tractions(const Net& x, const VolumeConstraint& volume, const Net& flow, SolvedShape& found) {
+Net VelocitySolver::solve_tractions(const Net& x, const VolumeProjection& volume, const Net& flow, SolvedShape& found) {
   const auto clock = phases_.time("tractions");
   layers_.assemble(x, viscous());
   const auto product = [this, x, volume](const Net& y, const Net& caused) { return traction_product(x, volume, y, caused); };
@@ -155,23 +152,20 @@ Net Capsule::solve_tractions(const Net& x, const VolumeConstraint& volume, const
   std::vector<RigidDrive> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
-  const bool responds = layers_.repeats() || duct_.tube || solids() || layers_.has_double() || viscous();
+  const bool responds = layers_.repeats() || walls_.any() || layers_.has_double() || viscous();
   const RigidTractions::Solution& solution =
-      bodies_.tractions->solve(x, centres, driven, surroundings_.flow, RigidTractions::Surroundings{flow, responds, product, load});
+      bodies_.tractions->solve(x, centres, driven, flow_, RigidTractions::Surroundings{flow, responds, product, load});
   Net v = deformable_velocity(volume, solution.unknowns);
   auto body = solution.bodies.begin();
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) bodies_.rigid.set_motion(p, body->motion, body->force, body->torque, v), ++body;
   found.load = load(solution.unknowns);
   for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, v.allFinite(), parameters_.solvers.tolerance);
-  if (duct_.tube) found.response = duct_.tube->respond(found.load, v, solution.pressure_correction);
+  if (tube_) found.response = tube_->respond(found.load, v, solution.pressure_correction);
   return v;
 }
 
-/// Returns the first moment int df_i r_j dGamma of the load df on particle p, a rigid body whose unknown is its traction. r is the position relative
-/// to the centre of the body. `at`: solution at the shape x. The system is solved again if another shape was solved last.
-Mat3 Capsule::moment_by_traction(const Net& x, const SolvedShape& at, std::size_t p) {
-  evaluate(x, at.velocity, at.error);
+Mat3 VelocitySolver::moment_by_traction(std::size_t p) {
   const Mat3 moment = bodies_.tractions->moment(static_cast<std::size_t>(std::ranges::count_if(
       std::span(particles()).first(p), [](const Particle& one) { return one.rigid.has_value(); })));
   for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, true, parameters_.solvers.tolerance);

@@ -5,8 +5,9 @@
 
 #include "membrane/mass.hpp"
 #include "system/targets/particle_layers.hpp"
-#include "system/solvers/frozen_operator.hpp"
-#include "system/solvers/nodal_operator.hpp"
+#include "system/frozen/corotation.hpp"
+#include "system/frozen/frozen_operator.hpp"
+#include "system/frozen/nodal_operator.hpp"
 
 namespace tanktread::coupling {
 

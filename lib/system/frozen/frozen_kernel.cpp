@@ -1,7 +1,7 @@
 #include <bit>
 
 #include "base/kernel.hpp"
-#include "system/solvers/frozen_operator.hpp"
+#include "system/frozen/frozen_operator.hpp"
 
 namespace tanktread::coupling {
 namespace INSTRUCTIONS {

@@ -3,12 +3,11 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "base/types.hpp"
-#include "spline/space.hpp"
 #include "system/solids/ducts/tube.hpp"
 #include "system/solvers/krylov.hpp"
+#include "system/volumes.hpp"
 
 namespace tanktread::coupling {
 
@@ -28,9 +27,7 @@ struct TubeSystem {
   std::function<Net(const Net& v)> load;                        ///< load that depends on v; empty if there is none
   std::function<Net(const Net& v, const Net& load)> unbounded;  ///< B v, minus the velocity due to the load in unbounded fluid
   std::function<Net(const Net&)> control_values;                ///< applies R^-1
-  const Net& flux;                                              ///< flux vector b = dV/dx
-  const Net& normal;                                            ///< n = M0^-1 b
-  std::vector<spline::Block> constrained;                       ///< particles whose volume is constrained
+  const VolumeProjection& volume;                               ///< fields b and n of (2.8), and the particles whose volume is constrained
   double unit = 1;                                              ///< tube radius divided by mu: converts f^D and dp to velocities
 
   /// Returns the system with the named preconditioner. `block triangular` approximates the operator B by the identity and solves for the velocity v

@@ -1,4 +1,4 @@
-#include "system/solvers/nodal_operator.hpp"
+#include "system/frozen/nodal_operator.hpp"
 
 #include <algorithm>
 

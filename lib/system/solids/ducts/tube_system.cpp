@@ -1,4 +1,4 @@
-#include "system/solvers/tube_system.hpp"
+#include "system/solids/ducts/tube_system.hpp"
 
 #include <type_traits>
 #include <utility>
@@ -8,7 +8,7 @@ namespace tanktread::coupling {
 namespace {
 
 /// Access to the blocks of an array of unknowns or residuals: velocity v, wall traction f^D, pressure drop dp and one volume multiplier per particle
-/// of TubeSystem::constrained.
+/// whose volume is constrained.
 template <class Number>
 struct Parts {
   using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;
@@ -28,13 +28,13 @@ using Out = Parts<double>;
 
 /// Returns b.v / (b.n) of one particle (2.8).
 double flux_of(const TubeSystem& s, const spline::Block& block, const Net& v) {
-  const auto product = [&](const Net& field) { return dot(block.rows(s.flux), block.rows(field)); };
-  return product(v) / product(s.normal);
+  const auto product = [&](const Net& field) { return dot(block.rows(s.volume.gradient), block.rows(field)); };
+  return product(v) / product(s.volume.direction);
 }
 
 /// Adds `factor` times the normal field n = M0^-1 b on one particle to v.
 void add_normal(const TubeSystem& s, const spline::Block& block, double factor, Eigen::Map<Net>& v) {
-  v.middleRows(block.first_point, block.n_points) += factor * block.rows(s.normal);
+  v.middleRows(block.first_point, block.n_points) += factor * block.rows(s.volume.direction);
 }
 
 /// Computes the product of the block matrix (2.5) to (2.8) with x.
@@ -48,8 +48,8 @@ void product(const TubeSystem& s, const In& x, Out r) {
   r.velocity = s.unbounded(v, load) - s.control_values(answer);
   r.wall_traction = tube.wall_on_wall(traction) - drop * tube.inlet_on_wall() - tube.particle_on_wall(load, v);
   r.pressure_drop = x.pressure_drop - s.unit * tube.pressure_of(load, v);
-  for (std::size_t k = 0; k < s.constrained.size(); ++k) {
-    const spline::Block& block = s.constrained[k];
+  for (std::size_t k = 0; k < s.volume.blocks.size(); ++k) {
+    const spline::Block& block = s.volume.blocks[k];
     add_normal(s, block, x.multipliers[k], r.velocity);
     r.multipliers[k] = flux_of(s, block, v);
   }
@@ -60,8 +60,8 @@ void product(const TubeSystem& s, const In& x, Out r) {
 /// of the unknowns that have been computed already.
 void precondition(const TubeSystem& s, const In& r, Out x, bool triangular) {
   x.velocity = r.velocity;
-  for (std::size_t k = 0; k < s.constrained.size(); ++k) {
-    const spline::Block& block = s.constrained[k];
+  for (std::size_t k = 0; k < s.volume.blocks.size(); ++k) {
+    const spline::Block& block = s.volume.blocks[k];
     x.multipliers[k] = flux_of(s, block, r.velocity) - r.multipliers[k];
     add_normal(s, block, -x.multipliers[k], x.velocity);
   }
@@ -81,7 +81,7 @@ LinearSystem TubeSystem::linear_system(Blocks velocity, const std::string& preco
   LinearSystem system{std::move(velocity), {}, {}};
   system.blocks.push_back({"wall traction", 3 * static_cast<int>(tube.wall().sites.size())});
   system.blocks.push_back({"pressure drop", 1});
-  if (!constrained.empty()) system.blocks.push_back({"multipliers of the volumes", static_cast<int>(constrained.size())});
+  if (!volume.blocks.empty()) system.blocks.push_back({"multipliers of the volumes", static_cast<int>(volume.blocks.size())});
   system.product = [this](const double* in, double* out) { product(*this, In(*this, in), Out(*this, out)); };
   const bool triangular = preconditioner == "block triangular";
   if (triangular || preconditioner == "block diagonal")
@@ -93,7 +93,7 @@ LinearSystem TubeSystem::linear_system(Blocks velocity, const std::string& preco
 
 Eigen::VectorXd TubeSystem::right_hand_side(const Net& velocity, const Net& f) const {
   const std::size_t nodes = tube.wall().sites.size() + static_cast<std::size_t>(velocity.rows());
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * nodes + 1 + constrained.size()));
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * nodes + 1 + volume.blocks.size()));
   Out rows(*this, all.data());
   rows.velocity = velocity;
   if (tube.cell()) rows.velocity += control_values(tube.images_on_particle(f));

@@ -8,7 +8,6 @@
 
 #include "base/types.hpp"
 #include "stokes/layer.hpp"
-#include "system/particle.hpp"
 
 namespace tanktread::coupling {
 
@@ -42,32 +41,5 @@ class FrozenOperator {
 /// Adds to u[0 .. 2] the sum over n points p of the symmetric 3 x 3 block of p times the vector (f1[p], f2[p], f3[p]). `entries`: six consecutive
 /// arrays of n entries, the entries 11, 12, 13, 22, 23, 33 of all blocks.
 void symmetric_block_row(int n, const std::uint16_t* entries, const double* f1, const double* f2, const double* f3, double* u);
-
-/// Approximates a layer operator A at a shape x, given A at an earlier shape x0, if x is x0 rotated and slightly deformed. With the rotation Q_p that
-/// best maps the control points of particle p from x0 to x (least squares; Kabsch 1976),
-///
-///   (A f)_p ~ Q_p sum_q A_pq Q_q^T f_q                                                                                            (4.29)
-///
-/// This is exact if all particles rotate together. If a membrane tank-treads, its control points are convected while the shape is steady, and the
-/// operator changes only by this rotation.
-class Corotation {
- public:
-  Corotation() = default;
-
-  /// Computes, for each particle, the rotation that maps its rows of `from` best to its rows of `to`. Both are control nets of shape (N, 3).
-  Corotation(std::span<const Particle> particles, const Net& from, const Net& to);
-
-  Net back(const Net& f) const;    ///< returns Q^T f
-  Net forth(const Net& f) const;  ///< returns Q f
-
-  /// Returns the displacement `to` - `from` minus the best-fitting rigid motion of each particle.
-  static Net deformation(std::span<const Particle> particles, const Net& from, const Net& to);
-
- private:
-  Net rotated(Net f, bool back) const;
-
-  std::vector<spline::Block> blocks_;
-  std::vector<Mat3> rotations_;
-};
 
 }  // namespace tanktread::coupling

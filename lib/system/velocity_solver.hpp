@@ -1,0 +1,232 @@
+#pragma once
+// Loads, unknowns and velocities of capsules, drops and rigid bodies at one shape: in unbounded flow, on a lattice, in front of walls or in a tube.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "stokes/flow/ambient_flow.hpp"
+#include "system/capsule_parameters.hpp"
+#include "system/interface_motion.hpp"
+#include "system/membranes.hpp"
+#include "system/parallel/layout.hpp"
+#include "system/solids/bodies/body_preconditioner.hpp"
+#include "system/solids/bodies/rigid_particles.hpp"
+#include "system/solids/fluid_walls.hpp"
+#include "system/targets/particle_layers.hpp"
+#include "system/volumes.hpp"
+
+namespace tanktread::coupling {
+
+class RigidTractions;
+
+/// Virtual work of the loads. `work`: dE/dx of all loads minus the virtual work of the additional forces (VelocitySolver::set_forces), one row per
+/// control point; 0 for rigid bodies. `sums`: surface integrals on which the loads depend (see Loads), summed over all ranks.
+struct WorkOfLoads {
+  Net work;
+  std::vector<Net> sums;
+};
+
+/// Solution of (4.2) at one shape. Nets have one row per control point of all particles.
+struct SolvedShape {
+  double error = 0;  ///< allowed error of the velocity (Capsule::norm per unit of time), if larger than the error due to Solvers/tolerance
+  Net velocity;      ///< velocity of the control points
+  Net fluid;         ///< velocity of the fluids; no rows if no control point slides
+  Slip slip;         ///< slip of the fluids along the meshes of interfaces; empty if no control point slides
+  Net unknowns;      ///< unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies. On a lattice, velocities of
+                     ///< the particles' images in the cell, unlike `velocity` and `fluid`
+  WorkOfLoads loads;
+  Net load;                                ///< see Evaluation::load
+  std::optional<Tube::Response> response;  ///< response of the tube, unless the solution of a velocity system changes it
+  std::optional<RigidParticles> rigid;     ///< rigid bodies with their motion, if there are any
+};
+
+/// Solves for the velocity v(x) of all particles at a shape x, the stacked control nets. solve() is the entry point; solve_second_kind() lists its
+/// stages. The functions are in velocity_solver.cpp (stages), velocity_solver_systems.cpp (linear systems), velocity_solver_cell.cpp (lattices,
+/// tubes, plates, posts) and velocity_solver_setup.cpp (construction).
+///
+/// Basic equation, without a wall (2.4), (4.2):
+///
+///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by projection P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
+///
+/// R is the collocation matrix, M0 the mass matrix, v_inf the ambient velocity, E the energy of the membranes and V the volume of a particle. A and D
+/// are the single and the double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface, with the viscosity
+/// ratio lambda. Each particle has its own condition b.v = 0, and P is the product of the projections of all particles.
+///
+/// Solution: if lambda = 1, then D = 0, and the velocity needs no assembly and no linear solve. Otherwise Belos solves P B P v = P rhs, where rhs is
+/// the right-hand side of the equation above. This system results from the block system of v and the Lagrange multipliers of b.v = 0 if the
+/// multipliers are eliminated. P removes the mode for which B becomes singular as lambda -> 0.
+///
+/// Viscous membranes and interfaces: B includes the velocity caused by the load M0^{-1} C v (3.10), where v is the fluid velocity:
+///
+///   B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                                                                                 (3.11)
+///
+/// If loads are measured per current area, the mass matrix M of the current surface replaces M0.
+///
+/// Rigid bodies: the unknown in their rows is the double-layer density w of (2.23), see RigidParticles. Alternatively the unknown is the traction on
+/// them (RigidTractions).
+///
+/// Symmetry: if the scene is symmetric, only the rows of fundamental control points are evaluated and solved for. All other rows are mirror images of
+/// these rows.
+///
+/// Lattice and plane wall: the layers include the periodic and mirror images of the particles (ParticleLayers). On a lattice each particle is
+/// replaced by its image in the cell around the origin. The velocity of the particle is the velocity of this image, plus the difference of the
+/// ambient velocities at the two positions.
+///
+/// Tube: the velocity caused by the wall and by the pressure drop (2.5)-(2.7) is added. This velocity is linear in the load and, for lambda != 1,
+/// in v. The part due to known loads is added to the right-hand side, and the part due to v to B. Alternatively v, the wall traction and the
+/// pressure drop are solved for in one linear system (TubeSystem).
+///
+/// Plates and posts: the velocity (2.47) that they cause is added to the right-hand side and to B in the same way.
+///
+/// Nets are replicated on all ranks. Calls with a shape are collective.
+class VelocitySolver {
+ public:
+  /// The arguments are explained at the constructor of Capsule.
+  VelocitySolver(const spline::Space& space, const Net& unstressed, const Net& resting, const stokes::AmbientFlow& flow,
+                 const CapsuleParameters& parameters, Phases& phases, std::unique_ptr<Tube> tube);
+  ~VelocitySolver();
+
+  /// Sets the time of the flow and of the cell (see Dynamics::set_time). Returns whether one of them has changed.
+  bool set_time(double time, double start);
+
+  /// Virtual work of additional forces, one row per control point; empty nets if there are none. `contacts`: contact forces, which keep their
+  /// directions and material points. `fields`: loads due to the fields on surfaces, whose work is minus their contribution to dE/dx (4.2).
+  struct Forces {
+    Net contacts, fields;
+  };
+  bool set_forces(Net Forces::* of, Net work);  ///< sets one kind of additional forces for all later calls. Returns whether it has changed
+  const Forces& forces() const { return forces_; }
+  bool has_forces() const { return forces_.contacts.size() > 0 || forces_.fields.size() > 0; }
+
+  /// Solves (4.2) at a shape. `guess`: initial guess of the velocity; used if the velocity is the only unknown of the linear solve. `error`: see
+  /// SolvedShape.
+  SolvedShape solve(const Net& shape, const Net& guess, double error);
+
+  /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14), where B v = w is the linear system for the velocity v at the shape, and P
+  /// the volume projection (2.8). Needs no linear solve. Requires that all unknowns are velocities and that walls are eliminated.
+  Net defect(const Net& shape, const Net& u);
+
+  /// Returns the virtual work of the loads and of the additional forces.
+  WorkOfLoads work_of_loads(const Net& x);
+
+  /// Returns the load of the membranes at x. `known`: virtual work of the loads at x, computed here if it has no rows. On a lattice, particles may be
+  /// moved into the cell, which changes no load. If `volume` is given, it is set to the volume projection at x, and remains inactive if the volumes
+  /// are free.
+  Net membrane_load(const Net& x, WorkOfLoads& known, VolumeProjection* volume = nullptr);
+
+  /// Returns the first moment int df_i r_j dGamma of the load df on particle p, a rigid body whose unknown is its traction, at the shape that was
+  /// solved last. r is the position relative to the centre of the body.
+  Mat3 moment_by_traction(std::size_t p);
+
+  bool slides() const { return interface_ != nullptr; }        ///< whether control points slide along an interface
+  bool viscous() const { return membranes_.viscous(); }        ///< whether a membrane or interface is viscous: then the load depends on the velocity
+  bool has_system() const { return layers_.has_double() || viscous(); }  ///< whether velocities are the solution of a linear system
+
+  /// Returns whether all control points move with the fluid.
+  bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }
+
+  /// Returns whether the wall traction is eliminated from the velocity system, so that only the particles have unknowns in the system.
+  bool eliminates_walls() const { return !tube_ || bodies_.tractions || parameters_.solvers.eliminates_walls(); }
+
+  /// Returns whether the ambient velocity is evaluated at the targets. Otherwise it is affine, and exact at the control points.
+  bool flow_at_targets() const { return walls_.any() || !flow_.affine(); }
+
+  /// Result of move_into_cell(). `shifts`: what was subtracted for each particle; empty without a lattice. `origin`: x1 of the origin of the frame of
+  /// a straight periodic wall, which moves with the particles; not set for other walls.
+  struct CellMove {
+    std::vector<CellShift> shifts;
+    std::optional<double> origin;
+  };
+  /// Replaces every particle in the net x by its image whose mean control point is in the cell, and converts the velocity v of the control points, if
+  /// given, to the velocity of the image. Without a lattice, does nothing. The cell is centred on the origin; in a channel, on the middle of the
+  /// channel; and in a straight tube, whose wall moves with the particles, on the mean of the particles.
+  CellMove move_into_cell(Net& x, Net* v = nullptr) const;
+  /// Moves x and v into the cell, as move_into_cell(), and sets the tube, if there is one, to the shape x in the cell.
+  void place(Net& x, Net* v = nullptr);
+  void set_solid_shape(const Net& x);  ///< sets plates and posts to the shape x in the cell
+
+  RigidParticles& rigid() { return bodies_.rigid; }  ///< rigid bodies, at the shape solved last
+  const RigidParticles& rigid() const { return bodies_.rigid; }
+  const CapsuleParameters& parameters() const { return parameters_; }
+  const std::vector<Particle>& particles() const { return parameters_.particles; }
+  const stokes::AmbientFlow& flow() const { return flow_; }                  ///< flow at the time set by `set_time`
+  const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }  ///< cell at the time set by `set_time`; not set without a lattice
+  const FluidWalls& walls() const { return walls_; }
+  const Layout& layout() const { return layout_; }
+  const Targets& targets() const { return targets_; }
+  Membranes& membranes() { return membranes_; }
+  const Membranes& membranes() const { return membranes_; }
+  const Volumes& volumes() const { return volumes_; }
+  ParticleLayers& layers() { return layers_; }
+  const ParticleLayers& layers() const { return layers_; }
+  InterfaceMotion* interface() { return interface_.get(); }  ///< null if no control points slide
+
+  Net symmetric(Net field) const { return parameters_.symmetry.completed(std::move(field)); }
+  stokes::Evaluations kernel_evaluations() const;  ///< of all layers at the targets, of the walls, and of the tractions on bodies
+  void forget_recycled() const;                    ///< discards the data of earlier solves that the preconditioner `recycled` keeps
+  OperationCounts& counts() { return counts_; }
+  const OperationCounts& counts() const { return counts_; }
+
+ private:
+  /// Rigid bodies among the particles. `tractions`: set if the unknowns on the bodies are their tractions. `isolated`: inverses of the system (2.23)
+  /// for isolated bodies, used as a preconditioner; set up at the first use.
+  struct Bodies {
+    RigidParticles rigid;
+    std::unique_ptr<RigidTractions> tractions;
+    std::optional<OneBodyInverses> isolated;
+  };
+  bool has_velocity_system() const { return has_system() || !eliminates_walls(); }
+  // In the functions below, x is a shape whose particles are in the cell (place), if there is a lattice.
+  // Stages (velocity_solver.cpp).
+  Net solve_in_cell(const Net& x, const Net& guess, SolvedShape& found);
+  Net solve_second_kind(const Net& x, const Net& guess, VolumeProjection& volume, SolvedShape& found);
+  Net solve_first_kind(const Net& x, VolumeProjection& volume, SolvedShape& found);
+  bool in_fluid(const Net& x) const;
+  void push_bodies(const Net& x);
+  Net explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer);
+  // Cells of lattices, tubes, plates and posts (velocity_solver_cell.cpp).
+  bool deform_cell(double time);
+  Vec3 cell_origin(const Net& x) const;
+  Tube::Response add_walls(const Net& x, const Net& f, const Net& v, bool with_empty, Net& u);
+  // Linear systems (velocity_solver_systems.cpp).
+  Net velocity_load(const Net& x, const Net& v);
+  Net velocity_product(const Net& x, const Net& v, const Net& load);
+  Apply velocity_preconditioner(const Net& x);
+  Net solve_velocity(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs, const Net& guess, double error);
+  Net solve_blocks(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs);
+  Net deformable_velocity(const VolumeProjection& volume, const Net& y) const;
+  Net traction_load(const Net& x, const Net& y, const Net& v);
+  Net traction_product(const Net& x, const VolumeProjection& volume, const Net& y, const Net& caused);
+  Net solve_tractions(const Net& x, const VolumeProjection& volume, const Net& flow, SolvedShape& found);
+  void record_solve(const SolveReport& report, bool finite, double tolerance);
+
+  // Order of initialisation: a member may use those before it. The constructor's body sets up tractions and the cell.
+  // Members that depend on the latest shape, and what sets them:
+  //   tube_               place() and solve(), by Tube::set_shape()
+  //   solids_             add_walls() and Evaluation::solid_flow(), by set_solid_shape()
+  //   bodies_.rigid       solve() and Capsule::restore_constraints()
+  //   bodies_.tractions   solve_tractions()
+  //   layers_             each call with its shape; rows that are stored, by assemble() in solve_velocity() and solve_tractions()
+  const spline::Space& space_;
+  Net resting_;
+  stokes::AmbientFlow flow_;
+  std::optional<stokes::PeriodicCell> cell_;
+  CapsuleParameters parameters_;
+  Phases& phases_;
+  OperationCounts counts_;
+  Layout layout_;
+  Targets targets_;
+  Membranes membranes_;
+  Volumes volumes_;
+  ParticleLayers layers_;
+  std::unique_ptr<Tube> tube_;             // tube or channel
+  std::unique_ptr<SolidResponse> solids_;  // plates and posts
+  FluidWalls walls_;                       // refers to tube_ and solids_
+  Bodies bodies_;
+  std::unique_ptr<InterfaceMotion> interface_;  // set if any control points slide along an interface
+  Krylov krylov_;
+  Forces forces_;
+};
+
+}  // namespace tanktread::coupling
