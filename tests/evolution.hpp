@@ -23,7 +23,7 @@ class Evolution {
     scene.check();
     members_ = members(scene);
     arrange(members_);
-    capsule = tanktread::capsule(members_, body(), ranks_, phases_, nullptr, std::nullopt);
+    capsule = tanktread::capsule(members_, body(), phases_, nullptr, std::nullopt);
     scheme_ = motion::integrator(scene.time);
     state.x = body().initial;
     motion::begin(*capsule, state);
@@ -55,7 +55,6 @@ class Evolution {
 
  private:
   std::vector<Member> members_;
-  coupling::Ranks ranks_;
   Phases phases_;
   std::unique_ptr<motion::Integrator> scheme_;
 };

@@ -15,7 +15,7 @@
 #include "deck/section.hpp"
 #include "motion/integrator.hpp"
 #include "motion/spectrum.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 #include "system/solvers/eigenvalues.hpp"
 #include "system/solvers/nonlinear.hpp"
 

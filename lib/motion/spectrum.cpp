@@ -9,7 +9,7 @@
 #include "base/errors.hpp"
 #include "deck/section.hpp"
 #include "system/parallel/agreement.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 #include "system/solvers/eigenvalues.hpp"
 
 namespace tanktread::motion {

@@ -7,7 +7,7 @@
 
 #include "base/types.hpp"
 #include "system/dynamics.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 #include "system/solvers/options.hpp"
 
 namespace tanktread::deck {

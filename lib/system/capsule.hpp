@@ -15,8 +15,8 @@
 
 namespace tanktread::coupling {
 
-/// Computes dx/dt = v(x) for the stacked control nets x of all particles: VelocitySolver solves for v, and CapsuleJacobian is its Jacobian for implicit
-/// steps.
+/// Computes dx/dt = v(x) for the stacked control nets x of all particles. VelocitySolver solves for v, and CapsuleJacobian is the Jacobian for
+/// implicit steps.
 ///
 /// Order of calls: set_time() sets the time. evaluate() solves for the loads and velocities of a shape and returns them as an Evaluation.
 /// evaluate_on_demand() returns an Evaluation that solves only when a quantity is read that needs it. Implicit schemes call freeze() every few steps,

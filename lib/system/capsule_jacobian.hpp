@@ -75,7 +75,7 @@ class CapsuleJacobian {
 
   const CapsuleParameters& parameters_;
   const stokes::AmbientFlow& flow_;
-  const bool flow_at_sites_;  // true if the ambient velocity is evaluated at the collocation sites, false if its uniform gradient acts on control points
+  const bool flow_at_sites_;  // whether the ambient velocity is evaluated at the sites. Otherwise its uniform gradient acts on the control points
   const Targets& targets_;
   Membranes& membranes_;
   const Volumes& volumes_;

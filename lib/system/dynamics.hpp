@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/types.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 #include "system/solvers/secants.hpp"
 
 namespace tanktread::coupling {

@@ -48,8 +48,9 @@ const std::vector<Net>& Evaluation::load_sums() { return system_->solver().membr
 
 const Net& Evaluation::load() {
   if (known_.load.size() == 0) {
-    if (!system_->solver().rigid().empty() || system_->solver().viscous()) require_solution();  // because the load depends on the solution of the velocity system
-    else known_.load = system_->solver().membrane_load(x_, known_.loads);
+    VelocitySolver& solver = system_->solver();
+    if (!solver.rigid().empty() || solver.viscous()) require_solution();  // because the load depends on the solution of the velocity system
+    else known_.load = solver.membrane_load(x_, known_.loads);
   }
   return known_.load;
 }

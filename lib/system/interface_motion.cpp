@@ -13,6 +13,7 @@ namespace tanktread::coupling {
 InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial, const CapsuleParameters& parameters, const Layout& layout,
                                  const Targets& targets, const membrane::SymmetricSolver& mass)
     : space_(space),
+      targets_(targets),
       sites_(targets.at_sites()),
       projection_(targets.projection()),
       collocation_(targets.collocation()),
@@ -32,9 +33,10 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
     Drop& drop = drops_.back();
     const auto contains = [&](int e) { return block.contains_element(e); };
     std::ranges::copy_if(layout.points(), std::back_inserter(drop.points), [&](int i) { return block.contains(i); });
-    if (projection_)
-      for (int i = 0; i < static_cast<int>(projection_->sites().size()); ++i)
-        if (contains(projection_->sites()[static_cast<size_t>(i)].front().element)) drop.sites.push_back(i);
+    if (!projection_) drop.targets = drop.points;
+    else
+      for (int i = 0; i < static_cast<int>(targets.sites().size()); ++i)
+        if (contains(targets.sites()[static_cast<size_t>(i)].front().element)) drop.targets.push_back(i);
     if (!drop.relaxed) continue;
     relaxed_ = true;
     std::ranges::copy_if(layout.touching(), std::back_inserter(own_elements_), contains);
@@ -80,6 +82,17 @@ Net InterfaceMotion::normals_at(const Net& x) const {
   });
 }
 
+/// Returns the normals at the targets. `at_sites`: normals at the collocation sites.
+Net InterfaceMotion::normals_at_targets(const Net& x, const Net& at_sites) const { return projection_ ? projection_->normals(x) : at_sites; }
+
+/// Returns the control values of a velocity at the targets. `fill` sets its rows at Drop::targets in a net of zeros.
+Net InterfaceMotion::control_values(const std::function<void(Net&)>& fill) const {
+  if (!projection_) return collocation_.solve(ranks_.filled(sites_.rows(), fill));
+  Net at_targets = targets_.zero();
+  fill(at_targets);
+  return projection_->control_values(at_targets);
+}
+
 /// Sets the relaxation velocity w (4.6) at the rank-owned collocation sites. `f`: control values of the tangential part of the density of the mesh's
 /// elastic force.
 void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
@@ -109,14 +122,13 @@ std::vector<MotionOfShape> InterfaceMotion::motions(const Net& x, const Net& b, 
 /// (4.14), and w is the relaxation velocity, computed by slide() from f; if f is empty, w = 0. Sets `slip_residual` to v - W - w at the sites
 /// where u is evaluated.
 Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& slip_residual) const {
-  Net u = sites_ * v;
-  const Net places = sites_ * x;
+  Net u = targets_.values() * v;
+  const Net at = targets_.values() * x, n = normals_at_targets(x, normals);
   const std::vector<MotionOfShape> shapes = motions(x, b, normals, v);
-  // Replaces `velocities` v at the points `at` with the normals n by W + `along` + n n.(v - W - `along`), and adds v - W - `along` to
-  // `slip_residual`.
-  const auto combine = [&](const Net& at, const Net& n, const Net& along, std::vector<int> Drop::* rows, Net& velocities) {
+  // Replaces `velocities` v at the targets by W + `along` + n n.(v - W - `along`), and adds v - W - `along` to `slip_residual`.
+  const auto combine = [&](const Net& along, Net& velocities) {
     for (size_t d = 0; d < drops_.size(); ++d) {
-      for (const int i : drops_[d].*rows) {
+      for (const int i : drops_[d].targets) {
         const Eigen::RowVector3d with = shapes[d].at(at.row(i).transpose()).transpose() + along.row(i);
         slip_residual.row(i) += velocities.row(i) - with;
         velocities.row(i) = with + n.row(i).dot(velocities.row(i) - with) * n.row(i);
@@ -126,12 +138,10 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
   if (projection_) {
     const Eigen::SparseMatrix<double>& values = projection_->values();
     const Net w = ranks_.filled(x.rows(), [&](Net& own) { slide(x, f, own); });
-    u = values * v;
-    const Net n = projection_->normals(x);
     const Net free = values * collocation_.solve(w), along = along_interface(n, free);
     slip_residual = -free;
     const Net slid = projection_->control_values(along);
-    combine(values * x, n, Net::Zero(n.rows(), 3), &Drop::sites, u);
+    combine(targets_.zero(), u);
     const Eigen::VectorXd leak = values * projection_->scalar_values((values * slid).cwiseProduct(n).rowwise().sum());
     return projection_->control_values(u - leak.asDiagonal() * n) + slid;
   }
@@ -139,29 +149,24 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
   Net w = Net::Zero(x.rows(), 3);
   slide(x, f, w);
   return collocation_.solve(ranks_.filled(x.rows(), [&](Net& own) {
-    combine(places, normals, w, &Drop::points, u);
+    combine(w, u);
     own = u;
   }));
 }
 
 std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> axes) const {
   if (axes.empty()) return {};
-  const Net normals = projection_ ? projection_->normals(x) : normals_at(x);
-  const Net places = (projection_ ? projection_->values() : sites_) * x;
+  const Net normals = projection_ ? projection_->normals(x) : normals_at(x), places = targets_.values() * x;
   std::vector<Net> all;
   for (const Drop& drop : drops_) {
     const Vec3 middle = drop.block.rows(x).colwise().mean().transpose();
-    for (const int k : axes) {
-      const auto rotate = [&](Net& field) {
-        for (const int i : projection_ ? drop.sites : drop.points) {
+    for (const int k : axes)
+      all.push_back(control_values([&](Net& field) {
+        for (const int i : drop.targets) {
           const Vec3 turn = Vec3::Unit(k).cross(Vec3(places.row(i).transpose()) - middle), n = normals.row(i).transpose();
           field.row(i) = (turn - n.dot(turn) * n).transpose();
         }
-      };
-      Net everywhere = Net::Zero(places.rows(), 3);
-      if (projection_) rotate(everywhere);
-      all.push_back(projection_ ? projection_->control_values(everywhere) : collocation_.solve(ranks_.filled(places.rows(), rotate)));
-    }
+      }));
   }
   return all;
 }
@@ -181,13 +186,13 @@ void InterfaceMotion::linearise(const Net& x, const Net& b, const Slip& slip) {
   if (relaxed_) tangent_.update(x, own_elements_);
 }
 
-/// Returns the tangential part of the change of W (4.14) with the shape, per distance `aside`, at the points `at`, which move to `there`.
-Net InterfaceMotion::change_of_motion(const Displaced& to, const Net& at, const Net& there, const Net& normals, double aside,
-                                      std::vector<int> Drop::* rows) const {
+/// Returns the tangential part of the change of W (4.14) with the shape, per distance `aside`, at the targets. `normals`: at the targets.
+Net InterfaceMotion::change_of_motion(const Displaced& to, const Net& normals, double aside) const {
   const std::vector<MotionOfShape> after = motions(to.x, to.b, to.normals, slip_.fluid);
-  Net change = Net::Zero(at.rows(), 3);
+  const Net at = targets_.values() * x_, there = targets_.values() * to.x;
+  Net change = targets_.zero();
   for (size_t d = 0; d < drops_.size(); ++d)
-    for (const int i : drops_[d].*rows)
+    for (const int i : drops_[d].targets)
       change.row(i) = (after[d].at(there.row(i).transpose()) - shapes_[d].at(at.row(i).transpose())).transpose() / aside;
   return along_interface(normals, std::move(change));
 }
@@ -207,16 +212,11 @@ Net InterfaceMotion::derivative(const Net& dv, const Net& delta, const Net& db) 
   }
   const Net kept = combined(x_, flux_, normals_, dv, density, slip_residual);
   if (!turns) return kept;
-  if (projection_) {
-    const Net n = projection_->normals(x_), at = projection_->values() * x_;
-    Net turned = normal_part_change(n, (projection_->normals(to.x) - n) / aside, slip_.residual);
-    if (db.rows() > 0) turned += change_of_motion(to, at, projection_->values() * to.x, n, aside, &Drop::sites);
-    return kept + projection_->control_values(turned);
-  }
-  return kept + collocation_.solve(ranks_.filled(x_.rows(), [&](Net& u) {
-    u = normal_part_change(normals_, change, slip_.residual);
-    if (db.rows() > 0) u += change_of_motion(to, sites_ * x_, sites_ * to.x, normals_, aside, &Drop::points);
-  }));
+  return kept + control_values([&](Net& u) {
+    const Net n = normals_at_targets(x_, normals_);
+    u = normal_part_change(n, (normals_at_targets(to.x, to.normals) - n) / aside, slip_.residual);
+    if (db.rows() > 0) u += change_of_motion(to, n, aside);
+  });
 }
 
 }  // namespace tanktread::coupling

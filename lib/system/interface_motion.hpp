@@ -1,6 +1,7 @@
 #pragma once
 // Tangential motion of control points along a fluid interface. Physics determines only the motion normal to the interface.
 
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -73,7 +74,7 @@ class InterfaceMotion {
     SharedMotion shared;  // of the mesh with the shape of the drop
     double speed;
     std::vector<int> points;      // rank-owned control points
-    std::vector<int> sites;       // indices of this drop's sites among the sites of VelocityProjection
+    std::vector<int> targets;     // of the points at which u is evaluated (Targets), those on this drop. With collocation, only rank-owned points
     stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`, in double precision so that units and axes do not matter
   };
   struct Displaced {  // shape, dV/dx and normals of a displaced shape
@@ -81,15 +82,18 @@ class InterfaceMotion {
   };
   void slide(const Net& x, const Net& f, Net& w) const;
   std::vector<MotionOfShape> motions(const Net& x, const Net& b, const Net& normals, const Net& v) const;
-  Net change_of_motion(const Displaced& to, const Net& at, const Net& there, const Net& normals, double aside, std::vector<int> Drop::* rows) const;
+  Net change_of_motion(const Displaced& to, const Net& normals, double aside) const;
   Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& slip_residual) const;
   Net normals_at(const Net& x) const;  ///< normals at the collocation sites of all drops, zeros at other sites. Collective
+  Net normals_at_targets(const Net& x, const Net& at_sites) const;
+  Net control_values(const std::function<void(Net&)>& fill) const;
 
   const spline::Space& space_;
   std::vector<Drop> drops_;
   bool relaxed_ = false;           // true if any drop relaxes
   double radius_ = std::numeric_limits<double>::infinity();  // R_C of the smallest drop
   std::vector<int> own_elements_;  // rank-owned elements of relaxing drops
+  const Targets& targets_;
   const Eigen::SparseMatrix<double>& sites_;  // collocation matrix R
   const VelocityProjection* projection_;      // null if u is collocated
   const membrane::SymmetricSolver &collocation_, &mass_;

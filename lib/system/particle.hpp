@@ -12,7 +12,7 @@
 #include "spline/space.hpp"
 #include "stokes/layer.hpp"
 #include "system/interface_options.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 #include "system/solvers/krylov.hpp"
 
 namespace tanktread::coupling {

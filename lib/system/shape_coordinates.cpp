@@ -8,7 +8,7 @@
 #include "system/parallel/agreement.hpp"
 #include "system/targets/collocation.hpp"
 #include "system/interface_motion.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 
 namespace tanktread::coupling {
 

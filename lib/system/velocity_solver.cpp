@@ -157,7 +157,8 @@ void VelocitySolver::forget_recycled() const {
 }
 
 stokes::Evaluations VelocitySolver::kernel_evaluations() const {
-  return layers_.evaluations() + (bodies_.tractions ? bodies_.tractions->kernel_evaluations() : walls_.evaluations());  // of tractions: with the walls
+  const RigidTractions* const bodies = bodies_.tractions.get();
+  return layers_.evaluations() + (bodies ? bodies->kernel_evaluations() : walls_.evaluations());  // those of the bodies include the walls
 }
 
 }  // namespace tanktread::coupling

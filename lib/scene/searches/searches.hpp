@@ -14,7 +14,7 @@
 #include "surface/geometry.hpp"
 #include "system/coupled_motion.hpp"
 #include "system/particle.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 
 namespace tanktread {
 

@@ -25,8 +25,8 @@ struct FluidWalls {
     Solids::Flow solids;
   };
 
-  /// Returns the responses to the load f and the velocity v of the particles; an empty v counts as zero. `with_empty`: also includes the flow that the
-  /// solids cause without particles; the ambient flow of a tube contains it already. Collective.
+  /// Returns the responses to the load f and the velocity v of the particles; an empty v counts as zero. `with_empty`: whether the flow that solids
+  /// cause without particles is included. In a tube this flow is part of the ambient flow. Collective.
   Response respond(const Net& f, const Net& v, bool with_empty) const;
 
   /// Adds to rows `own` of u the velocity of a response at points on the particles. `values`: values of the basis functions at the points. x: net of

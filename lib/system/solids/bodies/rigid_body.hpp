@@ -7,7 +7,7 @@
 #include "stokes/flow/ambient_flow.hpp"
 #include "system/dynamics.hpp"
 #include "system/particle.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
 
 namespace tanktread::coupling {

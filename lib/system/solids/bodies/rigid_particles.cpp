@@ -16,7 +16,7 @@
 #include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
 #include "system/targets/collocation.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 
 namespace tanktread::coupling {
 

@@ -13,7 +13,7 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "system/particle.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 
 namespace tanktread::coupling {
 

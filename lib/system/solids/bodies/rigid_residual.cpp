@@ -26,7 +26,8 @@ quadrature::Options for_residual(quadrature::Options options) {
 
 }  // namespace
 
-RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, const Ranks& ranks)
+RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters,
+                             const Ranks& ranks)
     : viscosity_(parameters.viscosity),
       ranks_(ranks),
       between_(between_sites(space, rest, blocks_of_bodies(parameters.particles))),

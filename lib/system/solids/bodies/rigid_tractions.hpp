@@ -17,7 +17,7 @@
 #include "system/capsule_parameters.hpp"
 #include "system/parallel/ranks.hpp"
 #include "system/solids/bodies/body_layer.hpp"
-#include "system/solids/bodies/rigid_motion.hpp"
+#include "system/rigid_motion.hpp"
 #include "system/solids/bodies/rigid_residual.hpp"
 #include "system/solvers/krylov.hpp"
 

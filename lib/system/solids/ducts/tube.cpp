@@ -1,5 +1,7 @@
 #include "system/solids/ducts/tube.hpp"
 
+#include <cassert>
+
 #include "system/targets/collocation.hpp"
 #include "system/solids/shared_walls.hpp"
 #include "system/solids/ducts/tube_particle.hpp"
@@ -107,26 +109,34 @@ Net Tube::solve_wall(const Net& rhs) { return viscosity() * wall_->solve(rhs); }
 
 double Tube::viscosity() const { return particle_->parameters.viscosity; }
 
+/// Sets the wall traction, and adds the contribution of v to the pressure drop.
+void Tube::respond_open(const Net& f, const Net& v, Response& response) {
+  Net on_wall = Net::Zero(wall_->points().sites().rows(), 3);
+  if (v.size() > 0 && particle_->sources.has_double()) on_wall += particle_on_wall({}, v);
+  response.pressure_drop += pressure_of_velocity(v, &on_wall);
+  if (f.size() > 0) on_wall += particle_on_wall(f);
+  response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->traction_per_pressure_drop();
+}
+
+/// Sets the wall traction and adds the contribution of v to the pressure drop. Adds the velocity due to the images of the particle.
+void Tube::respond_periodic(const Net& f, const Net& v, Response& response) {
+  ParticleData::Cause cause = particle_->cause(f, v);
+  const Net on_wall = wall_->points().collocated(cause.at_wall);
+  response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? nullptr : &on_wall);
+  response.wall_traction = solve_wall(on_wall);
+  response.velocity += on_particle(std::move(cause.at_sites));
+  response.load = f, response.particle_velocity = v;
+}
+
 Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correction) {
+  assert(latest_shape_.rows() > 0);  // set_shape() has been called
   const auto clock = phases_.time("wall");
   Response response;
+  response.velocity = Net::Zero(particle_->sites().rows(), 3);
   response.pressure_drop = pressure_of(f) + pressure_correction;
-  if (cell()) {
-    ParticleData::Cause cause = particle_->cause(f, v);
-    const Net on_wall = wall_->points().collocated(cause.at_wall);
-    response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? nullptr : &on_wall);
-    response.wall_traction = solve_wall(on_wall);
-    response.velocity = on_particle(std::move(cause.at_sites));
-    response.load = f, response.particle_velocity = v;
-  } else {
-    Net on_wall = Net::Zero(wall_->points().sites().rows(), 3);
-    if (v.size() > 0 && particle_->sources.has_double()) on_wall += particle_on_wall({}, v);
-    response.pressure_drop += pressure_of_velocity(v, &on_wall);
-    if (f.size() > 0) on_wall += particle_on_wall(f);
-    response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->traction_per_pressure_drop();
-  }
-  response.velocity = (response.velocity.size() > 0 ? response.velocity : Net(Net::Zero(particle_->sites().rows(), 3))) +
-                      wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
+  if (cell()) respond_periodic(f, v, response);
+  else respond_open(f, v, response);
+  response.velocity = response.velocity + wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
   if (const double slower = flow_rate_reduction(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
   return response;
 }

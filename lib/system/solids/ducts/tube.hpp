@@ -193,6 +193,7 @@ class Tube {
     double of_pressure = 0;  ///< flow rate per unit pressure drop, due to c and the wall traction that c causes
   };
   double viscosity() const;
+  double flow_rate_of(const Net& f, const Net& v, const Response& response);
   double cap_velocity(const Net& f, const Net& v, const Response& response);
   double gap_to_straight_wall() const;
   double gap_to_channel_wall() const;
@@ -200,6 +201,8 @@ class Tube {
   double flow_rate_reduction(double pressure_drop) const;
   Net pressure_driven_velocity(const Net& at) const;
   Net on_particle(const Net& own) const;
+  void respond_open(const Net& f, const Net& v, Response& response);
+  void respond_periodic(const Net& f, const Net& v, Response& response);
   double pressure_of_velocity(const Net& v, const Net* on_wall = nullptr);
   const FlowWeights& flow_weights();
 

@@ -1,12 +1,9 @@
-// Checks of the response of a tube by conditions that are not used to compute it, and the distance to the wall.
+// Checks of the response of a tube by conditions that are not used to compute it.
 
 #include <algorithm>
-#include <limits>
 #include <span>
 
 #include "base/indices.hpp"
-#include "surface/clearance.hpp"
-#include "surface/closest_points.hpp"
 #include "system/targets/collocation.hpp"
 #include "system/solids/ducts/tube_particle.hpp"
 
@@ -59,28 +56,33 @@ const Tube::FlowWeights& Tube::flow_weights() {
   return found;
 }
 
-/// Returns the errors of the response in the conditions (2.14). By reciprocity, a force f at y causes the flow rate f.c(y)/mu through the inlet, with
-/// c of (2.13). Therefore no quadrature over the inlet is needed.
-Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
+/// Returns the flow rate of the disturbance through the inlet. By reciprocity, a force f at y causes the flow rate f.c(y)/mu, with c of (2.13).
+/// Therefore no quadrature over the inlet is needed.
+double Tube::flow_rate_of(const Net& f, const Net& v, const Response& response) {
   ParticleData& particle = *particle_;
-  const double mu = viscosity(), dp = response.pressure_drop;
-  const double area = wall_->surface().outline.area();
   const FlowWeights& weights = flow_weights();
-  double flow = -dot(weights.of_traction, response.wall_traction) / mu + dp / mu * weights.own;
-  double force = (cell() ? 0 : area * dp) - dot(weights.force, response.wall_traction);  // a periodic duct has no caps on which dp acts
-  std::vector<double> value[3];
+  double flow = (response.pressure_drop * weights.own - dot(weights.of_traction, response.wall_traction)) / viscosity();
   if (f.size() > 0) {
     stokes::Layer& layer = particle.sources.single_layer;
+    std::vector<double> value[3];
     layer.values(f, value);
     const auto& node = layer.nodes();
     for (std::size_t k = 0; k < value[0].size(); ++k) {
       const Net at = (Net(1, 3) << node[0][k], node[1][k], node[2][k]).finished();
-      const Vec3 strength = layer.weights()[k] * Vec3(value[0][k], value[1][k], value[2][k]);
-      flow -= wall_->flow_of_forces(at).row(0).dot(strength) / mu;
-      force -= strength[0];
+      flow -= layer.weights()[k] * wall_->flow_of_forces(at).row(0).dot(Vec3(value[0][k], value[1][k], value[2][k])) / viscosity();
     }
   }
   if (v.size() > 0 && particle.sources.has_double()) flow += dot(particle.flow_of_strength(*wall_), particle.sources.strength(v));
+  return flow;
+}
+
+/// Returns the errors of the response in the conditions (2.14).
+Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
+  const double dp = response.pressure_drop, area = wall_->surface().outline.area(), flow = flow_rate_of(f, v, response);
+  const FlowWeights& weights = flow_weights();
+  double force = (cell() ? 0 : area * dp) - dot(weights.force, response.wall_traction);  // a periodic duct has no caps on which dp acts
+  const stokes::Layer& layer = particle_->sources.single_layer;
+  if (f.size() > 0) force -= layer.moments(layer.weights()).dot(f.col(0));
   const double force_of_pressure = area - dot(weights.force, wall_->traction_per_pressure_drop());
 
   Checks checks;
@@ -122,7 +124,7 @@ Tube::WallResidual Tube::wall_residual(const Net& f) {
     for (const int i : own) velocity.row(i) = (by_pressure.row(i) - of_wall.row(i)) / viscosity();
     particle_->sources.add_velocity(f, {}, at, own, velocity);
   });
-  return {wall_->from_space(Net(between_->weights * u)), checks(f, {}, response).flux * flow_->flow_rate()};
+  return {wall_->from_space(Net(between_->weights * u)), flow_rate_of(f, {}, response)};
 }
 
 double Tube::work(const WallResidual& residual, const Response& of) const {
@@ -140,37 +142,6 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
   u -= part / mu;
   particle_->sources.add_velocity(f, v, at, all, u);
   return u.rowwise().norm().maxCoeff();
-}
-
-bool Tube::inside(const Net& x, std::span<const int> rows) const {
-  const surface::TubeWall& wall = wall_->surface();
-  return std::ranges::all_of(rows, [&](int i) {
-    const Vec3 place = x.row(i).transpose();
-    if (wall.channel) return wall.channel->inside(place);
-    return (place.tail<2>() - wall.outline.centroid()).norm() < inner_radius_ || wall.outline.inside(place.tail<2>());
-  });
-}
-
-double Tube::gap() const { return fixed() ? gap_to_channel_wall() : gap_to_straight_wall(); }
-
-/// Returns the gap to the wall of a straight tube, from the clearance between the particle and the outline of the cross-section.
-double Tube::gap_to_straight_wall() const {
-  return surface::clearance(surface::Patches(particle_->geometry.bezier(), particle_->shape), wall().outline).gap;
-}
-
-/// Returns the gap to the wall of a channel, from the closest points of the two surfaces. Of elements that are images of each other, searches one.
-double Tube::gap_to_channel_wall() const {
-  const auto points = [&](int e) -> std::span<const int> { return particle_->space.elements[static_cast<std::size_t>(e)].points; };
-  const std::vector<int> elements =
-      surface::fundamental_elements(particle_->parameters.symmetry, static_cast<int>(particle_->space.elements.size()), points).element;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may extend beyond the end of the period
-    const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
-    if (beyond == 0 || wall().period > 0)
-      nearest = std::min(
-          nearest, surface::closest_points(surface::ElementBoxes(seen, elements), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
-  }
-  return inside(particle_->sites(), indices(particle_->sites().rows())) ? nearest : -nearest;
 }
 
 }  // namespace tanktread::coupling

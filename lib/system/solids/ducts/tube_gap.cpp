@@ -1,0 +1,45 @@
+// Distance of the particle in a tube to the wall.
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "base/indices.hpp"
+#include "surface/clearance.hpp"
+#include "surface/closest_points.hpp"
+#include "system/solids/ducts/tube_particle.hpp"
+
+namespace tanktread::coupling {
+
+bool Tube::inside(const Net& x, std::span<const int> rows) const {
+  const surface::TubeWall& wall = wall_->surface();
+  return std::ranges::all_of(rows, [&](int i) {
+    const Vec3 place = x.row(i).transpose();
+    if (wall.channel) return wall.channel->inside(place);
+    return (place.tail<2>() - wall.outline.centroid()).norm() < inner_radius_ || wall.outline.inside(place.tail<2>());
+  });
+}
+
+double Tube::gap() const { return fixed() ? gap_to_channel_wall() : gap_to_straight_wall(); }
+
+/// Returns the gap to the wall of a straight tube, from the clearance between the particle and the outline of the cross-section.
+double Tube::gap_to_straight_wall() const {
+  return surface::clearance(surface::Patches(particle_->geometry.bezier(), particle_->shape), wall().outline).gap;
+}
+
+/// Returns the gap to the wall of a channel, from the closest points of the two surfaces. Of elements that are images of each other, searches one.
+double Tube::gap_to_channel_wall() const {
+  const auto points = [&](int e) -> std::span<const int> { return particle_->space.elements[static_cast<std::size_t>(e)].points; };
+  const std::vector<int> elements =
+      surface::fundamental_elements(particle_->parameters.symmetry, static_cast<int>(particle_->space.elements.size()), points).element;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may extend beyond the end of the period
+    const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
+    if (beyond == 0 || wall().period > 0)
+      nearest = std::min(
+          nearest, surface::closest_points(surface::ElementBoxes(seen, elements), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
+  }
+  return inside(particle_->sites(), indices(particle_->sites().rows())) ? nearest : -nearest;
+}
+
+}  // namespace tanktread::coupling
