@@ -71,7 +71,6 @@ class CapsuleJacobian {
   Net fluid_velocity_change(const Net& dx, const Net& added_work);
   Net without_flux(Net rate) const;
   double tolerance_factor() const;
-  bool has_system() const { return frozen_.has_double() || membranes_.viscous(); }  // see VelocitySolver::has_system
 
   const CapsuleParameters& parameters_;
   const stokes::AmbientFlow& flow_;
@@ -80,6 +79,7 @@ class CapsuleJacobian {
   Membranes& membranes_;
   const Volumes& volumes_;
   FrozenLayers& frozen_;
+  const bool has_system_;       // see VelocitySolver::has_system
   Tube* tube_;                  // null if there is no tube
   InterfaceMotion* interface_;  // null if no control points slide
   OperationCounts& counts_;

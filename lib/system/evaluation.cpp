@@ -48,9 +48,8 @@ const std::vector<Net>& Evaluation::load_sums() { return system_->solver().membr
 
 const Net& Evaluation::load() {
   if (known_.load.size() == 0) {
-    VelocitySolver& solver = system_->solver();
-    if (!solver.rigid().empty() || solver.viscous()) require_solution();  // because the load depends on the solution of the velocity system
-    else known_.load = solver.membrane_load(x_, known_.loads);
+    if (!system_->solver().rigid().empty() || system_->solver().viscous()) find_unknowns();  // because the load depends on them
+    else known_.load = system_->solver().membrane_load(x_, known_.loads);
   }
   return known_.load;
 }
@@ -81,13 +80,19 @@ const Tube::Response& Evaluation::response() {
 Evaluation::SolidFlow Evaluation::solid_flow() {
   find_unknowns();
   Net inside = x_;
-  system_->solver().move_into_cell(inside);
-  system_->solver().set_solid_shape(inside);
+  system_->solver().place(inside);
   SolidResponse& solids = *system_->solids();
   SolidFlow found{.flow = {}, .caused = solids.respond(known_.load, known_.unknowns)};
   found.flow = found.caused + solids.empty();
   found.caused_integral = solids.flow_integral(found.caused, known_.load, known_.unknowns);
   found.velocity_integral = found.caused_integral + solids_flow_integral(solids.scene(), solids.empty());
+  return found;
+}
+
+FluidWalls::Response Evaluation::wall_response() {
+  FluidWalls::Response found;
+  if (system_->tube()) found.tube = response();
+  if (system_->solids()) found.solids = solid_flow().flow;
   return found;
 }
 

@@ -14,7 +14,8 @@ class Capsule;
 /// Loads, unknowns and velocities of a shape under the forces that act on it (4.2). The Evaluation returned by Capsule::evaluate contains all of
 /// them. An Evaluation constructed from a shape and its velocity computes the other quantities at first use, with the time and the forces that the
 /// Capsule then has, and caches them. It solves the linear system for the unknowns only if they do not follow from the velocity. Nets have one row
-/// per control point of all particles. The Capsule must outlive this object. Calls are collective.
+/// per control point of all particles. The Capsule must outlive this object. References that functions return are valid until a call that solves the
+/// system. Calls are collective.
 class Evaluation {
  public:
   /// `velocity`: velocity of the control points if it is already known, for example from the equations of an implicit step; no rows if unknown.
@@ -46,7 +47,8 @@ class Evaluation {
     Solids::Flow flow, caused;
     Vec3 velocity_integral = Vec3::Zero(), caused_integral = Vec3::Zero();
   };
-  SolidFlow solid_flow();  ///< returns the flow caused by the solids. First sets SolidResponse to the shape of this evaluation
+  SolidFlow solid_flow();  ///< returns the flow caused by the solids, which are then set to this shape
+  FluidWalls::Response wall_response();  ///< returns the responses of all walls, which are then set to this shape
 
   Tube::Checks checks();                                 ///< returns the errors of the tube's response in the conditions (2.14)
 

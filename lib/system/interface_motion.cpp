@@ -142,6 +142,7 @@ Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, co
     slip_residual = -free;
     const Net slid = projection_->control_values(along);
     combine(targets_.zero(), u);
+    // The field `slid`, a fit of the tangential w, has a small normal part, which is subtracted so that w does not move the interface.
     const Eigen::VectorXd leak = values * projection_->scalar_values((values * slid).cwiseProduct(n).rowwise().sum());
     return projection_->control_values(u - leak.asDiagonal() * n) + slid;
   }

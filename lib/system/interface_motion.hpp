@@ -21,7 +21,8 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 /// Motion of the fluid relative to the mesh motion on all drops (4.6). Empty nets if unknown.
 struct Slip {
   Net fluid;     ///< control values of the fluid velocity v
-  Net residual;  ///< v - W - w, fluid velocity minus motions of shape and relaxation, at the sites where u is evaluated
+  Net residual;  ///< v - W - w, fluid velocity minus motions of shape and relaxation, at the sites where u is evaluated. With collocation, only the
+                 ///< rank-owned rows of drops are set
   Net density;   ///< force density M0^{-1} dE1/dx at the collocation sites, with the mesh energy E1; no rows if no drop relaxes
 
   bool known() const { return fluid.rows() > 0; }

@@ -144,15 +144,12 @@ Net PowerBalance::residual_velocity(Evaluation& e, Net v, const RigidParticles& 
   if (const auto& cell = capsule_.cell(); cell && !capsule_.tube()) layers_.repeat(*cell);
   capsule_.solver().move_into_cell(x, &v);
   const Net inside = density(v, rigid);
-  const FluidWalls& walls = capsule_.solver().walls();
-  FluidWalls::Response response;
-  if (walls.tube) response.tube = e.response();
-  if (walls.solids) response.solids = e.solid_flow().flow;
+  const FluidWalls::Response response = e.wall_response();
   const Net at = values_ * x;
   layers_.set_shape(x);
   return values_ * v - flow.velocities(at) - ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
     layers_.apply(load, inside, capsule_.parameters().viscosity, own, u);
-    walls.add_velocity_at(values_, x, response, own, u);
+    capsule_.solver().walls().add_velocity_at(values_, x, response, own, u);
   });
 }
 

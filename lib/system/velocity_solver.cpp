@@ -1,6 +1,7 @@
 #include "system/velocity_solver.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "system/dynamics.hpp"
@@ -22,7 +23,7 @@ bool VelocitySolver::set_forces(Net Forces::* of, Net work) {
 WorkOfLoads VelocitySolver::work_of_loads(const Net& x) {
   WorkOfLoads found;
   found.work = membranes_.work(x, found.sums);
-  for (const Net* of_forces : {&forces_.contacts, &forces_.fields})
+  for (const Net* of_forces : forces_.all())
     if (of_forces->size() > 0) found.work -= *of_forces;
   clear_rigid(particles(), found.work);  // rows of rigid bodies are 0; push_bodies() applies the forces on rigid bodies instead
   return found;
@@ -31,7 +32,7 @@ WorkOfLoads VelocitySolver::work_of_loads(const Net& x) {
 /// Sets the contact forces on rigid bodies and the forces of their loads (Particle::loads), in addition to the prescribed forces on the bodies.
 void VelocitySolver::push_bodies(const Net& x) {
   if (bodies_.rigid.empty()) return;
-  Net push = forces_.contacts;
+  Net push = forces_.contacts;  // there are no fields on rigid bodies
   if (std::ranges::any_of(particles(), [](const Particle& one) { return one.rigid && !one.loads.empty(); })) {
     Net work = Net::Zero(x.rows(), 3);
     membranes_.complete_work(x, work);
@@ -98,7 +99,7 @@ Net VelocitySolver::solve_second_kind(const Net& x, const Net& guess, VolumeProj
 /// and loads, unknowns and the response of a tube in `found`.
 Net VelocitySolver::solve_first_kind(const Net& x, VolumeProjection& volume, SolvedShape& found) {
   found.load = bodies_.tractions->all_rigid() ? Net(Net::Zero(x.rows(), 3)) : membrane_load(x, found.loads, &volume);
-  Net v = explicit_velocity(x, found.load, {}, &found.response);
+  Net v = explicit_velocity(x, found.load, {}, nullptr);
   volume.apply(v);
   found.unknowns = solve_tractions(x, volume, symmetric(v), found);
   return found.unknowns;
@@ -112,7 +113,7 @@ Net VelocitySolver::explicit_velocity(const Net& x, const Net& f, const Net& par
   if (flow_at_targets()) {
     const bool known = tube_ && flow_.duct();
     u = (known ? flow_.amplitude() * tube_->ambient() : flow_.velocities(targets_.values() * x)) - u / parameters_.viscosity;
-    Tube::Response response = add_walls(x, f, particle_velocity, true, u);
+    Tube::Response response = add_walls(f, particle_velocity, true, u);
     if (answer && tube_ && !has_velocity_system()) *answer = std::move(response);
     const auto clock = phases_.time("projection");
     return targets_.control_values(std::move(u));
@@ -126,12 +127,11 @@ Net VelocitySolver::explicit_velocity(const Net& x, const Net& f, const Net& par
 /// Returns whether all collocation sites are in the medium, inside the tube, in front of plates and outside posts, if there are any.
 bool VelocitySolver::in_fluid(const Net& x) const {
   const Net at_sites = targets_.at_sites() * x;
-  if (tube_ && layout_.any(!tube_->inside(at_sites, layout_.points()))) return false;
-  if (solids_) return solids_->scene().solids->outside(at_sites);
-  return stokes::contains(parameters_.medium.get(), at_sites);
+  return walls_.contain(at_sites, layout_) && stokes::contains(parameters_.medium.get(), at_sites);
 }
 
 Net VelocitySolver::defect(const Net& shape, const Net& given) {
+  assert(unknowns_are_velocities() && eliminates_walls());
   Net x = shape, u = given;
   place(x, &u);
   if (!in_fluid(x)) return not_a_number(x);

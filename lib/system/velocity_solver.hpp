@@ -1,6 +1,8 @@
 #pragma once
 // Loads, unknowns and velocities of capsules, drops and rigid bodies at one shape: in unbounded flow, on a lattice, in front of walls or in a tube.
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -33,11 +35,11 @@ struct SolvedShape {
   Net velocity;      ///< velocity of the control points
   Net fluid;         ///< velocity of the fluids; no rows if no control point slides
   Slip slip;         ///< slip of the fluids along the meshes of interfaces; empty if no control point slides
-  Net unknowns;      ///< unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies. On a lattice, velocities of
-                     ///< the particles' images in the cell, unlike `velocity` and `fluid`
+  Net unknowns;      ///< unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies, or their velocity if the
+                     ///< unknown is the traction. On a lattice, velocities of the particles' images in the cell, unlike `velocity` and `fluid`
   WorkOfLoads loads;
   Net load;                                ///< see Evaluation::load
-  std::optional<Tube::Response> response;  ///< response of the tube, unless the solution of a velocity system changes it
+  std::optional<Tube::Response> response;  ///< response of the tube; not set if a velocity system was solved, because the solution changes it
   std::optional<RigidParticles> rigid;     ///< rigid bodies with their motion, if there are any
 };
 
@@ -94,10 +96,14 @@ class VelocitySolver {
   /// directions and material points. `fields`: loads due to the fields on surfaces, whose work is minus their contribution to dE/dx (4.2).
   struct Forces {
     Net contacts, fields;
+
+    std::array<const Net*, 2> all() const { return {&contacts, &fields}; }
   };
   bool set_forces(Net Forces::* of, Net work);  ///< sets one kind of additional forces for all later calls. Returns whether it has changed
   const Forces& forces() const { return forces_; }
-  bool has_forces() const { return forces_.contacts.size() > 0 || forces_.fields.size() > 0; }
+  bool has_forces() const {
+    return std::ranges::any_of(forces_.all(), [](const Net* work) { return work->size() > 0; });
+  }
 
   /// Solves (4.2) at a shape. `guess`: initial guess of the velocity; used if the velocity is the only unknown of the linear solve. `error`: see
   /// SolvedShape.
@@ -142,11 +148,12 @@ class VelocitySolver {
   /// given, to the velocity of the image. Without a lattice, does nothing. The cell is centred on the origin; in a channel, on the middle of the
   /// channel; and in a straight tube, whose wall moves with the particles, on the mean of the particles.
   CellMove move_into_cell(Net& x, Net* v = nullptr) const;
-  /// Moves x and v into the cell, as move_into_cell(), and sets the tube, if there is one, to the shape x in the cell.
+  /// Moves x and v into the cell, as move_into_cell(), and sets the walls to the shape x in the cell.
   void place(Net& x, Net* v = nullptr);
-  void set_solid_shape(const Net& x);  ///< sets plates and posts to the shape x in the cell
 
-  RigidParticles& rigid() { return bodies_.rigid; }  ///< rigid bodies, at the shape solved last
+  /// Returns the rigid bodies. Their motions are those of the shape solved last, their positions those of the latest call of solve() or of
+  /// Capsule::restore_constraints().
+  RigidParticles& rigid() { return bodies_.rigid; }
   const RigidParticles& rigid() const { return bodies_.rigid; }
   const CapsuleParameters& parameters() const { return parameters_; }
   const std::vector<Particle>& particles() const { return parameters_.particles; }
@@ -188,7 +195,7 @@ class VelocitySolver {
   // Cells of lattices, tubes, plates and posts (velocity_solver_cell.cpp).
   bool deform_cell(double time);
   Vec3 cell_origin(const Net& x) const;
-  Tube::Response add_walls(const Net& x, const Net& f, const Net& v, bool with_empty, Net& u);
+  Tube::Response add_walls(const Net& f, const Net& v, bool with_empty, Net& u);
   // Linear systems (velocity_solver_systems.cpp).
   Net velocity_load(const Net& x, const Net& v);
   Net velocity_product(const Net& x, const Net& v, const Net& load);
@@ -203,8 +210,10 @@ class VelocitySolver {
 
   // Order of initialisation: a member may use those before it. The constructor's body sets up tractions and the cell.
   // Members that depend on the latest shape, and what sets them:
-  //   tube_               place() and solve(), by Tube::set_shape()
-  //   solids_             add_walls() and Evaluation::solid_flow(), by set_solid_shape()
+  //   cell_               set_time()
+  //   walls_              place() and solve()
+  //   membranes_          viscous loads: each call with its shape; changes of work: CapsuleJacobian::linearise()
+  //   interface_          velocities: each call with its shape; derivative: CapsuleJacobian::linearise()
   //   bodies_.rigid       solve() and Capsule::restore_constraints()
   //   bodies_.tractions   solve_tractions()
   //   layers_             each call with its shape; rows that are stored, by assemble() in solve_velocity() and solve_tractions()

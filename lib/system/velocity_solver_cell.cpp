@@ -15,7 +15,7 @@ bool VelocitySolver::deform_cell(double time) {
     return false;
   }
   // A cell with walls or posts is not deformed.
-  const Mat3 deformation = solids_ ? Mat3(Mat3::Identity()) : flow_.deformation(time);
+  const Mat3 deformation = walls_.any() ? Mat3(Mat3::Identity()) : flow_.deformation(time);
   const stokes::PeriodicCell now(deformation * parameters_.cell->vectors(), parameters_.cell->n());
   if (cell_ && *cell_ == now) return false;
   cell_ = now;
@@ -41,7 +41,8 @@ VelocitySolver::CellMove VelocitySolver::move_into_cell(Net& x, Net* v) const {
 
 void VelocitySolver::place(Net& x, Net* v) {
   const std::optional<double> origin = move_into_cell(x, v).origin;
-  if (tube_) tube_->set_shape(x, origin);
+  if (!bodies_.rigid.empty()) RigidParticles(bodies_.rigid).fit_to(x);  // as in solve(), so that the walls are already set to this shape
+  walls_.set_shape(x, targets_, origin);
 }
 
 /// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is on the x1 axis, at the mean x1 of all control
@@ -53,13 +54,14 @@ Vec3 VelocitySolver::cell_origin(const Net& x) const {
 }
 
 /// Adds to u, a velocity at the targets, the velocity that plates and posts (2.47), or a tube whose wall traction is eliminated (2.5), cause in
-/// response to the load f and the velocity v of the particles. The tube must be set to the shape x. If `with_empty`, also adds the velocity that the
+/// response to the load f and the velocity v of the particles. The walls must be set to the shape. If `with_empty`, also adds the velocity that the
 /// solids cause without particles. Returns the response of the tube.
-Tube::Response VelocitySolver::add_walls(const Net& x, const Net& f, const Net& v, bool with_empty, Net& u) {
+Tube::Response VelocitySolver::add_walls(const Net& f, const Net& v, bool with_empty, Net& u) {
   if (!walls_.any()) return {};
   const auto clock = phases_.time("wall");
-  if (solids_) set_solid_shape(x);
-  FluidWalls::Response response = FluidWalls{eliminates_walls() ? tube_.get() : nullptr, solids_.get()}.respond(f, v, with_empty);
+  FluidWalls eliminated = walls_;
+  if (!eliminates_walls()) eliminated.tube = nullptr;
+  FluidWalls::Response response = eliminated.respond(f, v, with_empty);
   if (solids_) {
     Net part = targets_.zero();
     solids_->velocities(response.solids, part);
@@ -68,10 +70,6 @@ Tube::Response VelocitySolver::add_walls(const Net& x, const Net& f, const Net& 
   }
   if (response.tube.velocity.size() > 0) u += response.tube.velocity;
   return response.tube;
-}
-
-void VelocitySolver::set_solid_shape(const Net& x) {
-  solids_->set_shape(x, targets_.values() * x, targets_.own());
 }
 
 /// Solves (4.2) at a shape, with each particle replaced by its image in the cell of a lattice, and converts the velocities of the images to
@@ -83,7 +81,7 @@ SolvedShape VelocitySolver::solve(const Net& shape, const Net& guess, double err
   const auto [shifts, origin] = move_into_cell(x, &v);
   bodies_.rigid.move_into_cell(shifts);
   bodies_.rigid.fit_to(x);
-  if (tube_) tube_->set_shape(x, origin);
+  walls_.set_shape(x, targets_, origin);
   v = solve_in_cell(x, v, found);
   for (std::size_t p = 0; p < shifts.size(); ++p)
     for (Net* net : {&v, &found.fluid})

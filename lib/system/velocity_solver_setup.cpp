@@ -1,6 +1,7 @@
 // Construction of a VelocitySolver.
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "system/velocity_solver.hpp"
@@ -38,15 +39,16 @@ VelocitySolver::VelocitySolver(const spline::Space& space, const Net& unstressed
       tube_(std::move(tube)),
       solids_(parameters_.solids ? std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_) : nullptr),
       walls_{tube_.get(), solids_.get()},
-      bodies_{RigidParticles(particles(), resting, parameters.viscosity, parameters.quadrature), {}, {}},
+      bodies_{RigidParticles(particles(), resting, parameters_.viscosity, parameters_.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
-      krylov_(parameters.solvers.of(parameters.solvers.velocity)) {
+      krylov_(parameters_.solvers.of(parameters_.solvers.velocity)) {
+  assert(!tube_ || !targets_.projection());  // the tube responds at the collocation sites
   if (solids_) solids_->particles().set(membranes_.unstressed(), particles());
-  if (tube_) tube_->particles().set(unstressed, particles());
+  if (tube_) tube_->particles().set(membranes_.unstressed(), particles());
   if (std::ranges::any_of(particles(), &Particle::by_traction))
     bodies_.tractions = std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, walls_, layout_.points(),
                                                          layout_.ranks());
-  if (parameters_.cell) deform_cell(0);
+  if (parameters_.cell || tube_) deform_cell(0);
 }
 
 VelocitySolver::~VelocitySolver() = default;

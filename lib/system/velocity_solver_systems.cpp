@@ -35,7 +35,7 @@ Net VelocitySolver::velocity_load(const Net& x, const Net& v) {
 
 /// Returns B v with the operator B of (4.2), without the response of walls. `load`: velocity_load(x, v).
 Net VelocitySolver::velocity_product(const Net& x, const Net& v, const Net& load) {
-  if (!layers_.has_double() && !viscous()) return v;
+  if (!has_system()) return v;
   Net bv = v - targets_.serial_control_values(layers_.apply(x, v, load));
   bodies_.rigid.complete(v, bv);
   return bv;
@@ -69,7 +69,7 @@ Net VelocitySolver::solve_velocity(const Net& x, const Net& f, const VolumeProje
     Net bv = velocity_product(x, v, load);
     if (walls_.any()) {
       Net u = targets_.zero();
-      add_walls(x, load, v, false, u);
+      add_walls(load, v, false, u);
       bv -= targets_.serial_control_values(u);
     }
     volume.apply(bv);
@@ -129,7 +129,7 @@ Net VelocitySolver::traction_product(const Net& x, const VolumeProjection& volum
   if (viscous() && caused.size() > 0) clear_rigid(particles(), other);
   Net u = layers_.apply(x, v, other);
   if (caused.size() > 0) u += caused;
-  add_walls(x, load, v, false, u);
+  add_walls(load, v, false, u);
   if (bodies_.tractions->all_rigid()) return u;
   Net all = v - targets_.serial_control_values(u);
   volume.apply(all);
@@ -152,7 +152,7 @@ Net VelocitySolver::solve_tractions(const Net& x, const VolumeProjection& volume
   std::vector<RigidDrive> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
-  const bool responds = layers_.repeats() || walls_.any() || layers_.has_double() || viscous();
+  const bool responds = layers_.repeats() || walls_.any() || has_system();
   const RigidTractions::Solution& solution =
       bodies_.tractions->solve(x, centres, driven, flow_, RigidTractions::Surroundings{flow, responds, product, load});
   Net v = deformable_velocity(volume, solution.unknowns);

@@ -2,6 +2,16 @@
 
 namespace tanktread::coupling {
 
+void FluidWalls::set_shape(const Net& x, const Targets& targets, std::optional<double> origin) const {
+  if (tube) tube->set_shape(x, origin);
+  if (solids) solids->set_shape(x, targets.values() * x, targets.own());
+}
+
+bool FluidWalls::contain(const Net& at, const Layout& layout) const {
+  if (tube && layout.any(!tube->inside(at, layout.points()))) return false;
+  return !solids || solids->scene().solids->outside(at);
+}
+
 FluidWalls::Response FluidWalls::respond(const Net& f, const Net& v, bool with_empty) const {
   Response found;
   if (solids) found.solids = solids->respond(f, v);

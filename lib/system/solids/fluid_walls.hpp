@@ -1,6 +1,7 @@
 #pragma once
 // The walls and other solids that bound the fluid, as seen by particles.
 
+#include <optional>
 #include <span>
 
 #include <Eigen/SparseCore>
@@ -8,16 +9,24 @@
 #include "base/types.hpp"
 #include "system/solids/ducts/tube.hpp"
 #include "system/solids/plates/solid_response.hpp"
+#include "system/targets/particle_layers.hpp"
 
 namespace tanktread::coupling {
 
 /// Boundaries of the fluid that are meshed, other than particles. A member is null if there is no such boundary. The boundaries must be set to the
-/// shape of the particles (Tube::set_shape, SolidResponse::set_shape) before they respond.
+/// shape of the particles before they respond.
 struct FluidWalls {
   Tube* tube = nullptr;
   SolidResponse* solids = nullptr;
 
   bool any() const { return tube || solids; }
+
+  /// Sets the boundaries to the net x of the particles. `targets`: points at which velocities are evaluated. `origin`: see Tube::set_shape.
+  /// Collective.
+  void set_shape(const Net& x, const Targets& targets, std::optional<double> origin) const;
+
+  /// Returns whether all points `at` are inside the tube, in front of plates and outside posts. Tests only the rank-owned points of a tube.
+  bool contain(const Net& at, const Layout& layout) const;
 
   /// Responses of the boundaries that exist.
   struct Response {
@@ -34,7 +43,8 @@ struct FluidWalls {
   void add_velocity_at(const Eigen::SparseMatrix<double>& values, const Net& x, const Response& response, std::span<const int> own, Net& u) const;
 
   void forget_recycled() const;             ///< discards data of earlier solves that iterative solvers of the boundaries keep
-  stokes::Evaluations evaluations() const;  ///< kernel evaluations of all boundaries
+  /// Returns the kernel evaluations of the particles at the boundaries, and those of the wall of a tube if no SharedWalls counts them.
+  stokes::Evaluations evaluations() const;
 };
 
 }  // namespace tanktread::coupling

@@ -19,6 +19,7 @@ class Shared {
     std::erase_if(known_, [](const std::weak_ptr<Object>& one) { return one.expired(); });
     for (const std::weak_ptr<Object>& one : known_)
       if (const std::shared_ptr<Object> known = one.lock(); fits(*known)) return latest_ = known;
+    latest_.reset();  // before the new object takes memory
     latest_.reset(make(), [sum = of_deleted_](Object* old) {
       *sum += old->evaluations();
       delete old;

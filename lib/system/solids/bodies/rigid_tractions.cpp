@@ -103,7 +103,7 @@ void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
 
 /// Returns B y (see Surroundings::product), the left-hand side of the system for the unknowns y, including the regularising term of (2.10).
 Net RigidTractions::product(const Net& y) {
-  assert(around_ || !walls_.solids);  // only Surroundings::product contains the response of plates and posts
+  assert(around_ || !walls_.any() || walls_.tube);  // only Surroundings::product contains the response of plates and posts
   const Net caused = repeats_ ? Net() : layer_.velocity(y);
   if (!around_) return walls_.tube ? Net(caused + walls_.tube->respond(load(y)).velocity) : caused;
   Net all = around_->product(y, caused);
@@ -171,10 +171,11 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   set_shape(x, centres, std::move(around));
   const bool has_pressure = walls_.tube && all_rigid(), driven_by_pressure = flow.duct() && flow.amplitude() != 0;
   const bool apart = has_pressure && !driven_by_pressure;  // true if the density due to the flow of the duct (2.41) needs a separate solve
-  const Eigen::Index with_flow = m, with_duct = m + apart;  // columns, after those of the unit motions: the ambient flow, and the flow of the duct
+  // Columns after those of the unit motions: the ambient flow, and the flow of the duct, which is the ambient flow unless `apart`.
+  const Eigen::Index with_flow = m, with_duct = apart ? m + 1 : m;
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, with_duct + 1), fields = Eigen::MatrixXd::Zero(n, m);
   const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);
-  Net empty = around_ ? Net(-around_->flow) : at_sites;
+  Net empty = around_ ? Net(-around_->flow) : at_sites;  // its solution is subtracted: v_inf on bodies, minus the known velocity on other particles
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
     const spline::Block& block = particles_[p].block;

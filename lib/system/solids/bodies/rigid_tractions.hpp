@@ -85,7 +85,8 @@ class RigidTractions {
     std::vector<SolvedBody> bodies;  ///< in the order of the particles; the moments are not corrected for the collocation error, see moment()
     Net unknowns;                    ///< control values of f on bodies, and of v on deformable particles
     double pressure_correction = 0;  ///< collocation-error correction of the pressure drop (2.7)
-    Eigen::VectorXd residual;        ///< int N_A (v - v_inf - (1/mu) A f) dGamma, flattened: residual of (2.40) that (2.11) uses
+    Eigen::VectorXd residual;        ///< int N_A (v - v_inf - (1/mu) A f) dGamma over the bodies, flattened: residual of (2.40) that (2.11) uses; 0
+                                     ///< in the rows of deformable particles
   };
 
   /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles at the net x. `driven`: prescribed force
@@ -132,7 +133,7 @@ class RigidTractions {
 
  private:
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
-  bool responds() const { return around_ ? around_->responds : walls_.tube || walls_.solids; }
+  bool responds() const { return around_ ? around_->responds : walls_.any(); }
   Net product(const Net& y);
   Net force_densities(const Net& y) const;
   Net completed(const Eigen::VectorXd& y);

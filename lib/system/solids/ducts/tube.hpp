@@ -43,9 +43,10 @@ struct TubeParameters {
 ///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dGamma                                                       (2.7)
 ///   response  u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
 ///
-/// G_W and G_C are the single layers of the wall and of the particle divided by 8 pi, and c is 1/mu times the integral over the inlet (2.13). f^D is
-/// the disturbance of the traction on the wall, and dp is the disturbance of the pressure drop between the ends. v_inf in (2.7) is the flow of the
-/// duct with any mean velocity, even if the ambient flow of the scene is another flow. f_inf is its traction on C, and Q its flow rate.
+/// G_W and G_C, the single layers of the wall and of the particle, include the factor 1/(8 pi) but not 1/mu, and c is 1/mu times the integral over
+/// the inlet (2.13). f^D is the disturbance of the traction on the wall, and dp is the disturbance of the pressure drop between the ends. v_inf in
+/// (2.7) is the flow of the duct with any mean velocity, even if the ambient flow of the scene is another flow. f_inf is its traction on C, and Q its
+/// flow rate.
 ///
 /// Several particles are treated as one surface C. A straight wall is centred on the particle: it is fixed in a frame in which x1 is measured from
 /// the particle's centroid. Operators that depend only on the wall are therefore assembled and factored once. Points of the particle are in the
@@ -89,7 +90,7 @@ class Tube {
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. Does nothing if the arguments are those of the latest
   /// call. `origin`: x1 coordinate of the origin of the frame of wall() if the wall is straight; by default the x1 coordinate of the particle's
-  /// centroid.
+  /// centroid. In a periodic channel, by default the x1 coordinate of the period that contains the particles.
   void set_shape(const Net& x, std::optional<double> origin = {});
 
   /// Returns the lattice of a periodic duct; not set for other ducts.
@@ -113,7 +114,8 @@ class Tube {
 
   /// Stores the operators of the current shape as low-precision blocks for the Jacobian.
   void freeze();
-  /// Returns the response u at the particle's collocation points, computed with the operators that freeze() stored. If the wall's system is solved by
+  /// Returns the response u at the particle's collocation points, without the images of the particle in a periodic duct, computed with the operators
+  /// that freeze() stored. If the wall's system is solved by
   /// iteration, returns 0. The Jacobian then omits u. This is accurate enough, because the contribution of u is small and smooth.
   Net frozen_response(const Net& f, const Net& v = {});
 

@@ -24,7 +24,7 @@ namespace tanktread::coupling {
 /// system, f^D, dp and the row of dp are multiplied by `unit`, so that all unknowns are velocities.
 struct TubeSystem {
   Tube& tube;
-  std::function<Net(const Net& v)> load;                        ///< load that depends on v; empty if there is none
+  std::function<Net(const Net& v)> load;                        ///< returns the load that depends on v; no rows if there is none
   std::function<Net(const Net& v, const Net& load)> unbounded;  ///< B v, minus the velocity due to the load in unbounded fluid
   std::function<Net(const Net&)> control_values;                ///< applies R^-1
   const VolumeProjection& volume;                               ///< fields b and n of (2.8), and the particles whose volume is constrained

@@ -1,6 +1,7 @@
 #include "system/solids/plates/solid_response.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace tanktread::coupling {
 
@@ -54,6 +55,7 @@ const Solids::Flow& SolidResponse::empty() {
 }
 
 Solids::Flow SolidResponse::respond(const Net& f, const Net& v) {
+  assert(shape_.rows() > 0);  // set_shape() has been called
   const Solids& solids = *scene_.solids;
   Vec3 force = Vec3::Zero();
   if (f.size() > 0) force = f.transpose() * areas_;
