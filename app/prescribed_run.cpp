@@ -20,8 +20,8 @@ namespace tanktread {
 
 namespace {
 
-SurfaceSnapshot snapshot(const ParticleScene& scene, const Body& body, const RigidSolution& s) {
-  const auto exact = exact_body(scene);
+SurfaceSnapshot snapshot(const ParticleScene& particle_scene, const Body& body, const RigidSolution& s) {
+  const auto exact = exact_body(particle_scene);
   return {body.rest, [&body, &s, exact](const auto& nodes) {
             const Net f = nodes.values(s.density), n = nodes.normals(body.rest), x = nodes.values(body.rest);
             const Eigen::VectorXd pressure = f.cwiseProduct(n).rowwise().sum().array() + s.surface.constant;
@@ -66,37 +66,37 @@ int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot&
   return results.close(account, phases);
 }
 
-int resist(const Scene& whole, const RunRequest& request) {
-  StationaryRun run(whole, request, "Particle/motion `prescribed`");
-  const ParticleScene scene = whole.first();
-  Body body = tanktread::body(scene);
-  refine_isolated_body(scene, body, [&](const Body& on) {
-    const std::unique_ptr<coupling::Tube> wall = tube(scene, on, run.phases);
-    coupling::RigidTractions there = tractions_of(scene, on, run.ranks, wall.get());
-    return rigid_solution(scene, on, there, run.phases).density;
+int resist(const Scene& scene, const RunRequest& request) {
+  StationaryRun run(scene, request, "Particle/motion `prescribed`");
+  const ParticleScene particle_scene = scene.first();
+  Body body = tanktread::body(particle_scene);
+  refine_isolated_body(particle_scene, body, [&](const Body& on) {
+    const std::unique_ptr<coupling::Tube> wall = tube(particle_scene, on, run.phases);
+    coupling::RigidTractions there = tractions_of(particle_scene, on, run.ranks, wall.get());
+    return rigid_solution(particle_scene, on, there, run.phases).density;
   });
-  run.show(plan(whole, body, run.ranks.size()));
-  const std::unique_ptr<coupling::Tube> around = tube(scene, body, run.phases);
-  coupling::RigidTractions tractions = tractions_of(scene, body, run.ranks, around.get());
+  run.show(plan(scene, body, run.ranks.size()));
+  const std::unique_ptr<coupling::Tube> around = tube(particle_scene, body, run.phases);
+  coupling::RigidTractions tractions = tractions_of(particle_scene, body, run.ranks, around.get());
   run.end_set_up();
-  const RigidSolution solution = rigid_solution(scene, body, tractions, run.phases);
+  const RigidSolution solution = rigid_solution(particle_scene, body, tractions, run.phases);
   stop_where_told();
   const double seconds = run.seconds();
-  const stokes::Evaluations kernel = run.ranks.of_all(tractions.kernel_evaluations() + scene.walls->evaluations());
+  const stokes::Evaluations kernel = run.ranks.of_all(tractions.kernel_evaluations() + particle_scene.walls->evaluations());
   Columns row;
   ProgressRow now{.wall_seconds = seconds};
   now.counts.solver_iterations = solution.iterations;
-  now.add_columns(whole, row);
+  now.add_columns(scene, row);
   PrescribedRow{solution, surface::measures(body.space, body.rest), body.space.n_points, static_cast<double>(kernel.total())}
-      .add_columns(scene, row);
-  if (around) tube_row(*around, body.flow, solution.density, solution.pressure_drop).add_columns(scene, row);
-  if (const auto walls = scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(whole, row);
+      .add_columns(particle_scene, row);
+  if (around) tube_row(*around, body.flow, solution.density, solution.pressure_drop).add_columns(particle_scene, row);
+  if (const auto walls = particle_scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(scene, row);
   finish(row);
 
   Account account;
   account.counts = {{"unknowns", 3L * body.space.n_points}, {"solver_iterations", solution.iterations}};
   account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
-  return run.record(body, row, snapshot(scene, body, solution), std::move(account), kernel);
+  return run.record(body, row, snapshot(particle_scene, body, solution), std::move(account), kernel);
 }
 
 }  // namespace tanktread

@@ -143,18 +143,18 @@ std::string solvers_line(const Scene& scene) {
 }
 
 /// Returns the line of the plan about a rigid particle: that its motion is prescribed, or how its free motion is computed.
-std::string rigid_line(const ParticleScene& scene, const Body& body) {
-  if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
-  if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
+std::string rigid_line(const ParticleScene& particle_scene, const Body& body) {
+  if (particle_scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
+  if (body.wall || particle_scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
   return std::string("rigid and free, no membrane: six rigid motions") +
          (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") +
          ", solved once, determine its motion";
 }
 
-std::string forces_line(const ParticleScene& scene) {
-  const ParticleOptions& particle = scene.particle;
+std::string forces_line(const ParticleScene& particle_scene) {
+  const ParticleOptions& particle = particle_scene.particle;
   if (particle.motion == Motion::free) return particle.force || particle.torque || particle.density_difference ? "as given" : "none";
-  return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
+  return particle_scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
 }
 
 Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {

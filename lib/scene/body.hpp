@@ -84,33 +84,34 @@ struct Body {
 /// Builds the body of a scene with one particle. If the member `alike` is given, its mesh and resting shape are used, and the shape is moved to the
 /// position of this scene's particle. `empty_duct`: flow of the empty duct if it is known already, as from another particle; otherwise computed.
 /// `only`: true if the scene has no other particles; only then the body has the wall of a tube, and symmetries of particle and channel are used.
-Body body(const ParticleScene& scene, const Member* alike = nullptr, std::shared_ptr<const stokes::DuctFlow> empty_duct = nullptr, bool only = true);
+Body body(const ParticleScene& particle_scene, const Member* alike = nullptr, std::shared_ptr<const stokes::DuctFlow> empty_duct = nullptr,
+          bool only = true);
 
 /// Returns true if body() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
 bool alike(const ParticleScene& one, const ParticleScene& other);
 
 /// Sets the mesh of the body, and builds on it the spline space that the deck requests.
-void lay_out(const ParticleScene& scene, spline::TMesh mesh, Body& body);
+void lay_out(const ParticleScene& particle_scene, spline::TMesh mesh, Body& body);
 
 /// Returns the common symmetry of the scene, the body and the current shape x, restricted to the symmetries that the deck allows the program to use.
-surface::Symmetry symmetry(const ParticleScene& scene, const Body& body, const Net& x);
+surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body, const Net& x);
 
 /// Throws UserError if the body does not start inside the fluid of the medium that Domain/kind chooses (see SharedOptions::medium).
-void check_in_medium(const ParticleScene& scene, const Body& body);
+void check_in_medium(const ParticleScene& particle_scene, const Body& body);
 
 /// Returns the loads of a particle on its current mesh, except elasticity and bending. A rigid particle only has the repulsion from the wall. `wall`:
 /// wall of the tube, or null.
-coupling::LoadList loads(const ParticleScene& scene, const Body& body, const surface::TubeWall* wall);
+coupling::LoadList loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall);
 
 /// Name in checkpoints of the net Body::rest. The name is that of the first versions. Body::initial is not stored.
 constexpr const char* stored_rest = "initial";
 
 /// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and if the
 /// load is computed in the strong form.
-stokes::Measure load_measure(const ParticleScene& scene);
+stokes::Measure load_measure(const ParticleScene& particle_scene);
 
 /// Returns the uniform tension K (A/A0 - 1) that Membrane/global area dilatation (3.26) causes at the shape x, divided by the shear modulus or
 /// surface tension of the particle; 0 without this key.
-double global_tension(const ParticleScene& scene, const Body& body, const Net& x);
+double global_tension(const ParticleScene& particle_scene, const Body& body, const Net& x);
 
 }  // namespace tanktread

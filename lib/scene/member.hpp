@@ -39,7 +39,7 @@ struct Member {
 };
 
 /// Returns what drives a rigid body: the prescribed motion, or the force (including the weight) and the torque.
-coupling::RigidDrive drive_of(const ParticleScene& scene, const Body& body);
+coupling::RigidDrive drive_of(const ParticleScene& particle_scene, const Body& body);
 
 /// Builds all particles of a scene, each in its unstressed, resting and initial shape.
 std::vector<Member> members(const Scene& scene);

@@ -40,7 +40,7 @@ struct ParticleOptions {
   bool rigid() const { return motion != Motion::deforming; }
   std::string choice() const;  ///< returns for example "Particle/motion `free`", for messages
   void declare(deck::Section& section);
-  void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices that contradict the motion of the particle
+  void reject(const ParticleScene& particle_scene, Rejections& to) const;  ///< adds the choices that contradict the motion of the particle
 };
 
 /// Options that may differ between particles.
@@ -64,7 +64,7 @@ struct ParticleKind {
   /// user-defined loads and fields.
   void declare(deck::Section& section, const Registry& registry);
   void declare_sections(deck::Section& section, const Registry& registry);  ///< declares the sections Membrane, Surface, Interface and Adaptation
-  void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices that contradict the mesh, membrane or interface
+  void reject(const ParticleScene& particle_scene, Rejections& to) const;  ///< adds the choices that contradict the mesh, membrane or interface
 };
 
 }  // namespace tanktread

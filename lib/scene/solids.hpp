@@ -29,13 +29,13 @@ struct SolidsRow {
   std::vector<Vec3> post_forces;                                     ///< forces of the fluid on the posts
   Vec3 mean_velocity = Vec3::Zero();  ///< velocity averaged over the cell, including particles and posts
   double permeability = std::numeric_limits<double>::quiet_NaN();
-  void add_columns(const SharedOptions& scene, Columns& to) const;
+  void add_columns(const SharedOptions& shared, Columns& to) const;
 };
 
 /// Returns the data of plates and posts for the flow `flow` around them in the ambient flow `ambient`. `particle_force`: force of the particles on
 /// the fluid. `velocity_integral`: see SolidResponse::flow_integral; used only
 /// if there are two plates.
-SolidsRow solids_row(const SharedOptions& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient,
+SolidsRow solids_row(const SharedOptions& shared, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient,
                      const coupling::Solids::Flow& flow, const Vec3& particle_force, const Vec3& velocity_integral);
 
 }  // namespace tanktread

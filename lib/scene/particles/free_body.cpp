@@ -16,8 +16,9 @@ namespace {
 class Free : public ParticleSystem {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : whole_(scene), scene_(scene.first()), ranks_(ranks), body_(refined(scene_, ranks, phases)), geometry_(body_.space),
-        tube_(tube(scene_, body_, phases)), tractions_(tractions_of(scene_, body_, ranks, tube_.get())), free_(driven(scene_, body_, tractions_)) {}
+      : scene_(scene), particle_scene_(scene.first()), ranks_(ranks), body_(refined(particle_scene_, ranks, phases)), geometry_(body_.space),
+        tube_(tube(particle_scene_, body_, phases)), tractions_(tractions_of(particle_scene_, body_, ranks, tube_.get())),
+        free_(driven(particle_scene_, body_, tractions_)) {}
 
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
@@ -57,19 +58,19 @@ class Free : public ParticleSystem {
 
   Columns row(const motion::State& state, ProgressRow progress) override {
     const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
-    RigidRow now = rigid_row(scene_, body_, free_->flow(), geometry_, free_->surface(state.x), free_->motion(state.x), turn,
+    RigidRow now = rigid_row(particle_scene_, body_, free_->flow(), geometry_, free_->surface(state.x), free_->motion(state.x), turn,
                              free_->stresslet(state.x), ranks_);
     now.centre = coupling::centre_of(state.x);
     Columns row;
     if (tube_) {
       const double pressure_drop = free_->pressure_drop(state.x);
-      tube_row(*tube_, free_->flow(), free_->force_density(state.x), pressure_drop).add_columns(scene_, row);
+      tube_row(*tube_, free_->flow(), free_->force_density(state.x), pressure_drop).add_columns(particle_scene_, row);
     }
-    if (const auto walls = scene_.wall.planes(); !walls.empty()) wall_row(walls, body_, free_->surface(state.x)).add_columns(whole_, row);
+    if (const auto walls = particle_scene_.wall.planes(); !walls.empty()) wall_row(walls, body_, free_->surface(state.x)).add_columns(scene_, row);
     turn_to(state.x, progress.step.step, now);
-    now.add_columns(scene_, row);
+    now.add_columns(particle_scene_, row);
     progress.time = state.time, progress.counts = counts();
-    progress.add_columns(whole_, row);
+    progress.add_columns(scene_, row);
     finish(row);
     return row;
   }
@@ -83,26 +84,26 @@ class Free : public ParticleSystem {
   }
 
  private:
-  static Body refined(const ParticleScene& scene, coupling::Ranks& ranks, Phases& phases) {
-    Body body = tanktread::body(scene);
-    refine_isolated_body(scene, body, [&](const Body& on) {
-      const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
-      coupling::RigidTractions tractions = tractions_of(scene, on, ranks, wall.get());
-      const auto free = driven(scene, on, tractions);
+  static Body refined(const ParticleScene& particle_scene, coupling::Ranks& ranks, Phases& phases) {
+    Body body = tanktread::body(particle_scene);
+    refine_isolated_body(particle_scene, body, [&](const Body& on) {
+      const std::unique_ptr<coupling::Tube> wall = tube(particle_scene, on, phases);
+      coupling::RigidTractions tractions = tractions_of(particle_scene, on, ranks, wall.get());
+      const auto free = driven(particle_scene, on, tractions);
       return free->force_density(coupling::placed(free->centre()));
     });
     return body;
   }
 
   /// Returns the free body with the given equation for its traction, in a tube or a medium if the scene has one.
-  static std::unique_ptr<coupling::LoneRigidBody> driven(const ParticleScene& scene, const Body& body, coupling::RigidTractions& tractions) {
-    const Vec3& centre = scene.particle.shape.center;
-    if (scene.tube.present)
-      return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
-                                                        drive_of(scene, body));
-    if (scene.medium())
-      return std::make_unique<coupling::FreeBodyInMedium>(tractions, body.rest, centre, body.radius, body.flow, drive_of(scene, body));
-    return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, drive_of(scene, body));
+  static std::unique_ptr<coupling::LoneRigidBody> driven(const ParticleScene& particle_scene, const Body& body, coupling::RigidTractions& tractions) {
+    const Vec3& centre = particle_scene.particle.shape.center;
+    if (particle_scene.tube.present)
+      return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, particle_scene.flow.viscosity,
+                                                        drive_of(particle_scene, body));
+    if (particle_scene.medium())
+      return std::make_unique<coupling::FreeBodyInMedium>(tractions, body.rest, centre, body.radius, body.flow, drive_of(particle_scene, body));
+    return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, drive_of(particle_scene, body));
   }
 
   /// Sets the tank-treading velocity, the frequency and the phase of a rigid body in the plane of the flow (Body::plane). The frequency (6.6) is the
@@ -117,8 +118,8 @@ class Free : public ParticleSystem {
     now.phase = phase_angle_.degrees;
   }
 
-  const Scene& whole_;
-  const ParticleScene scene_;
+  const Scene& scene_;
+  const ParticleScene particle_scene_;
   const coupling::Ranks& ranks_;
   Body body_;
   surface::Geometry geometry_;

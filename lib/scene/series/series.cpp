@@ -46,8 +46,8 @@ std::size_t rank(const std::string& name) {
 /// Adds the columns of all registered series of the type Series. If arguments `of` are given, the values of the columns are computed by calling each
 /// series with these arguments. Otherwise the columns have no values.
 template <class Series, class... Of>
-void add_series_of(const SharedOptions& scene, Columns& to, const Of&... of) {
-  for (const SeriesParts::Chosen& part : scene.series) {
+void add_series_of(const SharedOptions& shared, Columns& to, const Of&... of) {
+  for (const SeriesParts::Chosen& part : shared.series) {
     const auto made = part.make();
     const Series* const series = std::get_if<Series>(&made);
     if (!series) continue;
@@ -58,12 +58,12 @@ void add_series_of(const SharedOptions& scene, Columns& to, const Of&... of) {
 
 }  // namespace
 
-void add_series(const SharedOptions& scene, double time, const RecordedParticle& particle, Columns& to) {
-  add_series_of<ParticleSeries>(scene, to, time, particle);
+void add_series(const SharedOptions& shared, double time, const RecordedParticle& particle, Columns& to) {
+  add_series_of<ParticleSeries>(shared, to, time, particle);
 }
 
-void add_series(const SharedOptions& scene, double time, std::span<const RecordedParticle> particles, Columns& to) {
-  add_series_of<RunSeries>(scene, to, time, particles);
+void add_series(const SharedOptions& shared, double time, std::span<const RecordedParticle> particles, Columns& to) {
+  add_series_of<RunSeries>(shared, to, time, particles);
 }
 
 void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
@@ -121,17 +121,17 @@ Columns run_columns(const Scene& scene, bool every) {
   return all;
 }
 
-Columns particle_columns(const ParticleScene& one, bool every) {
+Columns particle_columns(const ParticleScene& particle_scene, bool every) {
   Columns all(every);
-  if (one.particle.rigid()) {
-    RigidRow().add_columns(one, all);
+  if (particle_scene.particle.rigid()) {
+    RigidRow().add_columns(particle_scene, all);
   } else {
-    DeformingRow().add_columns(one, all);
-    if (all.when(one.surfactant.has_value())) SurfactantRow().add_columns(all);
-    for (const auto& part : one.loads) part.add_columns(all);
-    for (const auto& part : one.fields) part.add_columns(all);
+    DeformingRow().add_columns(particle_scene, all);
+    if (all.when(particle_scene.surfactant.has_value())) SurfactantRow().add_columns(all);
+    for (const auto& part : particle_scene.loads) part.add_columns(all);
+    for (const auto& part : particle_scene.fields) part.add_columns(all);
   }
-  add_series_of<ParticleSeries>(one, all);
+  add_series_of<ParticleSeries>(particle_scene, all);
   put_in_order(all);
   return all;
 }

@@ -18,19 +18,19 @@ Scene with_field_lengths_of(const Scene& first, Scene scene) {
 
 SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule) : members_(members), capsule_(capsule) {
   for (std::size_t p = 0; p < members.size(); ++p) {
-    const ParticleScene& scene = members[p].scene;
+    const ParticleScene& particle_scene = members[p].scene;
     Body& body = *members[p].body;
-    if (scene.surfactant) {
-      auto surfactant = std::make_unique<membrane::Surfactant>(body.space, body.rest, *scene.surfactant, body.modulus,
-                                                               scene.surfactant->diffusivity_of(scene.flow.rate(), body.radius));
+    if (particle_scene.surfactant) {
+      auto surfactant = std::make_unique<membrane::Surfactant>(body.space, body.rest, *particle_scene.surfactant, body.modulus,
+                                                               particle_scene.surfactant->diffusivity_of(particle_scene.flow.rate(), body.radius));
       membrane::Surfactant* const known = surfactant.get();
       if (body.surfactant_mass == 0) body.surfactant_mass = known->mass(known->start(body.initial));
       all_.push_back({p, std::move(surfactant), known});
     }
-    if (scene.maxwell_membrane())
-      all_.push_back({p, std::make_unique<membrane::MaxwellElement>(body.space, body.rest, capsule.membrane().order(), scene.membrane.viscosity,
-                                                                    *scene.membrane.relaxation_time)});
-    for (const auto& part : scene.fields)
+    if (particle_scene.maxwell_membrane())
+      all_.push_back({p, std::make_unique<membrane::MaxwellElement>(body.space, body.rest, capsule.membrane().order(),
+                                                                    particle_scene.membrane.viscosity, *particle_scene.membrane.relaxation_time)});
+    for (const auto& part : particle_scene.fields)
       all_.push_back({p, part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}), nullptr, &part});
   }
   if (all_.empty()) return;
