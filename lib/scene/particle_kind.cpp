@@ -143,8 +143,14 @@ void ParticleKind::declare_sections(deck::Section& section, const Registry& regi
   InterfaceSection list{*this, registry};
   section.section("Interface", list, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
-  if (!name.empty()) adaptation.film_resolution = particle.rigid() ? 0.5 : motion::AdaptationOptions::default_film_resolution;
+  complete_film_resolution(false);  // before the section is read, so that the deck's values contain the default
   section.section("Adaptation", adaptation, "refinement and coarsening of the particle's surface mesh");
+}
+
+void ParticleKind::complete_film_resolution(bool films) {
+  const bool several = !name.empty();
+  if ((several || films) && !adaptation.film_resolution)
+    adaptation.film_resolution = several && particle.rigid() ? 0.5 : motion::AdaptationOptions::default_film_resolution;
 }
 
 void ParticleKind::reject(const ParticleScene& particle_scene, Rejections& to) const {

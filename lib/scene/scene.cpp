@@ -152,8 +152,7 @@ void check_adaptation(const ParticleScene& particle_scene) {
   particle_scene.adaptation.check(static_cast<int>(particle_scene.surface.n_points()), std::sqrt(area / particle_scene.surface.n_elements()));
 }
 
-/// Sets the members of options that follow from several sections and that no section reads while it is declared. If the scene has one particle in a
-/// duct, in front of a wall or on a lattice, also sets the default of Adaptation/film resolution.
+/// Sets the members of options that follow from several sections and that no section reads while it is declared.
 void complete_derived(Scene& scene) {
   if (scene.spectrum.present) scene.quadrature.choose_smooth_sums();
   scene.periodic.driven = scene.flow.history.has_value();
@@ -161,10 +160,7 @@ void complete_derived(Scene& scene) {
     scene.tube.period = sides->front();
   scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
   scene.flow.plates = scene.wall.plates();
-  const bool films = scene.wall.present || scene.tube.present || scene.domain.present;
-  for (ParticleKind& kind : scene.particles)
-    if (films && kind.name.empty() && !kind.adaptation.film_resolution)
-      kind.adaptation.film_resolution = motion::AdaptationOptions::default_film_resolution;
+  for (ParticleKind& kind : scene.particles) kind.complete_film_resolution(scene.has_films_around_one());
 }
 
 /// Declares the sections of particles. Returns the particles of the section Particles. If the deck does not have this section, returns the single
@@ -326,9 +322,9 @@ double SharedOptions::next_snapshot(double now) const {
 }
 
 ParticleScene Scene::of(const ParticleKind& kind) const {
-  ParticleScene scene(*this, kind);
-  scene.solvers.rigid_bodies = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
-  return scene;
+  ParticleScene particle_scene(*this, kind);
+  particle_scene.solvers.rigid_bodies = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
+  return particle_scene;
 }
 
 std::vector<ParticleScene> Scene::particle_scenes() const {
