@@ -69,15 +69,15 @@ int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot&
 int resist(const Scene& scene, const RunRequest& request) {
   StationaryRun run(scene, request, "Particle/motion `prescribed`");
   const ParticleScene particle_scene = scene.first();
-  Body body = tanktread::body(particle_scene);
+  Body body = make_body(particle_scene);
   refine_isolated_body(particle_scene, body, [&](const Body& on) {
-    const std::unique_ptr<coupling::Tube> wall = tube(particle_scene, on, run.phases);
-    coupling::RigidTractions there = tractions_of(particle_scene, on, run.ranks, wall.get());
+    const std::unique_ptr<coupling::Tube> wall = make_tube(particle_scene, on, run.phases);
+    coupling::RigidTractions there = make_tractions(particle_scene, on, run.ranks, wall.get());
     return rigid_solution(particle_scene, on, there, run.phases).density;
   });
   run.show(plan(scene, body, run.ranks.size()));
-  const std::unique_ptr<coupling::Tube> around = tube(particle_scene, body, run.phases);
-  coupling::RigidTractions tractions = tractions_of(particle_scene, body, run.ranks, around.get());
+  const std::unique_ptr<coupling::Tube> around = make_tube(particle_scene, body, run.phases);
+  coupling::RigidTractions tractions = make_tractions(particle_scene, body, run.ranks, around.get());
   run.end_set_up();
   const RigidSolution solution = rigid_solution(particle_scene, body, tractions, run.phases);
   stop_where_told();

@@ -45,7 +45,7 @@ motion::TimeOptions time_options(const Scene& scene) {
 class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), particles_(particle_system(scene, ranks_, phases_)),
+      : scene_(scene), request_(request), particles_(make_particle_system(scene, ranks_, phases_)),
         results_(scene, request, particles_->body(), particles_->bezier(), ranks_),
         scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {
     ranks_.measure(phases_);

@@ -11,7 +11,7 @@ namespace tanktread {
 int flow_past_solids(const Scene& scene, const RunRequest& request) {
   StationaryRun run(scene, request, "Particle/shape `cylinder`");
   run.show(plan(scene, run.ranks.size()));
-  const coupling::SolidScene around = *solids(scene, run.phases);
+  const coupling::SolidScene around = *make_solids(scene, run.phases);
   coupling::Solids& all = *around.solids;
   run.end_set_up();
   const stokes::AmbientFlow ambient(scene.flow);

@@ -21,9 +21,9 @@ class Evolution {
     deck::Document deck = deck::read({}, all);
     deck.declare(scene);
     scene.check();
-    members_ = members(scene);
+    members_ = make_members(scene);
     arrange(members_);
-    capsule = tanktread::capsule(members_, body(), ranks_, phases_, nullptr, std::nullopt);
+    capsule = make_capsule(members_, body(), ranks_, phases_, nullptr, std::nullopt);
     scheme_ = motion::integrator(scene.time);
     state.x = body().initial;
     motion::begin(*capsule, state);

@@ -19,8 +19,8 @@ inline RigidSolution rigid_solution(const std::string& deck_name, const std::vec
   const ParticleScene particle_scene = whole.first();
   coupling::Ranks ranks;
   Phases phases;
-  const Body body = tanktread::body(particle_scene);
-  coupling::RigidTractions tractions = tractions_of(particle_scene, body, ranks, nullptr);
+  const Body body = make_body(particle_scene);
+  coupling::RigidTractions tractions = make_tractions(particle_scene, body, ranks, nullptr);
   return rigid_solution(particle_scene, body, tractions, phases);
 }
 

@@ -218,11 +218,11 @@ output::Entries<std::string> plan(const Scene& scene, int ranks) {
     lines.emplace_back("time", "steady: nothing moves");
     return lines;
   }
-  std::vector<Member> all = members(scene);
+  std::vector<Member> all = make_members(scene);
   check_apart(all, scene.domain.cell());
   arrange(all);
-  const std::unique_ptr<Body> stacked = stacked_body(all);
-  if (stacked && scene.tube.present) stacked->wall = wall(scene, *stacked);
+  const std::unique_ptr<Body> stacked = make_stacked_body(all);
+  if (stacked && scene.tube.present) stacked->wall = make_wall(scene, *stacked);
   return plan(scene, stacked ? *stacked : *all.front().body, ranks);
 }
 

@@ -125,7 +125,14 @@ bool alike(const ParticleScene& one, const ParticleScene& other) {
          levels(one) == levels(other);
 }
 
-Body body(const ParticleScene& particle_scene, const Member* similar, std::shared_ptr<const stokes::DuctFlow> empty_duct, bool only) {
+Body make_body(const ParticleScene& particle_scene) {
+  Body body = make_body_of_several(particle_scene, nullptr, nullptr);
+  body.wall = make_wall(particle_scene, body);
+  body.symmetry = symmetry(particle_scene, body, body.initial);
+  return body;
+}
+
+Body make_body_of_several(const ParticleScene& particle_scene, const Member* similar, std::shared_ptr<const stokes::DuctFlow> empty_duct) {
   Body b;
   const int levels = particle_scene.adaptation.enabled ? particle_scene.adaptation.levels : 0;
   if (similar) {
@@ -155,7 +162,7 @@ Body body(const ParticleScene& particle_scene, const Member* similar, std::share
   b.unstressed = b.rest;
   if (!particle_scene.particle.rigid())
     b.unstressed = membrane::unstressed(stress_free_shape(particle_scene, b, first ? *first : b), center, particle_scene.membrane.pre_inflation);
-  b.duct = empty_duct ? std::move(empty_duct) : duct(particle_scene);
+  b.duct = empty_duct ? std::move(empty_duct) : make_duct(particle_scene);
   b.flow = stokes::AmbientFlow(particle_scene.flow, particle_scene.flow.type == "duct" ? b.duct : nullptr);
   b.plane = flow_plane(particle_scene.flow);
   b.radius = particle_scene.radius();
@@ -164,8 +171,7 @@ Body body(const ParticleScene& particle_scene, const Member* similar, std::share
   check_fit(particle_scene, b);
   if (particle_scene.wall.present) check_in_front(particle_scene, b);
   check_in_medium(particle_scene, b);
-  if (only) b.wall = wall(particle_scene, b);
-  b.symmetry = symmetry(particle_scene, b, b.initial);
+  b.symmetry = surface::Symmetry(b.space.n_points);
   const bool own = particle_scene.particle.shape.initial && particle_scene.particle.shape.initial->volume == "own";
   b.volume = surface::measures(b.space, own ? b.initial : b.rest).volume;
   return b;
@@ -182,13 +188,13 @@ surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body
   const bool unused = particle_scene.domain.present && (channel || particle_scene.adaptation.enabled || !particle_scene.posts.empty());
   if (particle_scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
-  if (channel) return coupling::symmetry(particle_scene.symmetry, body.space, nets, *body.wall, loads(particle_scene, body, body.wall.get()));
+  if (channel) return coupling::symmetry(particle_scene.symmetry, body.space, nets, *body.wall, make_loads(particle_scene, body, body.wall.get()));
   const auto walls = particle_scene.wall.planes();
-  return coupling::symmetry(particle_scene.symmetry, body.space, nets, body.flow, loads(particle_scene, body, nullptr),
+  return coupling::symmetry(particle_scene.symmetry, body.space, nets, body.flow, make_loads(particle_scene, body, nullptr),
                             walls.empty() ? particle_scene.domain.medium.get() : &walls.front(), particle_scene.domain.cell());
 }
 
-coupling::LoadList loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall) {
+coupling::LoadList make_loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall) {
   coupling::LoadList all;
   if (wall && particle_scene.tube.repulsion)
     all.push_back(std::make_shared<membrane::WallRepulsion>(body.space, body.unstressed, repulsion(particle_scene.tube, *wall)));

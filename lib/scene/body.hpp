@@ -81,13 +81,15 @@ struct Body {
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
 
-/// Builds the body of a scene with one particle. If the member `alike` is given, its mesh and resting shape are used, and the shape is moved to the
-/// position of this scene's particle. `empty_duct`: flow of the empty duct if it is known already, as from another particle; otherwise computed.
-/// `only`: true if the scene has no other particles; only then the body has the wall of a tube, and symmetries of particle and channel are used.
-Body body(const ParticleScene& particle_scene, const Member* alike = nullptr, std::shared_ptr<const stokes::DuctFlow> empty_duct = nullptr,
-          bool only = true);
+/// Builds the body of the only particle of a scene, with the wall of a tube and the symmetries of the scene.
+Body make_body(const ParticleScene& particle_scene);
 
-/// Returns true if body() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
+/// Builds the body of one of several particles, without the wall of a tube and without symmetries. If the member `alike` is not null, its mesh and
+/// resting shape are used, and the shape is moved to the position of this particle. `empty_duct`: flow of the empty duct if another particle has it
+/// already; computed if null.
+Body make_body_of_several(const ParticleScene& particle_scene, const Member* alike, std::shared_ptr<const stokes::DuctFlow> empty_duct);
+
+/// Returns true if make_body_of_several() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
 bool alike(const ParticleScene& one, const ParticleScene& other);
 
 /// Sets the mesh of the body, and builds on it the spline space that the deck requests.
@@ -101,7 +103,7 @@ void check_in_medium(const ParticleScene& particle_scene, const Body& body);
 
 /// Returns the loads of a particle on its current mesh, except elasticity and bending. A rigid particle only has the repulsion from the wall. `wall`:
 /// wall of the tube, or null.
-coupling::LoadList loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall);
+coupling::LoadList make_loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall);
 
 /// Name in checkpoints of the net Body::rest. The name is that of the first versions. Body::initial is not stored.
 constexpr const char* stored_rest = "initial";

@@ -65,18 +65,19 @@ coupling::RigidDrive drive_of(const ParticleScene& particle_scene, const Body& b
           given(particle.force) + body.volume * particle_scene.body_force(), given(particle.torque)};
 }
 
-std::vector<Member> members(const Scene& scene) {
+std::vector<Member> make_members(const Scene& scene) {
   std::vector<Member> all;
   std::vector<ParticleScene> scenes = scene.particle_scenes();
   for (ParticleScene& one : scenes) {
     one.least_radius = scene.least_radius();
     const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
-    auto its_body = std::make_unique<Body>(
-        body(one, equal == all.end() ? nullptr : &*equal, all.empty() ? nullptr : all.front().body->duct, scenes.size() == 1));
+    Body body = scenes.size() == 1
+                    ? make_body(one)
+                    : make_body_of_several(one, equal == all.end() ? nullptr : &*equal, all.empty() ? nullptr : all.front().body->duct);
     Member& member = all.emplace_back();
     member.name = one.name;
     member.scene = std::move(one);
-    member.body = std::move(its_body);
+    member.body = std::make_unique<Body>(std::move(body));
   }
   return all;
 }
@@ -93,14 +94,14 @@ void arrange(std::vector<Member>& members) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     Member& member = members[p];
     member.block = blocks[p];
-    if (members.size() == 1) continue;  // capsule() sets the geometry and the membrane of a single member
+    if (members.size() == 1) continue;  // make_capsule() sets the geometry and the membrane of a single member
     Body& body = *member.body;
     body.symmetry = surface::Symmetry(body.space.n_points);  // no symmetry: a symmetry of one particle need not be a symmetry of all particles
     share_or_make(members, p);
   }
 }
 
-std::unique_ptr<Body> stacked_body(const std::vector<Member>& members) {
+std::unique_ptr<Body> make_stacked_body(const std::vector<Member>& members) {
   if (members.size() == 1) return {};
   auto all = std::make_unique<Body>();
   std::vector<const spline::Space*> spaces;
@@ -143,7 +144,7 @@ coupling::Particle particle(const Member& member, const surface::TubeWall* wall)
   particle.space = &body.space;
   particle.viscosity_ratio = particle_scene.particle.viscosity_ratio;
   particle.material = material(particle_scene, body);
-  particle.loads = loads(particle_scene, body, wall);
+  particle.loads = make_loads(particle_scene, body, wall);
   check_periods(particle_scene, particle.loads);
   particle.radius = body.radius;
   if (particle_scene.particle.rigid()) particle.rigid = drive_of(particle_scene, body);
@@ -171,8 +172,8 @@ std::vector<coupling::Particle> particles(const std::vector<Member>& members, co
 
 }  // namespace
 
-std::unique_ptr<coupling::Capsule> capsule(std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
-                                           std::unique_ptr<coupling::Tube> tube, const std::optional<coupling::SolidScene>& solids) {
+std::unique_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
+                                                std::unique_ptr<coupling::Tube> tube, const std::optional<coupling::SolidScene>& solids) {
   const ParticleScene& particle_scene = members.front().scene;
   coupling::CapsuleParameters parameters;
   parameters.viscosity = particle_scene.flow.viscosity;

@@ -101,7 +101,7 @@ struct ParticleScene : SharedOptions, ParticleKind {
   ParticleScene() = default;
   ParticleScene(const SharedOptions& shared, const ParticleKind& kind) : SharedOptions(shared), ParticleKind(kind) {}
 
-  std::optional<double> least_radius;  ///< smallest radius R_C of all particles, by which gaps are divided; set by members()
+  std::optional<double> least_radius;  ///< smallest radius R_C of all particles, by which gaps are divided; set by make_members()
 
   /// Throws UserError if options of this particle, or shared options, contradict each other or if the problem is too large. `found`: rejected
   /// combinations of the whole scene.

@@ -60,7 +60,7 @@ std::vector<Vec3> free_directions(const SharedOptions& shared, const stokes::Per
 
 }  // namespace
 
-std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
+std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phases) {
   if (!scene.wall.solid && scene.posts.empty()) return {};
   const stokes::PeriodicCell cell = *scene.domain.cell();
   const stokes::AmbientFlow flow(scene.flow);

@@ -15,7 +15,7 @@
 namespace tanktread {
 
 /// Returns the plates and posts of a scene with the factored operator of their tractions; nothing if the scene has no plates and posts. Collective.
-std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases);
+std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phases);
 
 /// Throws UserError if a particle crosses a post at the start.
 void check_outside_of_posts(const Scene& scene, const std::vector<Member>& members);

@@ -107,7 +107,7 @@ void check_fit(const ParticleScene& particle_scene, const Body& body) {
   }
 }
 
-std::shared_ptr<const stokes::DuctFlow> duct(const ParticleScene& particle_scene) {
+std::shared_ptr<const stokes::DuctFlow> make_duct(const ParticleScene& particle_scene) {
   if (!particle_scene.tube.present) return {};
   const double speed = particle_scene.flow.mean_velocity ? *particle_scene.flow.mean_velocity : particle_scene.rate() * particle_scene.radius();
   if (particle_scene.tube.channel)
@@ -117,7 +117,7 @@ std::shared_ptr<const stokes::DuctFlow> duct(const ParticleScene& particle_scene
   return std::make_shared<const stokes::DuctFlow>(particle_scene.tube, particle_scene.flow.viscosity, speed);
 }
 
-std::shared_ptr<const surface::TubeWall> wall(const SharedOptions& shared, const Body& body) {
+std::shared_ptr<const surface::TubeWall> make_wall(const SharedOptions& shared, const Body& body) {
   if (!shared.tube.present) return {};
   if (auto fixed = body.duct->fixed_wall()) return fixed;
   const surface::Outline& outline = body.duct->outline();
@@ -142,7 +142,7 @@ std::shared_ptr<const surface::TubeWall> wall(const SharedOptions& shared, const
   return wall;
 }
 
-std::unique_ptr<coupling::Tube> tube(const SharedOptions& shared, const Body& body, Phases& phases) {
+std::unique_ptr<coupling::Tube> make_tube(const SharedOptions& shared, const Body& body, Phases& phases) {
   if (!body.wall) return {};
   coupling::TubeParameters parameters;
   parameters.viscosity = shared.flow.viscosity;

@@ -12,7 +12,7 @@ namespace tanktread {
 
 /// Returns the flow of the empty tube or channel. If Flow/type is not `duct`, the returned flow has the mean velocity R_C times
 /// ParticleScene::rate() and only serves to compute the pressure drop (2.7). Returns null if there is no tube.
-std::shared_ptr<const stokes::DuctFlow> duct(const ParticleScene& particle_scene);
+std::shared_ptr<const stokes::DuctFlow> make_duct(const ParticleScene& particle_scene);
 
 /// Adds to `to` the combinations of keys that are not allowed with a tube or channel.
 void reject_with_tube(const ParticleScene& particle_scene, Rejections& to);
@@ -22,10 +22,10 @@ void check_fit(const ParticleScene& particle_scene, const Body& body);
 
 /// Returns the wall around the resting shapes of all particles in `body`. Throws UserError, with the lengths, if the tube is too short for the
 /// particles or its period is too long.
-std::shared_ptr<const surface::TubeWall> wall(const SharedOptions& shared, const Body& body);
+std::shared_ptr<const surface::TubeWall> make_wall(const SharedOptions& shared, const Body& body);
 
 /// Returns the tube around `body`, which stands for all particles of the scene; null if there is no tube.
-std::unique_ptr<coupling::Tube> tube(const SharedOptions& shared, const Body& body, Phases& phases);
+std::unique_ptr<coupling::Tube> make_tube(const SharedOptions& shared, const Body& body, Phases& phases);
 
 /// Data of the tube for one row of the results. For a periodic train, pressure drops refer to one period.
 struct TubeRow {

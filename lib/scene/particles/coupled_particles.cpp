@@ -35,7 +35,7 @@ namespace {
 class CoupledParticles : public ParticleSystem {
  public:
   CoupledParticles(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)), solids_(solids(scene, phases)) {
+      : scene_(scene), ranks_(ranks), phases_(phases), members_(make_members(scene)), solids_(make_solids(scene, phases)) {
     check_apart(members_, scene.domain.cell());
     check_outside_of_posts(scene_, members_);
     set_up();
@@ -233,17 +233,17 @@ class CoupledParticles : public ParticleSystem {
   void set_up() {
     const std::unique_ptr<Body> before = std::exchange(stacked_, nullptr);
     arrange(members_);
-    stacked_ = stacked_body(members_);
-    if (stacked_ && scene_.tube.present) stacked_->wall = before ? before->wall : wall(scene_, *stacked_);
+    stacked_ = make_stacked_body(members_);
+    if (stacked_ && scene_.tube.present) stacked_->wall = before ? before->wall : make_wall(scene_, *stacked_);
     std::unique_ptr<coupling::Tube> around;
     if (capsule_ && capsule_->tube() && !capsule_->tube()->fixed())
       around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
     else
-      around = tube(scene_, body(), phases_);
+      around = make_tube(scene_, body(), phases_);
     power_.reset(), fields_.reset();
     if (!stacked_) members_.front().geometry.reset(), members_.front().membrane.reset();  // they belong to the system
     capsule_.reset();
-    capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around), solids_);
+    capsule_ = make_capsule(members_, body(), ranks_, phases_, std::move(around), solids_);
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
 
@@ -324,7 +324,7 @@ class CoupledParticles : public ParticleSystem {
 
 }  // namespace
 
-std::unique_ptr<ParticleSystem> coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+std::unique_ptr<ParticleSystem> make_coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
   return std::make_unique<CoupledParticles>(scene, ranks, phases);
 }
 

@@ -16,9 +16,9 @@ namespace {
 class Free : public ParticleSystem {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), particle_scene_(scene.first()), ranks_(ranks), body_(refined(particle_scene_, ranks, phases)), geometry_(body_.space),
-        tube_(tube(particle_scene_, body_, phases)), tractions_(tractions_of(particle_scene_, body_, ranks, tube_.get())),
-        free_(driven(particle_scene_, body_, tractions_)) {}
+      : scene_(scene), particle_scene_(scene.first()), ranks_(ranks), body_(make_refined_body(particle_scene_, ranks, phases)),
+        geometry_(body_.space), tube_(make_tube(particle_scene_, body_, phases)),
+        tractions_(make_tractions(particle_scene_, body_, ranks, tube_.get())), free_(make_driven_body(particle_scene_, body_, tractions_)) {}
 
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
@@ -84,19 +84,20 @@ class Free : public ParticleSystem {
   }
 
  private:
-  static Body refined(const ParticleScene& particle_scene, coupling::Ranks& ranks, Phases& phases) {
-    Body body = tanktread::body(particle_scene);
+  static Body make_refined_body(const ParticleScene& particle_scene, coupling::Ranks& ranks, Phases& phases) {
+    Body body = make_body(particle_scene);
     refine_isolated_body(particle_scene, body, [&](const Body& on) {
-      const std::unique_ptr<coupling::Tube> wall = tube(particle_scene, on, phases);
-      coupling::RigidTractions tractions = tractions_of(particle_scene, on, ranks, wall.get());
-      const auto free = driven(particle_scene, on, tractions);
+      const std::unique_ptr<coupling::Tube> wall = make_tube(particle_scene, on, phases);
+      coupling::RigidTractions tractions = make_tractions(particle_scene, on, ranks, wall.get());
+      const auto free = make_driven_body(particle_scene, on, tractions);
       return free->force_density(coupling::placed(free->centre()));
     });
     return body;
   }
 
   /// Returns the free body with the given equation for its traction, in a tube or a medium if the scene has one.
-  static std::unique_ptr<coupling::LoneRigidBody> driven(const ParticleScene& particle_scene, const Body& body, coupling::RigidTractions& tractions) {
+  static std::unique_ptr<coupling::LoneRigidBody> make_driven_body(const ParticleScene& particle_scene, const Body& body,
+                                                                   coupling::RigidTractions& tractions) {
     const Vec3& centre = particle_scene.particle.shape.center;
     if (particle_scene.tube.present)
       return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, particle_scene.flow.viscosity,
@@ -132,12 +133,12 @@ class Free : public ParticleSystem {
 
 }  // namespace
 
-std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+std::unique_ptr<ParticleSystem> make_free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
   return std::make_unique<Free>(scene, ranks, phases);
 }
 
-std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
-  return scene.in_system() ? coupled_particles(scene, ranks, phases) : free_body(scene, ranks, phases);
+std::unique_ptr<ParticleSystem> make_particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return scene.in_system() ? make_coupled_particles(scene, ranks, phases) : make_free_body(scene, ranks, phases);
 }
 
 }  // namespace tanktread

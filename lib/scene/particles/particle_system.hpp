@@ -70,11 +70,11 @@ class ParticleSystem {
 };
 
 /// Builds the system for the particles of the scene: a coupled system, or a free rigid body.
-std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> make_particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 /// Builds a coupled system of particles.
-std::unique_ptr<ParticleSystem> coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> make_coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 /// Builds a system that consists of one free rigid body.
-std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> make_free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 }  // namespace tanktread

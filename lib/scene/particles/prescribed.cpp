@@ -43,7 +43,7 @@ void PrescribedRow::add_columns(const ParticleScene& particle_scene, Columns& to
          {"kernel_evaluations", "1", "number of evaluations of the Stokes kernels for the boundary integrals, by all quadrature rules"});
 }
 
-coupling::RigidTractions tractions_of(const ParticleScene& particle_scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
+coupling::RigidTractions make_tractions(const ParticleScene& particle_scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
   const auto single = coupling::single_body(body.space, body.radius, particle_scene.flow.viscosity, particle_scene.quadrature, particle_scene.solvers,
                                             particle_scene.medium());
   if (tube) tube->particles().set(body.rest, single.particles);

@@ -35,7 +35,7 @@ struct PrescribedRow {
 };
 
 /// Returns the equation for the traction on the scene's body. `tube`: the tube around the body, or null.
-coupling::RigidTractions tractions_of(const ParticleScene& particle_scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube);
+coupling::RigidTractions make_tractions(const ParticleScene& particle_scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube);
 
 /// Solves for the traction on a body with `Particle/motion: prescribed` in the flow of the deck. Collective.
 RigidSolution rigid_solution(const ParticleScene& particle_scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases);

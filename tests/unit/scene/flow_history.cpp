@@ -97,7 +97,7 @@ TEST(FlowHistory, ASpheroidsAngleFollowsFromTheStrainSoFar) {
     deck::Document deck = deck::read({SOURCE_DIRECTORY "/inputs/jeffery.yaml"}, settings);
     deck.declare(scene);
     scene.check();
-    const std::unique_ptr<ParticleSystem> body = particle_system(scene, ranks, phases);
+    const std::unique_ptr<ParticleSystem> body = make_particle_system(scene, ranks, phases);
     const auto scheme = motion::integrator(scene.time);
     motion::State state;
     state.x = body->start();
