@@ -49,7 +49,7 @@ class Evolution {
   double energy() const { return capsule->membrane().energy(state.x); }
 
   Scene scene;
-  std::unique_ptr<coupling::Capsule> capsule;
+  std::shared_ptr<coupling::Capsule> capsule;
   motion::State state;
   int steps = 0;
 

@@ -188,17 +188,24 @@ surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body
   const bool unused = particle_scene.domain.present && (channel || particle_scene.adaptation.enabled || !particle_scene.posts.empty());
   if (particle_scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
-  if (channel) return coupling::symmetry(particle_scene.symmetry, body.space, nets, *body.wall, make_loads(particle_scene, body, body.wall.get()));
+  if (channel) return coupling::symmetry(particle_scene.symmetry, body.space, nets, *body.wall, make_loads(particle_scene, body, body.wall.get()).all());
   const auto walls = particle_scene.wall.planes();
-  return coupling::symmetry(particle_scene.symmetry, body.space, nets, body.flow, make_loads(particle_scene, body, nullptr),
+  return coupling::symmetry(particle_scene.symmetry, body.space, nets, body.flow, make_loads(particle_scene, body, nullptr).all(),
                             walls.empty() ? particle_scene.domain.medium.get() : &walls.front(), particle_scene.domain.cell());
 }
 
-coupling::LoadList make_loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall) {
-  coupling::LoadList all;
+coupling::LoadList ParticleLoads::all() const {
+  coupling::LoadList all = built_in;
+  all.insert(all.end(), registered.begin(), registered.end());
+  return all;
+}
+
+ParticleLoads make_loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall) {
+  ParticleLoads loads;
+  coupling::LoadList& all = loads.built_in;
   if (wall && particle_scene.tube.repulsion)
     all.push_back(std::make_shared<membrane::WallRepulsion>(body.space, body.unstressed, repulsion(particle_scene.tube, *wall)));
-  if (particle_scene.particle.rigid()) return all;
+  if (particle_scene.particle.rigid()) return loads;
   const membrane::Options& given = particle_scene.membrane;
   const membrane::WholeStiffness whole{given.global_area_dilatation * body.modulus, given.leaf_modulus * given.bending(body.modulus, body.radius),
                                        given.leaf_difference};
@@ -206,9 +213,9 @@ coupling::LoadList make_loads(const ParticleScene& particle_scene, const Body& b
   if (const Vec3 force = particle_scene.body_force(); !force.isZero(0)) all.push_back(std::make_shared<membrane::Weight>(body.space, force));
   if (!given.forces.all.empty())
     all.push_back(std::make_shared<membrane::PatchLoad>(given.forces, body.space, given.stress_free == "resting" ? body.unstressed : body.rest));
-  // Loads that a program registers are the last entries, because SurfaceFields::add_to finds their values there.
-  for (const auto& part : particle_scene.loads) all.push_back(part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}));
-  return all;
+  for (const auto& part : particle_scene.loads)
+    loads.registered.push_back(part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}));
+  return loads;
 }
 
 stokes::Measure load_measure(const ParticleScene& particle_scene) {

@@ -52,7 +52,13 @@ FlowPlane flow_plane(const stokes::FlowOptions& flow);
 
 struct Member;
 
-/// Particle as the deck describes it, before it moves.
+/// A particle on its current mesh: spline space, resting, initial and unstressed shape, and material data. The current shape is not a part of it, but
+/// of motion::State. The Member of the particle owns its body; an isolated rigid body is owned by its run.
+///
+/// make_body() or make_body_of_several() sets all members. Later, only these change:
+///   - If the mesh adapts, a new body replaces the old one. It is a copy with another `mesh`, `space` and `plain`, with the nets `rest`, `initial` and
+///     `unstressed` transferred to them, and with a larger `refit_error`. `symmetry` is set again.
+///   - If a run resumes, `volume` and the members above are read from its checkpoint.
 struct Body {
   spline::TMesh mesh;  ///< empty if the shape comes from a file
   spline::Space space;
@@ -69,8 +75,6 @@ struct Body {
   /// Reference volume V0: volume of the resting shape, or of the initial shape if the deck requests that the particle keeps that volume. V0 is
   /// computed on the first mesh and does not change if the mesh changes.
   double volume = 0;
-  /// initial mass of the surfactant (integral of the concentration over the surface), computed on the first mesh at the start of the run; 0 before
-  double surfactant_mass = 0;
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by the radius R_C
   double modulus = 1;  ///< shear modulus G_s, or the surface tension sigma of an interface
   surface::Symmetry symmetry;                       ///< symmetry common to the scene and the particle at all times
@@ -101,9 +105,17 @@ surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body
 /// Throws UserError if the body does not start inside the fluid of the medium that Domain/kind chooses (see SharedOptions::medium).
 void check_in_medium(const ParticleScene& particle_scene, const Body& body);
 
-/// Returns the loads of a particle on its current mesh, except elasticity and bending. A rigid particle only has the repulsion from the wall. `wall`:
-/// wall of the tube, or null.
-coupling::LoadList make_loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall);
+/// Loads of a particle on its current mesh, except elasticity and bending.
+struct ParticleLoads {
+  coupling::LoadList built_in;    ///< loads of the library
+  coupling::LoadList registered;  ///< loads of `Membrane/loads`, in the order of ParticleKind::loads
+
+  coupling::LoadList all() const;  ///< returns the built-in and the registered loads
+};
+
+/// Builds the loads of a particle. A rigid particle only has the repulsion from the wall. `wall`: wall of the tube, or null. `body` must outlive the
+/// loads.
+ParticleLoads make_loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall);
 
 /// Name in checkpoints of the net Body::rest. The name is that of the first versions. Body::initial is not stored.
 constexpr const char* stored_rest = "initial";

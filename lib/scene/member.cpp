@@ -136,15 +136,15 @@ void check_periods(const ParticleScene& particle_scene, const coupling::LoadList
                     " and Domain contradict each other: a load that depends on the position of the particle is not the same in all cells.");
 }
 
-/// Returns the data of one member for the coupled system. `wall`: wall of the tube, or null.
-coupling::Particle particle(const Member& member, const surface::TubeWall* wall) {
+/// Returns the data of one member for the coupled system.
+coupling::Particle particle(const Member& member) {
   const ParticleScene& particle_scene = member.scene;
   const Body& body = *member.body;
   coupling::Particle particle;
   particle.space = &body.space;
   particle.viscosity_ratio = particle_scene.particle.viscosity_ratio;
   particle.material = material(particle_scene, body);
-  particle.loads = make_loads(particle_scene, body, wall);
+  particle.loads = member.loads.all();
   check_periods(particle_scene, particle.loads);
   particle.radius = body.radius;
   if (particle_scene.particle.rigid()) particle.rigid = drive_of(particle_scene, body);
@@ -161,9 +161,9 @@ coupling::Particle particle(const Member& member, const surface::TubeWall* wall)
 
 /// Returns the data of all members for the coupled system. The load of a rigid body may be per unstressed or per current area (`measure`). The
 /// `measure` of the deforming particles is used, because it is cheapest if all layers use the same area.
-std::vector<coupling::Particle> particles(const std::vector<Member>& members, const surface::TubeWall* wall) {
+std::vector<coupling::Particle> particles(const std::vector<Member>& members) {
   std::vector<coupling::Particle> all;
-  for (const Member& member : members) all.push_back(particle(member, wall));
+  for (const Member& member : members) all.push_back(particle(member));
   const auto deforms = std::ranges::find_if(all, [](const coupling::Particle& one) { return !one.rigid; });
   for (coupling::Particle& one : all)
     if (one.rigid && deforms != all.end()) one.measure = deforms->measure;
@@ -172,12 +172,13 @@ std::vector<coupling::Particle> particles(const std::vector<Member>& members, co
 
 }  // namespace
 
-std::unique_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
+std::shared_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                                 std::unique_ptr<coupling::Tube> tube, const std::optional<coupling::SolidScene>& solids) {
   const ParticleScene& particle_scene = members.front().scene;
   coupling::CapsuleParameters parameters;
   parameters.viscosity = particle_scene.flow.viscosity;
-  parameters.particles = particles(members, all.wall.get());
+  for (Member& member : members) member.loads = make_loads(member.scene, *member.body, all.wall.get());
+  parameters.particles = particles(members);
   parameters.strong_load = particle_scene.load_is_strong();
   parameters.volume = particle_scene.volume;
   parameters.solvers = particle_scene.solvers;
@@ -186,10 +187,10 @@ std::unique_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, co
   parameters.cell = particle_scene.domain.cell();
   parameters.medium = particle_scene.medium();
   parameters.solids = solids;
-  auto system = std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
+  const auto system = std::make_shared<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
   if (members.size() == 1) {
-    members.front().geometry = {std::shared_ptr<void>(), &system->geometry()};
-    members.front().membrane = {std::shared_ptr<void>(), &system->membrane()};
+    members.front().geometry = {system, &system->geometry()};
+    members.front().membrane = {system, &system->membrane()};
   }
   return system;
 }
@@ -211,7 +212,7 @@ void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
     checkpoint.arrays[member.label(stored_rest)] = body.rest;
     checkpoint.numbers[member.label("initial volume")] = body.volume;
     checkpoint.numbers[member.label("refit error")] = body.refit_error;
-    if (member.scene.surfactant) checkpoint.numbers[member.label(stored_mass)] = body.surfactant_mass;
+    if (member.scene.surfactant) checkpoint.numbers[member.label(stored_mass)] = member.surfactant_mass;
     if (!member.scene.adaptation.enabled) continue;
     checkpoint.arrays[member.label("mesh edges")] = numbers_of(body.mesh.edges);
     checkpoint.arrays[member.label("mesh spacing")] = numbers_of(body.mesh.spacing);
@@ -231,7 +232,7 @@ bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members)
   bool another = false;
   for (Member& member : members) {
     member.body->volume = checkpoint.numbers.at(member.label("initial volume"));
-    if (member.scene.surfactant) member.body->surfactant_mass = checkpoint.numbers.at(member.label(stored_mass));
+    if (member.scene.surfactant) member.surfactant_mass = checkpoint.numbers.at(member.label(stored_mass));
     if (!checkpoint.arrays.contains(member.label("mesh edges"))) continue;
     another = true;
     lay_out(member.scene, stored_mesh(member.body->mesh, checkpoint, member.label("")), *member.body);

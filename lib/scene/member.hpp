@@ -23,9 +23,13 @@ struct Member {
   std::unique_ptr<Body> body;
   spline::Block block;
   /// Geometry and membrane. Members with equal spaces share the geometry; if also their materials and unstressed shapes are equal, they share the
-  /// membrane. A single member has those of the coupled system, and no others before the system is built.
+  /// membrane. A single member has those of the coupled system and shares the ownership of the whole system. It has none before the system is built.
   std::shared_ptr<const surface::Geometry> geometry;
   std::shared_ptr<const membrane::Membrane> membrane;
+  ParticleLoads loads;  ///< loads that the coupled system includes; set when the system is built
+  /// initial mass of the surfactant (integral of the concentration over the surface), computed on the first mesh; 0 without surfactant. It is set when
+  /// a run starts or resumes
+  double surfactant_mass = 0;
   /// parametric point of the material point whose phase angle is recorded. The parametric point does not change if the mesh adapts
   spline::ParametricPoint place;
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
@@ -58,8 +62,9 @@ void arrange(std::vector<Member>& members);
 std::unique_ptr<Body> make_stacked_body(const std::vector<Member>& members);
 
 /// Builds the coupled system of all members, with the given tube or solids (plates and posts) if there are any. Only the operators that the members
-/// need are built. `all`: body of all members (see make_stacked_body). The geometry and the membrane of a single member become those of the system.
-std::unique_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
+/// need are built. `all`: body of all members (see make_stacked_body). Sets the loads of the members. A single member shares the system from now on:
+/// its geometry and membrane are those of the system.
+std::shared_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                                 std::unique_ptr<coupling::Tube> tube, const std::optional<coupling::SolidScene>& solids);
 
 /// Returns the particles in the shape x with the fluid velocity v, as user-defined series receive them. Empty if the deck asks for no such series.

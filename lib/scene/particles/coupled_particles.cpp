@@ -39,8 +39,10 @@ class CoupledParticles : public ParticleSystem {
     check_apart(members_, scene.domain.cell());
     check_outside_of_posts(scene_, members_);
     set_up();
-    for (Member& member : members_) {
+    for (std::size_t p = 0; p < members_.size(); ++p) {
+      Member& member = members_[p];
       const Body& body = *member.body;
+      member.surfactant_mass = fields_->initial_mass(p);
       member.followed = site_ahead(body.nested(), body.rest, member.geometry->measures(body.rest).centroid, body.plane);
       member.place = spline::place(body.nested(), member.followed);
       follow(member);
@@ -241,8 +243,8 @@ class CoupledParticles : public ParticleSystem {
     else
       around = make_tube(scene_, body(), phases_);
     power_.reset(), fields_.reset();
-    if (!stacked_) members_.front().geometry.reset(), members_.front().membrane.reset();  // they belong to the system
-    capsule_.reset();
+    if (!stacked_) members_.front().geometry.reset(), members_.front().membrane.reset();
+    capsule_.reset();  // the last owner, so that the old system is deleted before the new one is built
     capsule_ = make_capsule(members_, body(), ranks_, phases_, std::move(around), solids_);
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
@@ -310,7 +312,7 @@ class CoupledParticles : public ParticleSystem {
   std::vector<Member> members_;
   std::optional<coupling::SolidScene> solids_;
   std::unique_ptr<Body> stacked_;  // body with the stacked nets of all particles; null if there is only one particle
-  std::unique_ptr<coupling::Capsule> capsule_;
+  std::shared_ptr<coupling::Capsule> capsule_;  // shared with the only member if there is one particle
   std::unique_ptr<SurfaceFields> fields_;
   std::optional<coupling::PowerBalance> power_;  // constructed at the first use
   coupling::OperationCounts counts_;  // work (solves, iterations) of the systems on earlier meshes

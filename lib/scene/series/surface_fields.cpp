@@ -19,12 +19,11 @@ Scene with_field_lengths_of(const Scene& first, Scene scene) {
 SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule) : members_(members), capsule_(capsule) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     const ParticleScene& particle_scene = members[p].scene;
-    Body& body = *members[p].body;
+    const Body& body = *members[p].body;
     if (particle_scene.surfactant) {
       auto surfactant = std::make_unique<membrane::Surfactant>(body.space, body.rest, *particle_scene.surfactant, body.modulus,
                                                                particle_scene.surfactant->diffusivity_of(particle_scene.flow.rate(), body.radius));
       membrane::Surfactant* const known = surfactant.get();
-      if (body.surfactant_mass == 0) body.surfactant_mass = known->mass(known->start(body.initial));
       all_.push_back({p, std::move(surfactant), known});
     }
     if (particle_scene.maxwell_membrane())
@@ -131,10 +130,9 @@ surface::FieldsAt SurfaceFields::values_at(std::size_t p) const {
 }
 
 void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
-  const auto& loads = capsule_.particles()[p].loads;
-  const auto& parts = members_[p].scene.loads;  // user-defined loads that the deck uses; they are the last entries of `loads`
-  for (std::size_t k = 0; k < parts.size(); ++k)
-    parts[k].add_columns(loads[loads.size() - parts.size() + k]->values(members_[p].own(shape(y))), to);
+  const Member& member = members_[p];
+  for (std::size_t k = 0; k < member.scene.loads.size(); ++k)
+    member.scene.loads[k].add_columns(member.loads.registered[k]->values(member.own(shape(y))), to);
   for (std::size_t k = 0; k < all_.size(); ++k) {
     const One& one = all_[k];
     if (one.particle != p) continue;
@@ -143,11 +141,16 @@ void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Colum
     if (one.part) one.part->add_columns(one.field->values(), to);
     if (!one.surfactant) continue;
     const auto [smallest, largest] = one.surfactant->extremes();
-    const Member& member = members_[p];
     now.tension.smallest = member.scene.surfactant->tension(largest) + global_tension(member.scene, *member.body, member.own(shape(y)));
-    const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->surfactant_mass;
+    const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / member.surfactant_mass;
     SurfactantRow{mass, smallest, largest}.add_columns(to);
   }
+}
+
+double SurfaceFields::initial_mass(std::size_t p) const {
+  for (const One& one : all_)
+    if (one.particle == p && one.surfactant) return one.surfactant->mass(one.surfactant->start(members_[p].body->initial));
+  return 0;
 }
 
 double SurfaceFields::power(const Net& v) const {

@@ -67,6 +67,8 @@ class SurfaceFields {
   /// Adds the contributions of the fields of particle p to the particle's row `now`, and the columns of its fields and registered loads to `to`. `y`
   /// must be the state that was set last by set_state().
   void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
+  /// Returns the mass of the surfactant of particle p at the start of a run; 0 without surfactant.
+  double initial_mass(std::size_t p) const;
   /// Returns the power of the loads of all fields if the surface material moves at the velocity v.
   double power(const Net& v) const;
   /// Adds the values that fields and loads write to snapshots at the shape x, and replaces the tensions of interfaces with surfactant by their values
