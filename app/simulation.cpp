@@ -255,7 +255,7 @@ class Run {
   void record() {
     const auto clock = phases_.time("diagnostics");
     particles_->dynamics().set_time(state_.time, began_);
-    row_ = particles_->row(state_, {.step = report_, .wall_seconds = earlier_wall_seconds_ + seconds_here()});
+    row_ = particles_->next_row(state_, {.step = report_, .wall_seconds = earlier_wall_seconds_ + seconds_here()});
     {
       const auto output = phases_.time("output");
       results_.record(row_);

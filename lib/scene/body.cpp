@@ -188,9 +188,10 @@ surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body
   const bool unused = particle_scene.domain.present && (channel || particle_scene.adaptation.enabled || !particle_scene.posts.empty());
   if (particle_scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
-  if (channel) return coupling::symmetry(particle_scene.symmetry, body.space, nets, *body.wall, make_loads(particle_scene, body, body.wall.get()).all());
+  const coupling::LoadList loads = make_loads(particle_scene, body, body.wall.get()).all();
+  if (channel) return coupling::symmetry(particle_scene.symmetry, body.space, nets, *body.wall, loads);
   const auto walls = particle_scene.wall.planes();
-  return coupling::symmetry(particle_scene.symmetry, body.space, nets, body.flow, make_loads(particle_scene, body, nullptr).all(),
+  return coupling::symmetry(particle_scene.symmetry, body.space, nets, body.flow, loads,
                             walls.empty() ? particle_scene.domain.medium.get() : &walls.front(), particle_scene.domain.cell());
 }
 

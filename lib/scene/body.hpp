@@ -56,8 +56,8 @@ struct Member;
 /// of motion::State. The Member of the particle owns its body; an isolated rigid body is owned by its run.
 ///
 /// make_body() or make_body_of_several() sets all members. Later, only these change:
-///   - If the mesh adapts, a new body replaces the old one. It is a copy with another `mesh`, `space` and `plain`, with the nets `rest`, `initial` and
-///     `unstressed` transferred to them, and with a larger `refit_error`. `symmetry` is set again.
+///   - If the mesh adapts, a new body replaces the old one. It is a copy with another `mesh`, `space` and `plain`, with the nets `rest`, `initial`
+///     and `unstressed` transferred to them, and with a larger `refit_error`. `symmetry` is set again.
 ///   - If a run resumes, `volume` and the members above are read from its checkpoint.
 struct Body {
   spline::TMesh mesh;  ///< empty if the shape comes from a file

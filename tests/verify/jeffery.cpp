@@ -39,7 +39,7 @@ struct Tumbling {
   Vec3 axis() const { return coupling::rotation_of(state.x) * scene.particles.front().particle.shape.rotation() * Vec3(1, 0, 0); }
 
   double inclination() {
-    return body->row(state, {}).value("inclination");
+    return body->next_row(state, {}).value("inclination");
   }
 };
 

@@ -57,20 +57,18 @@ class CoupledParticles : public ParticleSystem {
   const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
 
   bool resume(Resumed& resumed) override {
-    const bool another_mesh = restore(resumed.checkpoint, members_);
-    const auto require = [](bool fits) {
-      if (!fits) throw UserError("the newest checkpoint does not fit its scene, because another version of tanktread wrote it: run the deck again");
-    };
-    require(resumed.state.x.rows() >= n_points() && resumed.totals.phase_angle.size() == members_.size());
-    const Net x = resumed.state.x.topRows(n_points());
-    const bool another_symmetry = !stacked_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
-    if (another_mesh || another_symmetry) rebuild(x);
-    require(resumed.state.x.rows() == start().rows());
+    const bool another_mesh = restore_mesh(resumed.checkpoint, resumed.state.x);
+    require_fit(resumed.totals.phase_angle.size() == members_.size());
     motion::refreeze(dynamics(), resumed.state, resumed.state.time);
     capsule_->counts() = resumed.totals.counts;
     for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle[p];
     set_contacts(resumed.totals.contacts);
     return another_mesh;
+  }
+
+  void move_to(const output::Checkpoint& mesh, const Net& x) override {
+    restore_mesh(mesh, x);
+    capsule_->counts() = {};
   }
 
   void store(output::Checkpoint& checkpoint) const override { tanktread::store(members_, checkpoint); }
@@ -128,7 +126,7 @@ class CoupledParticles : public ParticleSystem {
     std::vector<Net> loads;
     for (const Member& member : members_) loads.push_back(member.own(load));
     for (std::size_t p = 0; p < members_.size(); ++p)
-      if (due(members_[p])) adapt(p, loads[p], own, totals);
+      if (due(members_[p])) adapt_mesh(p, loads[p], own, totals);
     if (replaced_.empty()) return false;
     const std::unique_ptr<SurfaceFields> fields = std::move(fields_);
     rebuild(own.x);
@@ -160,7 +158,7 @@ class CoupledParticles : public ParticleSystem {
 
   stokes::Evaluations kernel_evaluations() const override { return kernel_evaluations_ + capsule_->kernel_evaluations(); }
 
-  Columns row(const motion::State& whole_state, ProgressRow progress) override {
+  Columns next_row(const motion::State& whole_state, ProgressRow progress) override {
     const motion::State state = fields_->of_shape(whole_state);
     const auto here = fields_->evaluate(whole_state.x, state.history.front(), scene_.time.tolerance);
     // Solves the linear system for the velocity again in two cases: if the series of tractions on walls need a more accurate velocity than the step,
@@ -172,7 +170,8 @@ class CoupledParticles : public ParticleSystem {
     progress.time = state.time, progress.counts = capsule_->counts();
     ParticleRows rows(members_, *capsule_, *fields_, *here, state, whole_state.x, ranks_);
     const std::vector<RecordedParticle> recorded = recorded_particles(members_, state.x, v);
-    const Columns of_particles = rows.columns(progress.step.step, recorded);
+    rows.advance_phases(progress.step.step);
+    const Columns of_particles = rows.columns(recorded);
     Together whole = rows.together();
     Columns row;
     for (const coupling::Contact& contact : contacts_.all) whole.stresslet += stresslet_between(contact, state.x);
@@ -195,7 +194,7 @@ class CoupledParticles : public ParticleSystem {
     const Net load = here->load(), velocity = capsule_->slides() || !history.empty() ? here->fluid_velocity() : Net();
     return {x, [this, of_shape, &x, load, velocity](const output::Nodes& nodes) {
               std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, x, load, velocity);
-              fields_->add_to(nodes, x, fields);
+              fields_->add_to_snapshot(nodes, x, fields);
               if (capsule_->cell()) fields.push_back({"into cell", into_cell(members_, *capsule_->cell(), nodes, x)});
               return fields;
             }};
@@ -205,6 +204,22 @@ class CoupledParticles : public ParticleSystem {
   /// Returns the number of control points of all particles on their current meshes.
   Eigen::Index n_points() const {
     return std::accumulate(members_.begin(), members_.end(), 0, [](int n, const Member& member) { return n + member.body->space.n_points; });
+  }
+
+  static void require_fit(bool fits) {
+    if (!fits) throw UserError("the newest checkpoint does not fit its scene, because another version of tanktread wrote it: run the deck again");
+  }
+
+  /// Reads the meshes of the members from the checkpoint. If they or the symmetry of the shape differ from the current ones, rebuilds the system.
+  /// Returns true if a mesh was read. `y`: state x of shape and surface fields on these meshes.
+  bool restore_mesh(const output::Checkpoint& checkpoint, const Net& y) {
+    const bool another_mesh = restore(checkpoint, members_);
+    require_fit(y.rows() >= n_points());
+    const Net x = y.topRows(n_points());
+    const bool another_symmetry = !stacked_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
+    if (another_mesh || another_symmetry) rebuild(x);
+    require_fit(y.rows() == start().rows());
+    return another_mesh;
   }
 
   coupling::Powers powers(const motion::State& state) {
@@ -253,7 +268,7 @@ class CoupledParticles : public ParticleSystem {
   double accuracy() const { return scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate()); }
 
   /// Adapts the mesh of particle p if the indicator requires it.
-  void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
+  void adapt_mesh(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
     if (const coupling::Tube* tube = capsule_->tube())

@@ -56,7 +56,7 @@ class Free : public ParticleSystem {
 
   std::vector<PhaseAngle> phase_angle() const override { return {phase_angle_}; }
 
-  Columns row(const motion::State& state, ProgressRow progress) override {
+  Columns next_row(const motion::State& state, ProgressRow progress) override {
     const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
     RigidRow now = rigid_row(particle_scene_, body_, free_->flow(), geometry_, free_->surface(state.x), free_->motion(state.x), turn,
                              free_->stresslet(state.x), ranks_);
@@ -67,7 +67,7 @@ class Free : public ParticleSystem {
       tube_row(*tube_, free_->flow(), free_->force_density(state.x), pressure_drop).add_columns(particle_scene_, row);
     }
     if (const auto walls = particle_scene_.wall.planes(); !walls.empty()) wall_row(walls, body_, free_->surface(state.x)).add_columns(scene_, row);
-    turn_to(state.x, progress.step.step, now);
+    advance_phase(state.x, progress.step.step, now);
     now.add_columns(particle_scene_, row);
     progress.time = state.time, progress.counts = counts();
     progress.add_columns(scene_, row);
@@ -107,9 +107,9 @@ class Free : public ParticleSystem {
     return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, drive_of(particle_scene, body));
   }
 
-  /// Sets the tank-treading velocity, the frequency and the phase of a rigid body in the plane of the flow (Body::plane). The frequency (6.6) is the
-  /// angular velocity about the normal of this plane.
-  void turn_to(const Net& place, double step, RigidRow& now) {
+  /// Advances the phase of the rigid body by `step`. Sets in the row the phase, and the tank-treading velocity and frequency in the plane of the flow
+  /// (Body::plane). The frequency (6.6) is the angular velocity about the normal of this plane.
+  void advance_phase(const Net& place, double step, RigidRow& now) {
     const FlowPlane& plane = body_.plane;
     const Net x = free_->surface(place), v = coupling::rigid_velocity(x, {now.velocity, now.angular_velocity}, now.centre);
     const Vec3 centre = plane.components(now.measures.centroid), moves = plane.components(now.velocity);

@@ -41,9 +41,7 @@ struct SteadySystem {
 
   /// Changes to the mesh of another system, and then calls begin(). Collective.
   void move_to(const output::Checkpoint& mesh, const Net& x) {
-    Resumed resumed;
-    resumed.state.x = x, resumed.totals.phase_angle = particles->phase_angle(), resumed.checkpoint = mesh;
-    particles->resume(resumed);
+    particles->move_to(mesh, x);
     begin(x);
   }
 

@@ -60,7 +60,7 @@ void SurfaceFields::put_back(const motion::State& own, motion::State& state) con
 
 motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies) {
   if (!motion_) return own;
-  const auto transfer = [&](const Net& y, const Net& shape) { return y.size() > 0 ? transferred(before, y, shape, bodies) : Net(); };
+  const auto transfer = [&](const Net& y, const Net& shape) { return y.size() > 0 ? transferred_net(before, y, shape, bodies) : Net(); };
   motion::State state;
   state.time = old.time, state.step = old.step, state.slope_error = old.slope_error, state.memory = old.memory;
   state.x = transfer(old.x, own.x), state.frozen = transfer(old.frozen, own.frozen), state.frozen_time = old.frozen_time;
@@ -70,7 +70,7 @@ motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::St
 
 /// Transfers the control net y of a state to the current meshes. `shape`: shape on the current meshes. `before`: the fields on the previous meshes.
 /// The rows of y below the shape are the coefficients of the fields; they are transferred from the previous meshes.
-Net SurfaceFields::transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
+Net SurfaceFields::transferred_net(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
   before.motion_->set_fields(y);
   Net now = motion_->start(shape);
   for (std::size_t k = 0; k < all_.size(); ++k) {
@@ -129,7 +129,7 @@ surface::FieldsAt SurfaceFields::values_at(std::size_t p) const {
   };
 }
 
-void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
+void SurfaceFields::add_to_row(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
   const Member& member = members_[p];
   for (std::size_t k = 0; k < member.scene.loads.size(); ++k)
     member.scene.loads[k].add_columns(member.loads.registered[k]->values(member.own(shape(y))), to);
@@ -178,7 +178,7 @@ void SurfaceFields::add_registered(const output::Nodes& nodes, const Net& x, std
   }
 }
 
-void SurfaceFields::add_to(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
+void SurfaceFields::add_to_snapshot(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
   add_registered(nodes, x, fields);
   Net values = Net::Zero(capsule_.n_points(), 3);
   bool any = false;
