@@ -10,9 +10,7 @@
 #include "scene/exact_body.hpp"
 #include "scene/particles/adaptation.hpp"
 #include "scene/particles/prescribed.hpp"
-#include "scene/plane_wall.hpp"
-#include "scene/series/series.hpp"
-#include "scene/tube.hpp"
+#include "scene/series/run_row.hpp"
 #include "surface/geometry.hpp"
 #include "system/solids/shared_walls.hpp"
 
@@ -83,20 +81,20 @@ int resist(const Scene& scene, const RunRequest& request) {
   stop_where_told();
   const double seconds = run.seconds();
   const stokes::Evaluations kernel = run.ranks.of_all(tractions.kernel_evaluations() + particle_scene.walls->evaluations());
-  Columns row;
-  ProgressRow now{.wall_seconds = seconds};
-  now.counts.solver_iterations = solution.iterations;
-  now.add_columns(scene, row);
+  RunRow row{.progress = {.wall_seconds = seconds}};
+  row.progress.counts.solver_iterations = solution.iterations;
+  if (around) row.tube = tube_row(*around, body.flow, solution.density, solution.pressure_drop);
+  if (scene.wall.present) row.wall = wall_row(scene.wall.planes(), body, body.rest);
+  Columns columns;
+  row.add_columns(scene, columns);
   PrescribedRow{solution, surface::measures(body.space, body.rest), body.space.n_points, static_cast<double>(kernel.total())}
-      .add_columns(particle_scene, row);
-  if (around) tube_row(*around, body.flow, solution.density, solution.pressure_drop).add_columns(particle_scene, row);
-  if (const auto walls = particle_scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(scene, row);
-  finish(row);
+      .add_columns(particle_scene, columns);
+  finish(columns);
 
   Account account;
   account.counts = {{"unknowns", 3L * body.space.n_points}, {"solver_iterations", solution.iterations}};
   account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
-  return run.record(body, row, snapshot(particle_scene, body, solution), std::move(account), kernel);
+  return run.record(body, columns, snapshot(particle_scene, body, solution), std::move(account), kernel);
 }
 
 }  // namespace tanktread

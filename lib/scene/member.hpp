@@ -27,8 +27,8 @@ struct Member {
   std::shared_ptr<const surface::Geometry> geometry;
   std::shared_ptr<const membrane::Membrane> membrane;
   ParticleLoads loads;  ///< loads that the coupled system includes; set when the system is built
-  /// initial mass of the surfactant (integral of the concentration over the surface), computed on the first mesh; 0 without surfactant. Set when a run
-  /// starts or resumes
+  /// initial mass of the surfactant (integral of the concentration over the surface) on the first mesh; 0 without surfactant. Set when a run starts
+  /// or resumes
   double surfactant_mass = 0;
   /// parametric point of the material point whose phase angle is recorded. The parametric point does not change if the mesh adapts
   spline::ParametricPoint place;

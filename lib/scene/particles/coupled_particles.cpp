@@ -158,7 +158,7 @@ class CoupledParticles : public ParticleSystem {
 
   stokes::Evaluations kernel_evaluations() const override { return kernel_evaluations_ + capsule_->kernel_evaluations(); }
 
-  Columns next_row(const motion::State& whole_state, ProgressRow progress) override {
+  Columns next_row(const motion::State& whole_state, const ProgressRow& progress) override {
     const motion::State state = fields_->of_shape(whole_state);
     const auto here = fields_->evaluate(whole_state.x, state.history.front(), scene_.time.tolerance);
     // Solves the linear system for the velocity again in two cases: if the series of tractions on walls need a more accurate velocity than the step,
@@ -167,23 +167,23 @@ class CoupledParticles : public ParticleSystem {
     const bool mixed = std::ranges::any_of(members_, rigid) && !std::ranges::all_of(members_, rigid);
     if (mixed || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
     const Net v = here->fluid_velocity();
-    progress.time = state.time, progress.counts = capsule_->counts();
+    RunRow row{.progress = progress};
+    row.progress.time = state.time, row.progress.counts = capsule_->counts();
     ParticleRows rows(members_, *capsule_, *fields_, *here, state, whole_state.x, ranks_);
     const std::vector<RecordedParticle> recorded = recorded_particles(members_, state.x, v);
-    rows.advance_phases(progress.step.step);
+    rows.advance_phases(row.progress.step.step);
     const Columns of_particles = rows.columns(recorded);
-    Together whole = rows.together();
-    Columns row;
-    for (const coupling::Contact& contact : contacts_.all) whole.stresslet += stresslet_between(contact, state.x);
-    progress.add_columns(scene_, row);
-    whole.add_columns(scene_, row);
-    add_surroundings(scene_, members_, body(), *capsule_, *here, whole.stresslet, ranks_, row);
-    if (scene_.output.power_balance) powers(state).add_columns(row);
-    if (scene_.has_gaps() && scene_.contact.limiter) contacts_.add_columns(row);
-    add_series(scene_, state.time, recorded, row);
-    finish(row);
-    row.append(of_particles);
-    return row;
+    row.together = rows.together();
+    for (const coupling::Contact& contact : contacts_.all) row.together.stresslet += stresslet_between(contact, state.x);
+    set_surroundings(scene_, members_, body(), *capsule_, *here, ranks_, row);
+    if (scene_.output.power_balance) row.powers = powers(state);
+    row.contacts = contacts_;
+    Columns columns;
+    row.add_columns(scene_, columns);
+    add_series(scene_, state.time, recorded, columns);
+    finish(columns);
+    columns.append(of_particles);
+    return columns;
   }
 
   SurfaceSnapshot snapshot(const motion::State& whole_state) override {

@@ -4,8 +4,7 @@
 #include "scene/particles/adaptation.hpp"
 #include "scene/particles/particle_system.hpp"
 #include "scene/particles/prescribed.hpp"
-#include "scene/plane_wall.hpp"
-#include "scene/tube.hpp"
+#include "scene/series/run_row.hpp"
 #include "surface/geometry.hpp"
 #include "system/solids/bodies/bounded_free_body.hpp"
 
@@ -56,23 +55,25 @@ class Free : public ParticleSystem {
 
   std::vector<PhaseAngle> phase_angle() const override { return {phase_angle_}; }
 
-  Columns next_row(const motion::State& state, ProgressRow progress) override {
+  Columns next_row(const motion::State& state, const ProgressRow& progress) override {
     const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
+    RunRow row;
     RigidRow now = rigid_row(particle_scene_, body_, free_->flow(), geometry_, free_->surface(state.x), free_->motion(state.x), turn,
                              free_->stresslet(state.x), ranks_);
     now.centre = coupling::centre_of(state.x);
-    Columns row;
     if (tube_) {
       const double pressure_drop = free_->pressure_drop(state.x);
-      tube_row(*tube_, free_->flow(), free_->force_density(state.x), pressure_drop).add_columns(particle_scene_, row);
+      row.tube = tube_row(*tube_, free_->flow(), free_->force_density(state.x), pressure_drop);
     }
-    if (const auto walls = particle_scene_.wall.planes(); !walls.empty()) wall_row(walls, body_, free_->surface(state.x)).add_columns(scene_, row);
+    if (scene_.wall.present) row.wall = wall_row(scene_.wall.planes(), body_, free_->surface(state.x));
     advance_phase(state.x, progress.step.step, now);
-    now.add_columns(particle_scene_, row);
-    progress.time = state.time, progress.counts = counts();
-    progress.add_columns(scene_, row);
-    finish(row);
-    return row;
+    row.progress = progress;
+    row.progress.time = state.time, row.progress.counts = counts();
+    Columns columns;
+    row.add_columns(scene_, columns);
+    now.add_columns(particle_scene_, columns);
+    finish(columns);
+    return columns;
   }
 
   SurfaceSnapshot snapshot(const motion::State& state) override {

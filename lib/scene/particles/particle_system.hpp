@@ -67,7 +67,7 @@ class ParticleSystem {
   virtual stokes::Evaluations kernel_evaluations() const = 0;  ///< on this rank, without those of walls, which SharedOptions::walls counts
   /// Advances the phase angles by the step that led to the state (`progress.step`). Returns a row of results: the data of the particles and of
   /// `progress`, with the time and the work of the run. To be called once per row, in the order of times.
-  virtual Columns next_row(const motion::State& state, ProgressRow progress) = 0;
+  virtual Columns next_row(const motion::State& state, const ProgressRow& progress) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfaceSnapshot snapshot(const motion::State& state) = 0;
 };

@@ -3,15 +3,10 @@
 #include <sstream>
 #include <unordered_map>
 
-#include "scene/particles/gaps.hpp"
 #include "scene/particles/prescribed.hpp"
-#include "scene/plane_wall.hpp"
 #include "scene/series/diagnostics.hpp"
+#include "scene/series/run_row.hpp"
 #include "scene/series/surface_fields.hpp"
-#include "scene/solids.hpp"
-#include "scene/tube.hpp"
-#include "system/contact.hpp"
-#include "system/power_balance.hpp"
 
 namespace tanktread {
 
@@ -93,30 +88,29 @@ void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
           "number of iterations of the linear solver for velocities (viscosity ratio other than 1) since the start of the run"});
 }
 
+void RunRow::add_columns(const Scene& scene, Columns& to) const {
+  progress.add_columns(scene, to);
+  tube.add_columns(scene, to);
+  solids.add_columns(scene, to);
+  if (scene.has_gaps()) domain.add_columns(scene, to);
+  if (scene.only_solids) return;
+  wall.add_columns(scene, to);
+  if (!scene.in_system()) return;
+  together.add_columns(scene, to);
+  if (to.when(scene.output.power_balance)) powers.add_columns(to);
+  if (!scene.has_gaps()) return;
+  nearest.add_columns(to);
+  if (to.when(scene.contact.limiter)) contacts.add_columns(to);
+}
+
 Columns run_columns(const Scene& scene, bool every) {
   Columns all(every);
-  ProgressRow().add_columns(scene, all);
-  TubeRow().add_columns(scene, all);
-  if (scene.only_solids) {
-    SolidsRow().add_columns(scene, all), DomainRow().add_columns(scene, all);
-    put_in_order(all);
-    return all;
-  }
-  WallRow().add_columns(scene, all);
-  SolidsRow().add_columns(scene, all);
-  if (!scene.in_system()) {
+  RunRow().add_columns(scene, all);
+  if (!scene.only_solids && !scene.in_system()) {
     const ParticleScene one = scene.first();
     one.particle.motion == Motion::free ? RigidRow().add_columns(one, all) : PrescribedRow().add_columns(one, all);
-  } else {
-    Together().add_columns(scene, all);
-    if (all.when(scene.output.power_balance)) coupling::Powers().add_columns(all);
   }
-  if (scene.has_gaps()) {
-    Nearest().add_columns(all);
-    DomainRow().add_columns(scene, all);
-    if (all.when(scene.contact.limiter)) coupling::Contacts().add_columns(all);
-  }
-  add_series_of<RunSeries>(scene, all);
+  if (!scene.only_solids) add_series_of<RunSeries>(scene, all);
   put_in_order(all);
   return all;
 }
