@@ -57,8 +57,11 @@ struct Member;
 ///
 /// make_body() or make_body_of_several() sets all members. Later, only these change:
 ///   - If the mesh adapts, a new body replaces the old one. It is a copy with another `mesh`, `space` and `plain`, with the nets `rest`, `initial`
-///     and `unstressed` transferred to them, and with a larger `refit_error`. `symmetry` is set again.
-///   - If a run resumes, `volume` and the members above are read from its checkpoint.
+///     and `unstressed` transferred to them (for a rigid particle, fitted again), and with a larger `refit_error`.
+///   - If the coupled system is built again, `symmetry` is set again.
+///   - If a run resumes, `volume` is read from its checkpoint. If the mesh adapts, mesh, nets and `refit_error` are read, too.
+///
+/// A body that represents all particles (make_stacked_body) is built together with the coupled system.
 struct Body {
   spline::TMesh mesh;  ///< empty if the shape comes from a file
   spline::Space space;
