@@ -10,9 +10,7 @@
 #include "scene/exact_body.hpp"
 #include "scene/particles/adaptation.hpp"
 #include "scene/particles/prescribed.hpp"
-#include "scene/plane_wall.hpp"
-#include "scene/series/series.hpp"
-#include "scene/tube.hpp"
+#include "scene/series/run_row.hpp"
 #include "surface/geometry.hpp"
 #include "system/solids/shared_walls.hpp"
 
@@ -20,8 +18,8 @@ namespace tanktread {
 
 namespace {
 
-SurfaceSnapshot snapshot(const ParticleScene& scene, const Body& body, const RigidSolution& s) {
-  const auto exact = exact_body(scene);
+SurfaceSnapshot snapshot(const ParticleScene& particle_scene, const Body& body, const RigidSolution& s) {
+  const auto exact = exact_body(particle_scene);
   return {body.rest, [&body, &s, exact](const auto& nodes) {
             const Net f = nodes.values(s.density), n = nodes.normals(body.rest), x = nodes.values(body.rest);
             const Eigen::VectorXd pressure = f.cwiseProduct(n).rowwise().sum().array() + s.surface.constant;
@@ -66,37 +64,37 @@ int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot&
   return results.close(account, phases);
 }
 
-int resist(const Scene& whole, const RunRequest& request) {
-  StationaryRun run(whole, request, "Particle/motion `prescribed`");
-  const ParticleScene scene = whole.first();
-  Body body = tanktread::body(scene);
-  refine_isolated_body(scene, body, [&](const Body& on) {
-    const std::unique_ptr<coupling::Tube> wall = tube(scene, on, run.phases);
-    coupling::RigidTractions there = tractions_of(scene, on, run.ranks, wall.get());
-    return rigid_solution(scene, on, there, run.phases).density;
+int resist(const Scene& scene, const RunRequest& request) {
+  StationaryRun run(scene, request, "Particle/motion `prescribed`");
+  const ParticleScene particle_scene = scene.first();
+  Body body = make_body(particle_scene);
+  refine_isolated_body(particle_scene, body, [&](const Body& on) {
+    const std::unique_ptr<coupling::Tube> wall = make_tube(particle_scene, on, run.phases);
+    coupling::RigidTractions there = make_tractions(particle_scene, on, run.ranks, wall.get());
+    return rigid_solution(particle_scene, on, there, run.phases).density;
   });
-  run.show(plan(whole, body, run.ranks.size()));
-  const std::unique_ptr<coupling::Tube> around = tube(scene, body, run.phases);
-  coupling::RigidTractions tractions = tractions_of(scene, body, run.ranks, around.get());
+  run.show(plan(scene, body, run.ranks.size()));
+  const std::unique_ptr<coupling::Tube> around = make_tube(particle_scene, body, run.phases);
+  coupling::RigidTractions tractions = make_tractions(particle_scene, body, run.ranks, around.get());
   run.end_set_up();
-  const RigidSolution solution = rigid_solution(scene, body, tractions, run.phases);
+  const RigidSolution solution = rigid_solution(particle_scene, body, tractions, run.phases);
   stop_where_told();
   const double seconds = run.seconds();
-  const stokes::Evaluations kernel = run.ranks.of_all(tractions.kernel_evaluations() + scene.walls->evaluations());
-  Columns row;
-  ProgressRow now{.wall_seconds = seconds};
-  now.counts.solver_iterations = solution.iterations;
-  now.add_columns(whole, row);
+  const stokes::Evaluations kernel = run.ranks.of_all(tractions.kernel_evaluations() + particle_scene.walls->evaluations());
+  RunRow row{.progress = {.wall_seconds = seconds}};
+  row.progress.counts.solver_iterations = solution.iterations;
+  if (around) row.tube = tube_row(*around, body.flow, solution.density, solution.pressure_drop);
+  if (scene.wall.present) row.wall = wall_row(scene.wall.planes(), body, body.rest);
+  Columns columns;
+  row.add_columns(scene, columns);
   PrescribedRow{solution, surface::measures(body.space, body.rest), body.space.n_points, static_cast<double>(kernel.total())}
-      .add_columns(scene, row);
-  if (around) tube_row(*around, body.flow, solution.density, solution.pressure_drop).add_columns(scene, row);
-  if (const auto walls = scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(whole, row);
-  finish(row);
+      .add_columns(particle_scene, columns);
+  finish(columns);
 
   Account account;
   account.counts = {{"unknowns", 3L * body.space.n_points}, {"solver_iterations", solution.iterations}};
   account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
-  return run.record(body, row, snapshot(scene, body, solution), std::move(account), kernel);
+  return run.record(body, columns, snapshot(particle_scene, body, solution), std::move(account), kernel);
 }
 
 }  // namespace tanktread

@@ -45,7 +45,7 @@ motion::TimeOptions time_options(const Scene& scene) {
 class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), particles_(particle_system(scene, ranks_, phases_)),
+      : scene_(scene), request_(request), particles_(make_particle_system(scene, ranks_, phases_)),
         results_(scene, request, particles_->body(), particles_->bezier(), ranks_),
         scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {
     ranks_.measure(phases_);
@@ -255,7 +255,7 @@ class Run {
   void record() {
     const auto clock = phases_.time("diagnostics");
     particles_->dynamics().set_time(state_.time, began_);
-    row_ = particles_->row(state_, {.step = report_, .wall_seconds = earlier_wall_seconds_ + seconds_here()});
+    row_ = particles_->next_row(state_, {.step = report_, .wall_seconds = earlier_wall_seconds_ + seconds_here()});
     {
       const auto output = phases_.time("output");
       results_.record(row_);

@@ -2,8 +2,7 @@
 
 #include "app/runs.hpp"
 #include "record/plan.hpp"
-#include "scene/series/series.hpp"
-#include "scene/solids.hpp"
+#include "scene/series/run_row.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread {
@@ -11,18 +10,18 @@ namespace tanktread {
 int flow_past_solids(const Scene& scene, const RunRequest& request) {
   StationaryRun run(scene, request, "Particle/shape `cylinder`");
   run.show(plan(scene, run.ranks.size()));
-  const coupling::SolidScene around = *solids(scene, run.phases);
+  const coupling::SolidScene around = *make_solids(scene, run.phases);
   coupling::Solids& all = *around.solids;
   run.end_set_up();
   const stokes::AmbientFlow ambient(scene.flow);
   const coupling::Solids::Flow flow = coupling::without_particles(around, ambient);
   const Vec3 velocity_integral = coupling::solids_flow_integral(around, flow);
-  Columns row;
-  ProgressRow{.wall_seconds = run.seconds()}.add_columns(scene, row);
-  solids_row(scene, around, ambient, flow, Vec3::Zero(), velocity_integral).add_columns(scene, row);
-  DomainRow now{.cell = all.cell().vectors(), .pressure_gradient = around.driving_gradient};
-  now.add_columns(scene, row);
-  finish(row);
+  RunRow row{.progress = {.wall_seconds = run.seconds()}};
+  row.solids = solids_row(scene, around, ambient, flow, Vec3::Zero(), velocity_integral);
+  row.domain = {.cell = all.cell().vectors(), .pressure_gradient = around.driving_gradient};
+  Columns columns;
+  row.add_columns(scene, columns);
+  finish(columns);
 
   Body body;
   body.space = all.surface().space, body.rest = body.initial = body.unstressed = all.surface().net;
@@ -30,7 +29,7 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   const SurfaceSnapshot snapshot{body.rest, [&](const auto& nodes) { return std::vector<output::Field>{{"traction", -nodes.values(force)}}; }};
   Account account;
   account.counts = {{"unknowns", 3L * all.surface().n_points()}};
-  return run.record(body, row, snapshot, std::move(account), run.ranks.of_all(all.evaluations()));
+  return run.record(body, columns, snapshot, std::move(account), run.ranks.of_all(all.evaluations()));
 }
 
 }  // namespace tanktread

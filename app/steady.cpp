@@ -122,7 +122,7 @@ class SteadyRun {
     const auto clock = phases_.time("diagnostics");
     pool_.count(totals_);
     totals_.phase_angle = system_->particles->phase_angle();
-    Columns row = system_->particles->row(state_, {.step = report_, .wall_seconds = seconds(), .evaluations = totals_.counts.evaluations});
+    Columns row = system_->particles->next_row(state_, {.step = report_, .wall_seconds = seconds(), .evaluations = totals_.counts.evaluations});
     found_.add_columns(scene_, row);
     row.check();
     results_.record(row);

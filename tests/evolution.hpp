@@ -21,9 +21,9 @@ class Evolution {
     deck::Document deck = deck::read({}, all);
     deck.declare(scene);
     scene.check();
-    members_ = members(scene);
+    members_ = make_members(scene);
     arrange(members_);
-    capsule = tanktread::capsule(members_, body(), phases_, nullptr, std::nullopt);
+    capsule = make_capsule(members_, body(), phases_, nullptr, std::nullopt);
     scheme_ = motion::integrator(scene.time);
     state.x = body().initial;
     motion::begin(*capsule, state);
@@ -49,7 +49,7 @@ class Evolution {
   double energy() const { return capsule->membrane().energy(state.x); }
 
   Scene scene;
-  std::unique_ptr<coupling::Capsule> capsule;
+  std::shared_ptr<coupling::Capsule> capsule;
   motion::State state;
   int steps = 0;
 

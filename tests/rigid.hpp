@@ -16,12 +16,12 @@ inline RigidSolution rigid_solution(const std::string& deck_name, const std::vec
   deck::Document deck = deck::read({std::string(SOURCE_DIRECTORY) + "/inputs/" + deck_name}, settings);
   deck.declare(whole);
   whole.check();
-  const ParticleScene scene = whole.first();
+  const ParticleScene particle_scene = whole.first();
   coupling::Ranks ranks;
   Phases phases;
-  const Body body = tanktread::body(scene);
-  coupling::RigidTractions tractions = tractions_of(scene, body, ranks, nullptr);
-  return rigid_solution(scene, body, tractions, phases);
+  const Body body = make_body(particle_scene);
+  coupling::RigidTractions tractions = make_tractions(particle_scene, body, ranks, nullptr);
+  return rigid_solution(particle_scene, body, tractions, phases);
 }
 
 }  // namespace tanktread

@@ -27,7 +27,7 @@ Cost measured(const Scene& scene) {
   coupling::Ranks ranks;
   Phases phases;
   const auto start = std::chrono::steady_clock::now();
-  const auto particles = particle_system(scene, ranks, phases);
+  const auto particles = make_particle_system(scene, ranks, phases);
   coupling::Dynamics& dynamics = particles->dynamics();
   const Net x = particles->start();
   dynamics.set_time(0, 0);

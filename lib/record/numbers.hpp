@@ -12,7 +12,7 @@ namespace tanktread {
 /// Derived or dimensionless number of a scene; NaN if it is not defined for the scene.
 struct Number {
   const char *name, *unit, *description;
-  double (*value)(const ParticleScene& scene, const Body& body);
+  double (*value)(const ParticleScene& particle_scene, const Body& body);
 };
 std::span<const Number> all_numbers();
 

@@ -143,18 +143,18 @@ std::string solvers_line(const Scene& scene) {
 }
 
 /// Returns the line of the plan about a rigid particle: that its motion is prescribed, or how its free motion is computed.
-std::string rigid_line(const ParticleScene& scene, const Body& body) {
-  if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
-  if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
+std::string rigid_line(const ParticleScene& particle_scene, const Body& body) {
+  if (particle_scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
+  if (body.wall || particle_scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
   return std::string("rigid and free, no membrane: six rigid motions") +
          (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") +
          ", solved once, determine its motion";
 }
 
-std::string forces_line(const ParticleScene& scene) {
-  const ParticleOptions& particle = scene.particle;
+std::string forces_line(const ParticleScene& particle_scene) {
+  const ParticleOptions& particle = particle_scene.particle;
   if (particle.motion == Motion::free) return particle.force || particle.torque || particle.density_difference ? "as given" : "none";
-  return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
+  return particle_scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
 }
 
 Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
@@ -218,11 +218,11 @@ output::Entries<std::string> plan(const Scene& scene, int ranks) {
     lines.emplace_back("time", "steady: nothing moves");
     return lines;
   }
-  std::vector<Member> all = members(scene);
+  std::vector<Member> all = make_members(scene);
   check_apart(all, scene.domain.cell());
   arrange(all);
-  const std::unique_ptr<Body> stacked = stacked_body(all);
-  if (stacked && scene.tube.present) stacked->wall = wall(scene, *stacked);
+  const std::unique_ptr<Body> stacked = make_stacked_body(all);
+  if (stacked && scene.tube.present) stacked->wall = make_wall(scene, *stacked);
   return plan(scene, stacked ? *stacked : *all.front().body, ranks);
 }
 

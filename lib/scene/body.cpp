@@ -105,115 +105,129 @@ membrane::Repulsion repulsion(const surface::TubeOptions& tube, const surface::T
 
 }  // namespace
 
-void lay_out(const ParticleScene& scene, spline::TMesh mesh, Body& body) {
+void lay_out(const ParticleScene& particle_scene, spline::TMesh mesh, Body& body) {
   body.mesh = std::move(mesh);
-  if (scene.surface.polar()) {
-    const spline::PolarMesh polar = scene.surface.polar_mesh();
+  if (particle_scene.surface.polar()) {
+    const spline::PolarMesh polar = particle_scene.surface.polar_mesh();
     body.space = spline::space(body.mesh, polar.poles, polar.subdivisions);
-    if (scene.adaptation.enabled && polar.poles == spline::PoleRule::bezier_transform)
+    if (particle_scene.adaptation.enabled && polar.poles == spline::PoleRule::bezier_transform)
       body.plain = std::make_shared<const spline::Space>(spline::space(body.mesh, spline::PoleRule::plain));
   } else {
-    const bool g1 = scene.surface.extraordinary_points == "g1";
+    const bool g1 = particle_scene.surface.extraordinary_points == "g1";
     body.space = spline::space(body.mesh, g1 ? spline::ExtraordinaryRule::g1 : spline::ExtraordinaryRule::catmull_clark);
   }
 }
 
 bool alike(const ParticleScene& one, const ParticleScene& other) {
   const surface::ParticleShape &here = one.particle.shape, &there = other.particle.shape;
-  const auto levels = [](const ParticleScene& scene) { return scene.adaptation.enabled ? scene.adaptation.levels : 0; };
+  const auto levels = [](const ParticleScene& particle_scene) { return particle_scene.adaptation.enabled ? particle_scene.adaptation.levels : 0; };
   return here.shape == there.shape && here.shape != "file" && !here.initial && !there.initial && one.surface == other.surface &&
          levels(one) == levels(other);
 }
 
-Body body(const ParticleScene& scene, const Member* similar, std::shared_ptr<const stokes::DuctFlow> empty_duct, bool only) {
+Body make_body(const ParticleScene& particle_scene) {
+  Body body = make_body_of_several(particle_scene, nullptr, nullptr);
+  body.wall = make_wall(particle_scene, body);
+  body.symmetry = symmetry(particle_scene, body, body.initial);
+  return body;
+}
+
+Body make_body_of_several(const ParticleScene& particle_scene, const Member* similar, std::shared_ptr<const stokes::DuctFlow> empty_duct) {
   Body b;
-  const int levels = scene.adaptation.enabled ? scene.adaptation.levels : 0;
+  const int levels = particle_scene.adaptation.enabled ? particle_scene.adaptation.levels : 0;
   if (similar) {
     const Body& other = *similar->body;
     b.mesh = other.mesh, b.space = other.space, b.plain = other.plain;
-    b.rest = surface::placed_again(other.rest, similar->scene.particle.shape, scene.particle.shape);
-  } else if (const auto& imported = scene.particle.shape.imported) {
+    b.rest = surface::placed_again(other.rest, similar->scene.particle.shape, particle_scene.particle.shape);
+  } else if (const auto& imported = particle_scene.particle.shape.imported) {
     b.space = imported->space;
-    b.rest = surface::imported_shape(scene.particle.shape);
-  } else if (scene.surface.polar()) {
-    const spline::PolarMesh mesh = scene.surface.polar_mesh();
-    lay_out(scene, spline::polar(mesh.azimuthal, mesh.meridional, levels), b);
-    b.rest = surface::resting_shape(b.space, mesh, scene.surface.axis(), scene.particle.shape);
+    b.rest = surface::imported_shape(particle_scene.particle.shape);
+  } else if (particle_scene.surface.polar()) {
+    const spline::PolarMesh mesh = particle_scene.surface.polar_mesh();
+    lay_out(particle_scene, spline::polar(mesh.azimuthal, mesh.meridional, levels), b);
+    b.rest = surface::resting_shape(b.space, mesh, particle_scene.surface.axis(), particle_scene.particle.shape);
   } else {
-    lay_out(scene, spline::cube(scene.surface.elements_per_side.value(), levels), b);
-    b.rest = surface::resting_shape(b.space, b.mesh, scene.particle.shape);
+    lay_out(particle_scene, spline::cube(particle_scene.surface.elements_per_side.value(), levels), b);
+    b.rest = surface::resting_shape(b.space, b.mesh, particle_scene.particle.shape);
   }
-  const auto before = run_before(scene);
+  const auto before = run_before(particle_scene);
   std::optional<Body> first;  // body on the mesh of the deck; set if the particle starts from an earlier run that may have adapted the mesh
-  if (before && scene.adaptation.enabled) {
+  if (before && particle_scene.adaptation.enabled) {
     first = b;
-    lay_out(scene, stored_mesh(b.mesh, *before), b);
+    lay_out(particle_scene, stored_mesh(b.mesh, *before), b);
     b.rest = before->arrays.at(stored_rest);
   }
-  b.initial = initial_shape(scene, b, before ? &*before : nullptr);
-  const Vec3& center = scene.particle.shape.center;
+  b.initial = initial_shape(particle_scene, b, before ? &*before : nullptr);
+  const Vec3& center = particle_scene.particle.shape.center;
   b.unstressed = b.rest;
-  if (!scene.particle.rigid())
-    b.unstressed = membrane::unstressed(stress_free_shape(scene, b, first ? *first : b), center, scene.membrane.pre_inflation);
-  b.duct = empty_duct ? std::move(empty_duct) : duct(scene);
-  b.flow = stokes::AmbientFlow(scene.flow, scene.flow.type == "duct" ? b.duct : nullptr);
-  b.plane = flow_plane(scene.flow);
-  b.radius = scene.radius();
-  b.modulus = scene.modulus();
-  b.law = law(scene.membrane, b.modulus);
-  check_fit(scene, b);
-  if (scene.wall.present) check_in_front(scene, b);
-  check_in_medium(scene, b);
-  if (only) b.wall = wall(scene, b);
-  b.symmetry = symmetry(scene, b, b.initial);
-  const bool own = scene.particle.shape.initial && scene.particle.shape.initial->volume == "own";
+  if (!particle_scene.particle.rigid())
+    b.unstressed = membrane::unstressed(stress_free_shape(particle_scene, b, first ? *first : b), center, particle_scene.membrane.pre_inflation);
+  b.duct = empty_duct ? std::move(empty_duct) : make_duct(particle_scene);
+  b.flow = stokes::AmbientFlow(particle_scene.flow, particle_scene.flow.type == "duct" ? b.duct : nullptr);
+  b.plane = flow_plane(particle_scene.flow);
+  b.radius = particle_scene.radius();
+  b.modulus = particle_scene.modulus();
+  b.law = law(particle_scene.membrane, b.modulus);
+  check_fit(particle_scene, b);
+  if (particle_scene.wall.present) check_in_front(particle_scene, b);
+  check_in_medium(particle_scene, b);
+  b.symmetry = surface::Symmetry(b.space.n_points);
+  const bool own = particle_scene.particle.shape.initial && particle_scene.particle.shape.initial->volume == "own";
   b.volume = surface::measures(b.space, own ? b.initial : b.rest).volume;
   return b;
 }
 
-void check_in_medium(const ParticleScene& scene, const Body& body) {
-  if (stokes::contains(scene.domain.medium.get(), coupling::collocation_matrix(body.space) * body.initial)) return;
-  throw UserError((scene.name.empty() ? "The particle" : scene.path()) + " is not inside the fluid of Domain/kind `" +
-                  scene.domain.kind + "` at the start.");
+void check_in_medium(const ParticleScene& particle_scene, const Body& body) {
+  if (stokes::contains(particle_scene.domain.medium.get(), coupling::collocation_matrix(body.space) * body.initial)) return;
+  throw UserError((particle_scene.name.empty() ? "The particle" : particle_scene.path()) + " is not inside the fluid of Domain/kind `" +
+                  particle_scene.domain.kind + "` at the start.");
 }
 
-surface::Symmetry symmetry(const ParticleScene& scene, const Body& body, const Net& x) {
+surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body, const Net& x) {
   const bool channel = body.wall && body.wall->channel;
-  const bool unused = scene.domain.present && (channel || scene.adaptation.enabled || !scene.posts.empty());
-  if (scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
+  const bool unused = particle_scene.domain.present && (channel || particle_scene.adaptation.enabled || !particle_scene.posts.empty());
+  if (particle_scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
-  if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, loads(scene, body, body.wall.get()));
-  const auto walls = scene.wall.planes();
-  return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, loads(scene, body, nullptr),
-                            walls.empty() ? scene.domain.medium.get() : &walls.front(), scene.domain.cell());
+  const coupling::LoadList loads = make_loads(particle_scene, body, body.wall.get()).all();
+  if (channel) return coupling::symmetry(particle_scene.symmetry, body.space, nets, *body.wall, loads);
+  const auto walls = particle_scene.wall.planes();
+  return coupling::symmetry(particle_scene.symmetry, body.space, nets, body.flow, loads,
+                            walls.empty() ? particle_scene.domain.medium.get() : &walls.front(), particle_scene.domain.cell());
 }
 
-coupling::LoadList loads(const ParticleScene& scene, const Body& body, const surface::TubeWall* wall) {
-  coupling::LoadList all;
-  if (wall && scene.tube.repulsion)
-    all.push_back(std::make_shared<membrane::WallRepulsion>(body.space, body.unstressed, repulsion(scene.tube, *wall)));
-  if (scene.particle.rigid()) return all;
-  const membrane::Options& given = scene.membrane;
-  const membrane::WholeStiffness whole{given.global_area_dilatation * body.modulus, given.leaf_modulus * given.bending(body.modulus, body.radius),
-                                       given.leaf_difference};
-  if (whole.any()) all.push_back(std::make_shared<membrane::WholeMembrane>(body.space, body.unstressed, body.radius, whole));
-  if (const Vec3 force = scene.body_force(); !force.isZero(0)) all.push_back(std::make_shared<membrane::Weight>(body.space, force));
-  if (!given.forces.all.empty())
-    all.push_back(std::make_shared<membrane::PatchLoad>(given.forces, body.space, given.stress_free == "resting" ? body.unstressed : body.rest));
-  // Loads that a program registers are the last entries, because SurfaceFields::add_to finds their values there.
-  for (const auto& part : scene.loads) all.push_back(part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}));
+coupling::LoadList ParticleLoads::all() const {
+  coupling::LoadList all = built_in;
+  all.insert(all.end(), registered.begin(), registered.end());
   return all;
 }
 
-stokes::Measure load_measure(const ParticleScene& scene) {
+ParticleLoads make_loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall) {
+  ParticleLoads loads;
+  coupling::LoadList& all = loads.built_in;
+  if (wall && particle_scene.tube.repulsion)
+    all.push_back(std::make_shared<membrane::WallRepulsion>(body.space, body.unstressed, repulsion(particle_scene.tube, *wall)));
+  if (particle_scene.particle.rigid()) return loads;
+  const membrane::Options& given = particle_scene.membrane;
+  const membrane::WholeStiffness whole{given.global_area_dilatation * body.modulus, given.leaf_modulus * given.bending(body.modulus, body.radius),
+                                       given.leaf_difference};
+  if (whole.any()) all.push_back(std::make_shared<membrane::WholeMembrane>(body.space, body.unstressed, body.radius, whole));
+  if (const Vec3 force = particle_scene.body_force(); !force.isZero(0)) all.push_back(std::make_shared<membrane::Weight>(body.space, force));
+  if (!given.forces.all.empty())
+    all.push_back(std::make_shared<membrane::PatchLoad>(given.forces, body.space, given.stress_free == "resting" ? body.unstressed : body.rest));
+  for (const auto& part : particle_scene.loads)
+    loads.registered.push_back(part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}));
+  return loads;
+}
+
+stokes::Measure load_measure(const ParticleScene& particle_scene) {
   const bool reference =
-      scene.membrane.load == "weak" && scene.membrane.load_measure == "reference" && !scene.membrane.fluid_interface();
+      particle_scene.membrane.load == "weak" && particle_scene.membrane.load_measure == "reference" && !particle_scene.membrane.fluid_interface();
   return reference ? stokes::Measure::reference : stokes::Measure::current;
 }
 
-double global_tension(const ParticleScene& scene, const Body& body, const Net& x) {
-  const double modulus = scene.membrane.global_area_dilatation;
-  if (scene.particle.rigid() || modulus == 0) return 0;
+double global_tension(const ParticleScene& particle_scene, const Body& body, const Net& x) {
+  const double modulus = particle_scene.membrane.global_area_dilatation;
+  if (particle_scene.particle.rigid() || modulus == 0) return 0;
   return modulus * (surface::measures(body.space, x).area / surface::measures(body.space, body.unstressed).area - 1);
 }
 

@@ -52,7 +52,16 @@ FlowPlane flow_plane(const stokes::FlowOptions& flow);
 
 struct Member;
 
-/// Particle as the deck describes it, before it moves.
+/// A particle on its current mesh: spline space, resting, initial and unstressed shape, and material data. The current shape is not a part of it, but
+/// of motion::State. The Member of the particle owns its body; an isolated rigid body is owned by its run.
+///
+/// make_body() or make_body_of_several() sets all members. Later, only these change:
+///   - If the mesh adapts, a new body replaces the old one. It is a copy with another `mesh`, `space` and `plain`, with the nets `rest`, `initial`
+///     and `unstressed` transferred to them (for a rigid particle, fitted again), and with a larger `refit_error`.
+///   - If the coupled system is built again, `symmetry` is set again.
+///   - If a run resumes, `volume` is read from its checkpoint. If the mesh adapts, mesh, nets and `refit_error` are read, too.
+///
+/// A body that represents all particles (make_stacked_body) is built together with the coupled system.
 struct Body {
   spline::TMesh mesh;  ///< empty if the shape comes from a file
   spline::Space space;
@@ -69,8 +78,6 @@ struct Body {
   /// Reference volume V0: volume of the resting shape, or of the initial shape if the deck requests that the particle keeps that volume. V0 is
   /// computed on the first mesh and does not change if the mesh changes.
   double volume = 0;
-  /// initial mass of the surfactant (integral of the concentration over the surface), computed on the first mesh at the start of the run; 0 before
-  double surfactant_mass = 0;
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by the radius R_C
   double modulus = 1;  ///< shear modulus G_s, or the surface tension sigma of an interface
   surface::Symmetry symmetry;                       ///< symmetry common to the scene and the particle at all times
@@ -81,36 +88,47 @@ struct Body {
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
 
-/// Builds the body of a scene with one particle. If the member `alike` is given, its mesh and resting shape are used, and the shape is moved to the
-/// position of this scene's particle. `empty_duct`: flow of the empty duct if it is known already, as from another particle; otherwise computed.
-/// `only`: true if the scene has no other particles; only then the body has the wall of a tube, and symmetries of particle and channel are used.
-Body body(const ParticleScene& scene, const Member* alike = nullptr, std::shared_ptr<const stokes::DuctFlow> empty_duct = nullptr, bool only = true);
+/// Builds the body of the only particle of a scene, with the wall of a tube and the symmetries of the scene.
+Body make_body(const ParticleScene& particle_scene);
 
-/// Returns true if body() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
+/// Builds the body of one of several particles, without the wall of a tube and without symmetries. If the member `alike` is not null, its mesh and
+/// resting shape are used, and the shape is moved to the position of this particle. `empty_duct`: flow of the empty duct if another particle has it
+/// already; computed if null.
+Body make_body_of_several(const ParticleScene& particle_scene, const Member* alike, std::shared_ptr<const stokes::DuctFlow> empty_duct);
+
+/// Returns true if make_body_of_several() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
 bool alike(const ParticleScene& one, const ParticleScene& other);
 
 /// Sets the mesh of the body, and builds on it the spline space that the deck requests.
-void lay_out(const ParticleScene& scene, spline::TMesh mesh, Body& body);
+void lay_out(const ParticleScene& particle_scene, spline::TMesh mesh, Body& body);
 
 /// Returns the common symmetry of the scene, the body and the current shape x, restricted to the symmetries that the deck allows the program to use.
-surface::Symmetry symmetry(const ParticleScene& scene, const Body& body, const Net& x);
+surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body, const Net& x);
 
 /// Throws UserError if the body does not start inside the fluid of the medium that Domain/kind chooses (see SharedOptions::medium).
-void check_in_medium(const ParticleScene& scene, const Body& body);
+void check_in_medium(const ParticleScene& particle_scene, const Body& body);
 
-/// Returns the loads of a particle on its current mesh, except elasticity and bending. A rigid particle only has the repulsion from the wall. `wall`:
-/// wall of the tube, or null.
-coupling::LoadList loads(const ParticleScene& scene, const Body& body, const surface::TubeWall* wall);
+/// Loads of a particle on its current mesh, except elasticity and bending.
+struct ParticleLoads {
+  coupling::LoadList built_in;    ///< loads of the library
+  coupling::LoadList registered;  ///< loads of `Membrane/loads`, in the order of ParticleKind::loads
+
+  coupling::LoadList all() const;  ///< returns the built-in and the registered loads
+};
+
+/// Builds the loads of a particle. A rigid particle only has the repulsion from the wall. `wall`: wall of the tube, or null. `body` must outlive the
+/// loads.
+ParticleLoads make_loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall);
 
 /// Name in checkpoints of the net Body::rest. The name is that of the first versions. Body::initial is not stored.
 constexpr const char* stored_rest = "initial";
 
 /// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and if the
 /// load is computed in the strong form.
-stokes::Measure load_measure(const ParticleScene& scene);
+stokes::Measure load_measure(const ParticleScene& particle_scene);
 
 /// Returns the uniform tension K (A/A0 - 1) that Membrane/global area dilatation (3.26) causes at the shape x, divided by the shear modulus or
 /// surface tension of the particle; 0 without this key.
-double global_tension(const ParticleScene& scene, const Body& body, const Net& x);
+double global_tension(const ParticleScene& particle_scene, const Body& body, const Net& x);
 
 }  // namespace tanktread

@@ -3,8 +3,8 @@
 
 namespace tanktread {
 
-void ContactOptions::reject(const SharedOptions& scene, Rejections& to) const {
-  to.pair(limiter && !scene.runs_in_time(), "Contact/limiter", scene.sought(), "it acts on steps of a run in time");
+void ContactOptions::reject(const SharedOptions& shared, Rejections& to) const {
+  to.pair(limiter && !shared.runs_in_time(), "Contact/limiter", shared.sought(), "it acts on steps of a run in time");
 }
 
 void ContactOptions::declare(deck::Section& section) {

@@ -17,7 +17,7 @@ struct ContactOptions {
   double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap below which the run ends, divided by the smallest radius R_C
 
   void declare(deck::Section& section);
-  void reject(const SharedOptions& scene, Rejections& to) const;
+  void reject(const SharedOptions& shared, Rejections& to) const;
 };
 
 }  // namespace tanktread

@@ -105,25 +105,25 @@ void DomainOptions::check_duct(const std::string& duct) const {
   if (!(side_lengths->front() > 0)) throw UserError("Domain/side lengths must be positive in the directions of Domain/periodic.");
 }
 
-void DomainOptions::reject(const ParticleScene& scene, Rejections& to) const {
-  if (medium || to.every()) reject_medium(scene, to);
+void DomainOptions::reject(const ParticleScene& particle_scene, Rejections& to) const {
+  if (medium || to.every()) reject_medium(particle_scene, to);
   if (!present && !to.every()) return;
   if (to.every()) reject_duct("Tube or Channel", to);
-  to.pair(!scene.tube.present && !to.every() && !repeats(stokes::AmbientFlow(scene.flow), vectors().leftCols(directions())),
-          {"Domain/periodic `" + periodic + "`", "Domain/periodic"}, scene.flow_choice(),
+  to.pair(!particle_scene.tube.present && !to.every() && !repeats(stokes::AmbientFlow(particle_scene.flow), vectors().leftCols(directions())),
+          {"Domain/periodic `" + periodic + "`", "Domain/periodic"}, particle_scene.flow_choice(),
           "the flow must be the same in every cell, except for a uniform gradient");
-  if (scene.tube.present) return;
-  const bool prescribed = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
-  const bool pushed = !scene.particle.rigid() && !scene.membrane.forces.total().isZero(0);
-  to.pair(!to.every() && !scene.runs_in_time() && deforms(scene.flow), scene.sought(), scene.flow_choice(),
+  if (particle_scene.tube.present) return;
+  const bool prescribed = particle_scene.particle.motion == Motion::prescribed, weight = particle_scene.particle.density_difference.has_value();
+  const bool pushed = !particle_scene.particle.rigid() && !particle_scene.membrane.forces.total().isZero(0);
+  to.pair(!to.every() && !particle_scene.runs_in_time() && deforms(particle_scene.flow), particle_scene.sought(), particle_scene.flow_choice(),
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
-  to.pair(scene.quadrature.rule == quadrature::LayerRule::desingularised, "Domain", "Quadrature/rule `desingularised`",
+  to.pair(particle_scene.quadrature.rule == quadrature::LayerRule::desingularised, "Domain", "Quadrature/rule `desingularised`",
           "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
-  to.pair(scene.flow.history && scene.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
+  to.pair(particle_scene.flow.history && particle_scene.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
           "nothing moves, so that one steady problem is solved");
-  to.pair(directions() < 3 && !scene.wall.solid && (prescribed || weight || pushed || scene.particle.force),
+  to.pair(directions() < 3 && !particle_scene.wall.solid && (prescribed || weight || pushed || particle_scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
-          {prescribed ? scene.particle.choice()
+          {prescribed ? particle_scene.particle.choice()
            : weight   ? "Particle/density difference"
            : pushed   ? "Membrane/forces"
                       : "Particle/force",
@@ -148,13 +148,13 @@ void DomainRow::set_stress(double viscosity, const Mat3& gradient, const stokes:
                                         : 1 + stress.cwiseProduct(strain).sum() / (2 * viscosity * strain.squaredNorm());
 }
 
-void DomainRow::add_columns(const SharedOptions& scene, Columns& to) const {
-  if (!to.when(scene.domain.present)) return;
+void DomainRow::add_columns(const SharedOptions& shared, Columns& to) const {
+  if (!to.when(shared.domain.present)) return;
   to.add(cell.reshaped(), "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3",
          {"cell_", "length",
           "component # (number of the vector, then direction) of the period vectors of the periodic cell at this time, the shortest of the "
           "lattice: as it deforms, they change places; in directions that are not periodic, they are unit vectors"});
-  if (!to.when(scene.domain.directions() == 3)) return;
+  if (!to.when(shared.domain.directions() == 3)) return;
   to.add(volume_fraction, {"volume_fraction", "1", "volume of the particles divided by the volume of the periodic cell"});
   to.add(components(stress), "11 22 33 12 13 23",
          {"particle_stress_", "force/length^2",
@@ -162,7 +162,7 @@ void DomainRow::add_columns(const SharedOptions& scene, Columns& to) const {
   to.add(pressure_gradient, "x1 x2 x3",
          {"pressure_gradient_", "force/length^3",
           "component # of the uniform pressure gradient that balances the force of the particles on the fluid"});
-  if (!to.when(has_intrinsic_viscosity(scene))) return;
+  if (!to.when(has_intrinsic_viscosity(shared))) return;
   to.add(relative_viscosity,
          {"relative_viscosity", "1", "effective viscosity of the suspension divided by the viscosity of the outer fluid (6.10)",
           "the rate of strain of the flow is zero at this time"});
@@ -186,15 +186,15 @@ void DomainOptions::declare_medium(deck::Section& section) {
       throw UserError(section.path(key) + " belongs to Domain/kind `lattice`, but Domain/kind is `" + kind + "`.");
 }
 
-void DomainOptions::reject_medium(const ParticleScene& scene, Rejections& to) const {
+void DomainOptions::reject_medium(const ParticleScene& particle_scene, Rejections& to) const {
   const Chosen added("Domain/kind `" + kind + "`", "Domain/kind of an added medium");
-  to.pair(scene.tube.present, added, scene.duct_choice(), "a duct encloses all of its fluid");
-  to.pair(scene.wall.present, added, "Wall", "a plane wall is a medium itself");
-  to.pair(scene.quadrature.rule == quadrature::LayerRule::desingularised, added, "Quadrature/rule `desingularised`",
+  to.pair(particle_scene.tube.present, added, particle_scene.duct_choice(), "a duct encloses all of its fluid");
+  to.pair(particle_scene.wall.present, added, "Wall", "a plane wall is a medium itself");
+  to.pair(particle_scene.quadrature.rule == quadrature::LayerRule::desingularised, added, "Quadrature/rule `desingularised`",
           "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
-  to.pair(!scene.runs_in_time(), scene.sought(), added,
+  to.pair(!particle_scene.runs_in_time(), particle_scene.sought(), added,
           "a deformable particle next to a boundary moves away from it or towards it, so that no shape is steady");
-  to.pair(scene.particle.drift == "held", added, "Particle/drift `held`", "the distance from the boundaries must be free to change");
+  to.pair(particle_scene.particle.drift == "held", added, "Particle/drift `held`", "the distance from the boundaries must be free to change");
 }
 
 void check_flow(const stokes::FlowOptions& flow, const stokes::Medium& medium, const std::string& name) {

@@ -36,7 +36,7 @@ struct DomainOptions {
   /// empty without a duct.
   void check(const stokes::FlowOptions& flow, const std::string& duct) const;
 
-  void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices of the scene that contradict a lattice
+  void reject(const ParticleScene& particle_scene, Rejections& to) const;  ///< adds the choices of the scene that contradict a lattice
 
   /// Returns the number of periodic directions.
   int directions() const;
@@ -46,7 +46,7 @@ struct DomainOptions {
 
  private:
   void declare_medium(deck::Section& section);
-  void reject_medium(const ParticleScene& scene, Rejections& to) const;
+  void reject_medium(const ParticleScene& particle_scene, Rejections& to) const;
   /// Returns true if the flow changes the lattice vectors. The amplitude is taken as 1, and the time dependence `Flow/history` is ignored.
   bool deforms(const stokes::FlowOptions& flow) const;
   Mat3 vectors() const;
@@ -74,7 +74,7 @@ struct DomainRow {
   void set_stress(double viscosity, const Mat3& gradient, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet,
                   const Vec3& force);
 
-  void add_columns(const SharedOptions& scene, Columns& to) const;
+  void add_columns(const SharedOptions& shared, Columns& to) const;
 };
 
 }  // namespace tanktread

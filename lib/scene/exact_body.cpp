@@ -26,16 +26,16 @@ bool ExactBody::presses() const {
   return result;
 }
 
-coupling::RigidMotion prescribed_motion(const ParticleScene& scene) {
-  return {scene.particle.velocity.value_or(Vec3::Zero()), scene.particle.angular_velocity.value_or(Vec3::Zero())};
+coupling::RigidMotion prescribed_motion(const ParticleScene& particle_scene) {
+  return {particle_scene.particle.velocity.value_or(Vec3::Zero()), particle_scene.particle.angular_velocity.value_or(Vec3::Zero())};
 }
 
-std::optional<ExactBody> exact_body(const ParticleScene& scene) {
-  if (scene.wall.present || scene.domain.medium) return {};
-  const surface::ParticleShape& shape = scene.particle.shape;
-  const coupling::RigidMotion motion = prescribed_motion(scene);
-  if (scene.tube.present || (shape.shape != "sphere" && shape.shape != "spheroid" && shape.shape != "ellipsoid")) return {};
-  const stokes::AmbientFlow flow(scene.flow);
+std::optional<ExactBody> exact_body(const ParticleScene& particle_scene) {
+  if (particle_scene.wall.present || particle_scene.domain.medium) return {};
+  const surface::ParticleShape& shape = particle_scene.particle.shape;
+  const coupling::RigidMotion motion = prescribed_motion(particle_scene);
+  if (particle_scene.tube.present || (shape.shape != "sphere" && shape.shape != "spheroid" && shape.shape != "ellipsoid")) return {};
+  const stokes::AmbientFlow flow(particle_scene.flow);
   if (!flow.affine()) return {};
   const Mat3 l = flow.gradient(shape.center);
   if ((l + l.transpose()).norm() > 1e-14 * l.norm()) return {};
@@ -47,7 +47,7 @@ std::optional<ExactBody> exact_body(const ParticleScene& scene) {
                    shape.center,
                    axes.transpose() * (motion.velocity - flow.velocity(shape.center)),
                    axes.transpose() * (motion.angular_velocity - spin),
-                   scene.flow.viscosity};
+                   particle_scene.flow.viscosity};
 }
 
 SurfaceErrors surface_errors(const spline::Space& space, const Net& surface, const Net& f, const ExactBody& exact) {

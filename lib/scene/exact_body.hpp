@@ -36,11 +36,11 @@ struct ExactBody {
 };
 
 /// Returns the motion given by `Particle/velocity` and `Particle/angular velocity`.
-coupling::RigidMotion prescribed_motion(const ParticleScene& scene);
+coupling::RigidMotion prescribed_motion(const ParticleScene& particle_scene);
 
 /// Returns the exact solution of an ellipsoid with prescribed motion. Returns nothing for other shapes, for a flow that is not affine or has a
 /// nonzero rate of strain, and for a scene with a tube or wall.
-std::optional<ExactBody> exact_body(const ParticleScene& scene);
+std::optional<ExactBody> exact_body(const ParticleScene& particle_scene);
 
 /// Errors of the pressure p, which follows from the force density f on the fluid, and of the normal n_h of the numerical surface. surface_errors()
 /// computes them from the control net `surface` and the control values `f`.

@@ -52,17 +52,17 @@ UserError several_particles(const std::string& name) {
 
 /// Throws UserError if the scene cannot start from the surface of the run: the run has several particles, its mesh options differ from the scene's,
 /// or the mesh adapts and the resting shapes differ. Material properties may differ.
-void check_surface(const ParticleScene& scene, const output::Checkpoint& run, const std::string& name) {
-  Scene of_run(*scene.registry);
+void check_surface(const ParticleScene& particle_scene, const output::Checkpoint& run, const std::string& name) {
+  Scene of_run(*particle_scene.registry);
   deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
   deck.declare(of_run);
   if (of_run.particles.size() > 1) throw several_particles(name);
   const ParticleScene before = of_run.first();
   const auto refuse = [&](const char* what) { throw UserError(key + "run: " + what + " must be the same as in " + name + "."); };
-  if (!(before.surface == scene.surface)) refuse("Surface");
-  const motion::AdaptationOptions &then = before.adaptation, &now = scene.adaptation;
+  if (!(before.surface == particle_scene.surface)) refuse("Surface");
+  const motion::AdaptationOptions &then = before.adaptation, &now = particle_scene.adaptation;
   if (then.enabled != now.enabled || (now.enabled && then.levels != now.levels)) refuse("Adaptation/enabled and Adaptation/levels");
-  if (now.enabled && !before.particle.shape.same_rest(scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
+  if (now.enabled && !before.particle.shape.same_rest(particle_scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
 }
 
 /// If the run's deck names its only particle, removes this name from the names of the run's arrays: `cell: unstressed` becomes `unstressed`. Throws
@@ -98,8 +98,8 @@ Net mode_of_run(const output::Checkpoint& run, int number, Eigen::Index n_points
 
 }  // namespace
 
-std::optional<output::Checkpoint> run_before(const ParticleScene& scene) try {
-  const auto& initial = scene.particle.shape.initial;
+std::optional<output::Checkpoint> run_before(const ParticleScene& particle_scene) try {
+  const auto& initial = particle_scene.particle.shape.initial;
   if (!initial || !initial->run) return {};
   const std::string name = deck::shortened(*initial->run, 80);
   std::error_code error;
@@ -113,7 +113,7 @@ std::optional<output::Checkpoint> run_before(const ParticleScene& scene) try {
   } else {
     run = output::read_checkpoint(*initial->run);
   }
-  check_surface(scene, run, name);
+  check_surface(particle_scene, run, name);
   drop_name(run, name);
   return run;
 } catch (const std::runtime_error& error) {
@@ -121,8 +121,8 @@ std::optional<output::Checkpoint> run_before(const ParticleScene& scene) try {
   throw UserError(key + "run: " + error.what());
 }
 
-Net initial_shape(const ParticleScene& scene, const Body& body, const output::Checkpoint* before) {
-  const surface::ParticleShape& shape = scene.particle.shape;
+Net initial_shape(const ParticleScene& particle_scene, const Body& body, const output::Checkpoint* before) {
+  const surface::ParticleShape& shape = particle_scene.particle.shape;
   if (!shape.initial) return body.rest;
   const surface::InitialShape& initial = *shape.initial;
   const bool own = initial.volume == "own";
@@ -138,17 +138,17 @@ Net initial_shape(const ParticleScene& scene, const Body& body, const output::Ch
   return image(x, measures.centroid, scale * Mat3::Identity());
 }
 
-Net stress_free_shape(const ParticleScene& scene, const Body& body, const Body& first) {
-  const membrane::Options& membrane = scene.membrane;
+Net stress_free_shape(const ParticleScene& particle_scene, const Body& body, const Body& first) {
+  const membrane::Options& membrane = particle_scene.membrane;
   if (membrane.stress_free == "resting") return body.rest;
   if (membrane.stress_free == "file") return net_of_file(body.space, membrane.stress_free_file.value(), "Membrane/stress-free file");
-  if (scene.particle.shape.imported)
+  if (particle_scene.particle.shape.imported)
     throw UserError(
         "Membrane/stress-free shape must be `resting` or `file` if Particle/shape is `file`, because the axis of that shape is not known.");
   const surface::LeastSquaresFit fit(first.space);
-  const Net sphere = scene.surface.polar() ? surface::unit_sphere(scene.surface.polar_mesh(), first.space, scene.surface.axis())
-                                           : surface::unit_sphere(first.mesh, fit);
-  const Net spheroid = surface::stress_free_spheroid(fit, sphere, scene.particle.shape, membrane.reduced_volume.value_or(1));
+  const surface::MeshOptions& mesh = particle_scene.surface;
+  const Net sphere = mesh.polar() ? surface::unit_sphere(mesh.polar_mesh(), first.space, mesh.axis()) : surface::unit_sphere(first.mesh, fit);
+  const Net spheroid = surface::stress_free_spheroid(fit, sphere, particle_scene.particle.shape, membrane.reduced_volume.value_or(1));
   return &first == &body ? spheroid : spline::Transfer(first.nested(), body.nested())(spheroid).net;
 }
 

@@ -12,16 +12,16 @@ namespace tanktread {
 
 /// Returns the last checkpoint of the run named by Particle/initial shape/run; nothing if the deck names no run. Throws UserError if there is no
 /// checkpoint, or if the mesh of the run does not fit the scene.
-std::optional<output::Checkpoint> run_before(const ParticleScene& scene);
+std::optional<output::Checkpoint> run_before(const ParticleScene& particle_scene);
 
 /// Returns the control net of the initial shape on the body's mesh; by default the resting shape. `before`: checkpoint that run_before() returned, or
 /// null. Throws UserError if the file or checkpoint holds another surface.
-Net initial_shape(const ParticleScene& scene, const Body& body, const output::Checkpoint* before);
+Net initial_shape(const ParticleScene& particle_scene, const Body& body, const output::Checkpoint* before);
 
 /// Returns the control net of the membrane's stress-free shape on the mesh of `body`, before any pre-inflation. The default is the resting shape.
 /// `first`: the body on the mesh of the deck, which differs from the mesh of `body` if an earlier run has adapted it. A spheroid is fitted on the
 /// mesh of `first` and transferred like the resting shape, so that points with equal parameters on both shapes still correspond to each other. Throws
 /// UserError if a file holds another surface, or if the resting shape has no axis.
-Net stress_free_shape(const ParticleScene& scene, const Body& body, const Body& first);
+Net stress_free_shape(const ParticleScene& particle_scene, const Body& body, const Body& first);
 
 }  // namespace tanktread

@@ -13,10 +13,11 @@ namespace tanktread {
 
 namespace {
 
-membrane::Material material(const ParticleScene& scene, const Body& body) {
-  if (scene.particle.rigid()) return {body.law, {}, {}};
-  return {body.law, {scene.bending_modulus(), scene.membrane.bending_reference == "unstressed", scene.membrane.spontaneous_curvature.value_or(0)},
-          scene.kelvin_voigt_membrane() ? scene.membrane.viscosity : membrane::SurfaceViscosity{}, scene.membrane.area_order};
+membrane::Material material(const ParticleScene& particle_scene, const Body& body) {
+  if (particle_scene.particle.rigid()) return {body.law, {}, {}};
+  const membrane::Options& given = particle_scene.membrane;
+  return {body.law, {particle_scene.bending_modulus(), given.bending_reference == "unstressed", given.spontaneous_curvature.value_or(0)},
+          particle_scene.kelvin_voigt_membrane() ? given.viscosity : membrane::SurfaceViscosity{}, given.area_order};
 }
 
 Eigen::MatrixXd numbers_of(const auto& values) {
@@ -57,25 +58,26 @@ void share_or_make(std::vector<Member>& members, std::size_t p) {
 
 }  // namespace
 
-coupling::RigidDrive drive_of(const ParticleScene& scene, const Body& body) {
-  const ParticleOptions& particle = scene.particle;
+coupling::RigidDrive drive_of(const ParticleScene& particle_scene, const Body& body) {
+  const ParticleOptions& particle = particle_scene.particle;
   const auto given = [](const std::optional<Vec3>& vector) { return vector.value_or(Vec3::Zero()); };
-  return {particle.motion == Motion::prescribed, prescribed_motion(scene),
-          given(particle.force) + body.volume * scene.body_force(), given(particle.torque)};
+  return {particle.motion == Motion::prescribed, prescribed_motion(particle_scene),
+          given(particle.force) + body.volume * particle_scene.body_force(), given(particle.torque)};
 }
 
-std::vector<Member> members(const Scene& scene) {
+std::vector<Member> make_members(const Scene& scene) {
   std::vector<Member> all;
   std::vector<ParticleScene> scenes = scene.particle_scenes();
   for (ParticleScene& one : scenes) {
     one.least_radius = scene.least_radius();
     const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
-    auto its_body = std::make_unique<Body>(
-        body(one, equal == all.end() ? nullptr : &*equal, all.empty() ? nullptr : all.front().body->duct, scenes.size() == 1));
+    Body body = scenes.size() == 1
+                    ? make_body(one)
+                    : make_body_of_several(one, equal == all.end() ? nullptr : &*equal, all.empty() ? nullptr : all.front().body->duct);
     Member& member = all.emplace_back();
     member.name = one.name;
     member.scene = std::move(one);
-    member.body = std::move(its_body);
+    member.body = std::make_unique<Body>(std::move(body));
   }
   return all;
 }
@@ -92,14 +94,14 @@ void arrange(std::vector<Member>& members) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     Member& member = members[p];
     member.block = blocks[p];
-    if (members.size() == 1) continue;  // capsule() sets the geometry and the membrane of a single member
+    if (members.size() == 1) continue;  // make_capsule() sets the geometry and the membrane of a single member
     Body& body = *member.body;
     body.symmetry = surface::Symmetry(body.space.n_points);  // no symmetry: a symmetry of one particle need not be a symmetry of all particles
     share_or_make(members, p);
   }
 }
 
-std::unique_ptr<Body> stacked_body(const std::vector<Member>& members) {
+std::unique_ptr<Body> make_stacked_body(const std::vector<Member>& members) {
   if (members.size() == 1) return {};
   auto all = std::make_unique<Body>();
   std::vector<const spline::Space*> spaces;
@@ -124,43 +126,44 @@ std::unique_ptr<Body> stacked_body(const std::vector<Member>& members) {
 namespace {
 
 /// Throws UserError if a load changes when its particle is displaced by a period of the lattice.
-void check_periods(const ParticleScene& scene, const coupling::LoadList& loads) {
-  const auto cell = scene.domain.cell();
+void check_periods(const ParticleScene& particle_scene, const coupling::LoadList& loads) {
+  const auto cell = particle_scene.domain.cell();
   const auto changes = [&](const auto& load) {
     return (load->rigid_conditions().template leftCols<3>() * cell->vectors().leftCols(cell->n())).norm() > 1e-9 * cell->vectors().norm();
   };
   if (cell && std::ranges::any_of(loads, changes))
-    throw UserError("Membrane/loads" + (scene.name.empty() ? "" : " of Particles/" + scene.name) +
+    throw UserError("Membrane/loads" + (particle_scene.name.empty() ? "" : " of Particles/" + particle_scene.name) +
                     " and Domain contradict each other: a load that depends on the position of the particle is not the same in all cells.");
 }
 
-/// Returns the data of one member for the coupled system. `wall`: wall of the tube, or null.
-coupling::Particle particle(const Member& member, const surface::TubeWall* wall) {
-  const ParticleScene& scene = member.scene;
+/// Returns the data of one member for the coupled system.
+coupling::Particle particle(const Member& member) {
+  const ParticleScene& particle_scene = member.scene;
   const Body& body = *member.body;
   coupling::Particle particle;
   particle.space = &body.space;
-  particle.viscosity_ratio = scene.particle.viscosity_ratio;
-  particle.material = material(scene, body);
-  particle.loads = loads(scene, body, wall);
-  check_periods(scene, particle.loads);
+  particle.viscosity_ratio = particle_scene.particle.viscosity_ratio;
+  particle.material = material(particle_scene, body);
+  particle.loads = member.loads.all();
+  check_periods(particle_scene, particle.loads);
   particle.radius = body.radius;
-  if (scene.particle.rigid()) particle.rigid = drive_of(scene, body);
-  particle.by_traction = scene.particle.rigid() && scene.solvers.rigid_bodies == coupling::BodyEquation::first_kind;
-  particle.interface_motion = scene.interface_motion();
-  const double rate = scene.flow.rate() > 0 ? scene.flow.rate() : body.modulus / (scene.flow.viscosity * body.radius);
-  particle.interface_speed = scene.interface.relaxation * (scene.flow.type == "duct" ? scene.speed() : rate * body.radius);
-  particle.interface_turns = !scene.periodic.present || scene.periodic.turn != 0;  // otherwise, a net that has turned would not recur
+  if (particle_scene.particle.rigid()) particle.rigid = drive_of(particle_scene, body);
+  particle.by_traction = particle_scene.particle.rigid() && particle_scene.solvers.rigid_bodies == coupling::BodyEquation::first_kind;
+  particle.interface_motion = particle_scene.interface_motion();
+  const double rate = particle_scene.flow.rate() > 0 ? particle_scene.flow.rate() : body.modulus / (particle_scene.flow.viscosity * body.radius);
+  particle.interface_speed = particle_scene.interface.relaxation * (particle_scene.flow.type == "duct" ? particle_scene.speed() : rate * body.radius);
+  // In a search for a periodic motion that does not turn, the net does not turn, because a net that has turned would not recur.
+  particle.interface_turns = !particle_scene.periodic.present || particle_scene.periodic.turn != 0;
   particle.kept_volume = body.volume;
-  particle.measure = load_measure(scene);
+  particle.measure = load_measure(particle_scene);
   return particle;
 }
 
 /// Returns the data of all members for the coupled system. The load of a rigid body may be per unstressed or per current area (`measure`). The
 /// `measure` of the deforming particles is used, because it is cheapest if all layers use the same area.
-std::vector<coupling::Particle> particles(const std::vector<Member>& members, const surface::TubeWall* wall) {
+std::vector<coupling::Particle> particles(const std::vector<Member>& members) {
   std::vector<coupling::Particle> all;
-  for (const Member& member : members) all.push_back(particle(member, wall));
+  for (const Member& member : members) all.push_back(particle(member));
   const auto deforms = std::ranges::find_if(all, [](const coupling::Particle& one) { return !one.rigid; });
   for (coupling::Particle& one : all)
     if (one.rigid && deforms != all.end()) one.measure = deforms->measure;
@@ -169,24 +172,25 @@ std::vector<coupling::Particle> particles(const std::vector<Member>& members, co
 
 }  // namespace
 
-std::unique_ptr<coupling::Capsule> capsule(std::vector<Member>& members, const Body& all, Phases& phases, std::unique_ptr<coupling::Tube> tube,
-                                           const std::optional<coupling::SolidScene>& solids) {
-  const ParticleScene& scene = members.front().scene;
+std::shared_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, const Body& all, Phases& phases, std::unique_ptr<coupling::Tube> tube,
+                                                const std::optional<coupling::SolidScene>& solids) {
+  const ParticleScene& particle_scene = members.front().scene;
   coupling::CapsuleParameters parameters;
-  parameters.viscosity = scene.flow.viscosity;
-  parameters.particles = particles(members, all.wall.get());
-  parameters.strong_load = scene.load_is_strong();
-  parameters.volume = scene.volume;
-  parameters.solvers = scene.solvers;
-  parameters.quadrature = scene.quadrature;
+  parameters.viscosity = particle_scene.flow.viscosity;
+  for (Member& member : members) member.loads = make_loads(member.scene, *member.body, all.wall.get());
+  parameters.particles = particles(members);
+  parameters.strong_load = particle_scene.load_is_strong();
+  parameters.volume = particle_scene.volume;
+  parameters.solvers = particle_scene.solvers;
+  parameters.quadrature = particle_scene.quadrature;
   parameters.symmetry = all.symmetry;
-  parameters.cell = scene.domain.cell();
-  parameters.medium = scene.medium();
+  parameters.cell = particle_scene.domain.cell();
+  parameters.medium = particle_scene.medium();
   parameters.solids = solids;
-  auto system = std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, phases, std::move(tube));
+  const auto system = std::make_shared<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, phases, std::move(tube));
   if (members.size() == 1) {
-    members.front().geometry = {std::shared_ptr<void>(), &system->geometry()};
-    members.front().membrane = {std::shared_ptr<void>(), &system->membrane()};
+    members.front().geometry = {system, &system->geometry()};
+    members.front().membrane = {system, &system->membrane()};
   }
   return system;
 }
@@ -208,7 +212,7 @@ void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
     checkpoint.arrays[member.label(stored_rest)] = body.rest;
     checkpoint.numbers[member.label("initial volume")] = body.volume;
     checkpoint.numbers[member.label("refit error")] = body.refit_error;
-    if (member.scene.surfactant) checkpoint.numbers[member.label(stored_mass)] = body.surfactant_mass;
+    if (member.scene.surfactant) checkpoint.numbers[member.label(stored_mass)] = member.surfactant_mass;
     if (!member.scene.adaptation.enabled) continue;
     checkpoint.arrays[member.label("mesh edges")] = numbers_of(body.mesh.edges);
     checkpoint.arrays[member.label("mesh spacing")] = numbers_of(body.mesh.spacing);
@@ -228,7 +232,7 @@ bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members)
   bool another = false;
   for (Member& member : members) {
     member.body->volume = checkpoint.numbers.at(member.label("initial volume"));
-    if (member.scene.surfactant) member.body->surfactant_mass = checkpoint.numbers.at(member.label(stored_mass));
+    if (member.scene.surfactant) member.surfactant_mass = checkpoint.numbers.at(member.label(stored_mass));
     if (!checkpoint.arrays.contains(member.label("mesh edges"))) continue;
     another = true;
     lay_out(member.scene, stored_mesh(member.body->mesh, checkpoint, member.label("")), *member.body);

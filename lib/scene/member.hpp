@@ -23,9 +23,13 @@ struct Member {
   std::unique_ptr<Body> body;
   spline::Block block;
   /// Geometry and membrane. Members with equal spaces share the geometry; if also their materials and unstressed shapes are equal, they share the
-  /// membrane. A single member has those of the coupled system, and no others before the system is built.
+  /// membrane. A single member has those of the coupled system and shares the ownership of the whole system. It has none before the system is built.
   std::shared_ptr<const surface::Geometry> geometry;
   std::shared_ptr<const membrane::Membrane> membrane;
+  ParticleLoads loads;  ///< loads that the coupled system includes; set when the system is built
+  /// initial mass of the surfactant (integral of the concentration over the surface) on the first mesh; 0 without surfactant. Set when a run starts
+  /// or resumes
+  double surfactant_mass = 0;
   /// parametric point of the material point whose phase angle is recorded. The parametric point does not change if the mesh adapts
   spline::ParametricPoint place;
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
@@ -39,10 +43,10 @@ struct Member {
 };
 
 /// Returns what drives a rigid body: the prescribed motion, or the force (including the weight) and the torque.
-coupling::RigidDrive drive_of(const ParticleScene& scene, const Body& body);
+coupling::RigidDrive drive_of(const ParticleScene& particle_scene, const Body& body);
 
 /// Builds all particles of a scene, each in its unstressed, resting and initial shape.
-std::vector<Member> members(const Scene& scene);
+std::vector<Member> make_members(const Scene& scene);
 
 /// If the mesh may adapt, sets `followed` to the site of the parametric point `place` on the current mesh. `place` does not change, so a resumed run
 /// finds the same site.
@@ -55,12 +59,13 @@ void arrange(std::vector<Member>& members);
 /// Returns one body that represents all members: its nets are the stacked nets of the members, its radius is the largest R_C, and its volume is the
 /// total volume. Returns null if there is only one member. Its mesh and `plain` are not set, the wall of a tube is added later, and quantities
 /// of the membrane are those of the first member.
-std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
+std::unique_ptr<Body> make_stacked_body(const std::vector<Member>& members);
 
 /// Builds the coupled system of all members, with the given tube or solids (plates and posts) if there are any. Only the operators that the members
-/// need are built. `all`: body of all members (see stacked_body). The geometry and the membrane of a single member become those of the system.
-std::unique_ptr<coupling::Capsule> capsule(std::vector<Member>& members, const Body& all, Phases& phases, std::unique_ptr<coupling::Tube> tube,
-                                           const std::optional<coupling::SolidScene>& solids);
+/// need are built. `all`: body of all members (see make_stacked_body). Sets the loads of the members. A single member shares the system from now on:
+/// its geometry and membrane are those of the system.
+std::shared_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, const Body& all, Phases& phases, std::unique_ptr<coupling::Tube> tube,
+                                                const std::optional<coupling::SolidScene>& solids);
 
 /// Returns the particles in the shape x with the fluid velocity v, as user-defined series receive them. Empty if the deck asks for no such series.
 std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& members, const Net& x, const Net& v);

@@ -22,24 +22,25 @@ constexpr double doubles = 72;             // bytes of a 3 x 3 block of doubles
 constexpr double most_vector_bytes = 4e9;  // largest size of the vectors of an iterative solver, on one rank
 
 /// Return the numbers of control points: points() of the particle, wall_points() of the tube wall.
-double points(const ParticleScene& scene) {
-  const auto& imported = scene.particle.shape.imported;
-  return imported ? imported->space.n_points : scene.surface.n_points();
+double points(const ParticleScene& particle_scene) {
+  const auto& imported = particle_scene.particle.shape.imported;
+  return imported ? imported->space.n_points : particle_scene.surface.n_points();
 }
 
-double wall_points(const SharedOptions& scene) {
-  const int along = scene.tube.channel ? surface::Channel(scene.tube).elements() : scene.tube.elements_along();
-  return scene.tube.azimuthal_elements * (along + 3.0);
+double wall_points(const SharedOptions& shared) {
+  const int along = shared.tube.channel ? surface::Channel(shared.tube).elements() : shared.tube.elements_along();
+  return shared.tube.azimuthal_elements * (along + 3.0);
 }
 
 /// Returns the bytes of all assembled operators of the particle per pair of control points. A layer operator has 3 x 3 doubles per pair, and a frozen
 /// operator six numbers of 16 bits. An operator with the option `auto` is not counted, because it is not assembled if it is too large.
-double bytes_a_pair(const ParticleScene& scene) {
-  if (scene.particle.rigid()) return doubles * coupling::Ranks().size() * (scene.tube.present ? 2 : 1);  // LU factors; in a tube, also the matrix
-  const bool viscous = scene.particle.viscosity_ratio != 1;
-  const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
-  const bool relaxed = scene.interface_motion() == coupling::MeshMotion::relaxed;
-  return doubles * ((viscous + scene.kelvin_voigt_membrane()) * (scene.solvers.double_layer == "assembled") + relaxed) +
+double bytes_a_pair(const ParticleScene& particle_scene) {
+  // A rigid particle has LU factors, and in a tube also the matrix.
+  if (particle_scene.particle.rigid()) return doubles * coupling::Ranks().size() * (particle_scene.tube.present ? 2 : 1);
+  const bool viscous = particle_scene.particle.viscosity_ratio != 1;
+  const int frozen = particle_scene.time.assembles() ? (particle_scene.solvers.frozen_operator == "assembled") + viscous : 0;
+  const bool relaxed = particle_scene.interface_motion() == coupling::MeshMotion::relaxed;
+  return doubles * ((viscous + particle_scene.kelvin_voigt_membrane()) * (particle_scene.solvers.double_layer == "assembled") + relaxed) +
          coupling::FrozenOperator::bytes_a_pair * frozen;
 }
 
@@ -54,25 +55,26 @@ void check_bytes(const std::string& keys, const std::string& must, double n_poin
 }
 
 /// Throws UserError if the assembled operators of the particle or of the wall of a duct are too large.
-void check_size(const ParticleScene& scene) {
-  const double bytes = bytes_a_pair(scene), most = std::floor(std::sqrt(most_bytes / bytes));
+void check_size(const ParticleScene& particle_scene) {
+  const double bytes = bytes_a_pair(particle_scene), most = std::floor(std::sqrt(most_bytes / bytes));
   const std::string few = formatted("give at most %.0f control points", most);
-  if (scene.particle.shape.imported)
-    check_bytes("Particle/file", few, points(scene), bytes);
-  else if (scene.surface.polar())
-    check_bytes("Surface/azimuthal elements and Surface/meridional elements", few, points(scene), bytes);
+  if (particle_scene.particle.shape.imported)
+    check_bytes("Particle/file", few, points(particle_scene), bytes);
+  else if (particle_scene.surface.polar())
+    check_bytes("Surface/azimuthal elements and Surface/meridional elements", few, points(particle_scene), bytes);
   else
     check_bytes("Surface/elements per side",
-                formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *scene.surface.elements_per_side),
-                points(scene), bytes);
-  if (!scene.tube.present || (scene.tube.channel && coupling::WallSolver{scene.solvers.wall}.may_iterate(scene.tube.period > 0))) return;
-  check_bytes(scene.tube.list() + "/azimuthal elements and " + scene.tube.list() + "/axial elements",
-              formatted("give at most %.0f control points", most_wall_points()), wall_points(scene), doubles * coupling::Ranks().size());
+                formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *particle_scene.surface.elements_per_side),
+                points(particle_scene), bytes);
+  const surface::TubeOptions& tube = particle_scene.tube;
+  if (!tube.present || (tube.channel && coupling::WallSolver{particle_scene.solvers.wall}.may_iterate(tube.period > 0))) return;
+  check_bytes(tube.list() + "/azimuthal elements and " + tube.list() + "/axial elements",
+              formatted("give at most %.0f control points", most_wall_points()), wall_points(particle_scene), doubles * coupling::Ranks().size());
 }
 
 /// Throws UserError if the vectors that each rank stores for an iterative solver, and the matrix of their inner products, are too large.
-void check_vectors(const ParticleScene& scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
-  const double unknowns = 3 * (points(scene) + (scene.tube.present ? wall_points(scene) : 0));
+void check_vectors(const ParticleScene& particle_scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
+  const double unknowns = 3 * (points(particle_scene) + (particle_scene.tube.present ? wall_points(particle_scene) : 0));
   double vectors = 1;
   std::string keys;
   for (const char* key : {"Num Blocks", "Block Size", "Num Recycled Blocks", "Deflation Blocks", "Adaptive Block Size"}) {
@@ -90,10 +92,10 @@ void check_vectors(const ParticleScene& scene, const std::string& path, const st
 
 double most_wall_points() { return std::floor(std::sqrt(most_bytes / (doubles * coupling::Ranks().size()))); }
 
-void check_memory(const ParticleScene& scene) {
-  check_size(scene);
-  check_vectors(scene, "Solvers", scene.solvers.belos);
-  for (const coupling::IterativeOptions* system : scene.solvers.systems()) check_vectors(scene, system->path, system->belos);
+void check_memory(const ParticleScene& particle_scene) {
+  check_size(particle_scene);
+  check_vectors(particle_scene, "Solvers", particle_scene.solvers.belos);
+  for (const coupling::IterativeOptions* system : particle_scene.solvers.systems()) check_vectors(particle_scene, system->path, system->belos);
 }
 
 void check_first_kind(const Scene& scene) {

@@ -7,8 +7,8 @@ struct ParticleScene;
 struct Scene;
 
 /// Throws UserError if the operators assembled for the particle or for the wall of its duct, or the vectors of an iterative solver, take more memory
-/// than the program allows. `scene`: scene with one particle.
-void check_memory(const ParticleScene& scene);
+/// than the program allows. `particle_scene`: scene with one particle.
+void check_memory(const ParticleScene& particle_scene);
 
 /// Throws UserError if the scene has no rigid bodies, whose tractions are the unknowns of the first-kind equation (2.40), or if the matrix of this
 /// equation is too large.

@@ -15,35 +15,35 @@ std::string text(Motion motion) { return "`" + motion_words[static_cast<std::siz
 
 std::string ParticleOptions::choice() const { return "Particle/motion " + text(motion); }
 
-void ParticleOptions::reject(const ParticleScene& scene, Rejections& to) const {
-  const bool prescribed = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
+void ParticleOptions::reject(const ParticleScene& particle_scene, Rejections& to) const {
+  const bool prescribed = motion == Motion::prescribed, held = drift == "held", tube = particle_scene.tube.present;
   const std::string forced = "the force on a body with prescribed motion follows from its motion", gradient = "whose gradient is uniform";
   const Chosen moved = "Particle/motion `prescribed`", stiff(choice(), "Particle/motion `prescribed` or `free`");
-  const Chosen duct = scene.duct_choice();
-  to.pair(!scene.runs_in_time() && prescribed, scene.sought(), moved, "a body with prescribed motion has no unknown position or orientation");
-  to.pair(scene.tube.repulsion && prescribed, {scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
+  const Chosen duct = particle_scene.duct_choice();
+  to.pair(!particle_scene.runs_in_time() && prescribed, particle_scene.sought(), moved,
+          "a body with prescribed motion has no unknown position or orientation");
+  to.pair(particle_scene.tube.repulsion && prescribed, {particle_scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
   to.pair(density_difference && prescribed, "Particle/density difference", moved, forced);
-  to.pair(prescribed && scene.name.empty() && scene.time.steady_tolerance, "Time/steady tolerance", moved,
+  to.pair(prescribed && particle_scene.name.empty() && particle_scene.time.steady_tolerance, "Time/steady tolerance", moved,
           "a single body with prescribed motion has no shape or rotation that could become steady");
   to.pair(forces && !prescribed, "Particle/forces", {choice(), "Particle/motion `deforming` or `free`"},
           "it is the method for the force on a body with prescribed motion");
-  to.pair(forces && prescribed && scene.in_system() && scene.runs_in_time() && !scene.tube.repulsion, "Particle/forces",
-          {std::string(why_in_system(scene, scene)),
+  to.pair(forces && prescribed && particle_scene.in_system() && particle_scene.runs_in_time() && !particle_scene.tube.repulsion, "Particle/forces",
+          {std::string(why_in_system(particle_scene, particle_scene)),
            "Particles, Domain, Output/power balance, Output/series, Flow/history or Flow/type of an added flow"},
           "the force on a body in the coupled system follows from the solution of this system");
-  to.pair(rigid() && scene.membrane_given, "Membrane", stiff, "a rigid particle has no membrane");
-  to.pair(rigid() && scene.volume_given, "Volume", stiff, "a rigid particle keeps its volume");
+  to.pair(rigid() && particle_scene.membrane_given, "Membrane", stiff, "a rigid particle has no membrane");
+  to.pair(rigid() && particle_scene.volume_given, "Volume", stiff, "a rigid particle keeps its volume");
   to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", stiff, "there is no fluid in a rigid particle");
   to.pair(rigid() && shape.initial, "Particle/initial shape", stiff,
           "a rigid particle keeps its resting shape; give its shape by Particle/shape");
-  to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", scene.flow_choice(), "it is for flows " + gradient);
+  to.pair(held && particle_scene.flow.type == "parabolic", "Particle/drift `held`", particle_scene.flow_choice(), "it is for flows " + gradient);
   to.pair(held && (tube || rigid()), "Particle/drift `held`",
           {tube ? duct.here : stiff.here, "Tube, Channel, or Particle/motion `prescribed` or `free`"},
           "it is for particles that deform in a flow " + gradient);
-  to.pair(scene.solvers.projection != "collocation" && (tube || scene.wall.present || rigid()), "Solvers/projection `least squares`",
-          {tube                 ? duct.here
-           : scene.wall.present ? "Wall"
-                                : stiff.here,
+  to.pair(particle_scene.solvers.projection != "collocation" && (tube || particle_scene.wall.present || rigid()),
+          "Solvers/projection `least squares`",
+          {tube ? duct.here : particle_scene.wall.present ? "Wall" : stiff.here,
            "Tube, Channel, Wall, or Particle/motion `prescribed` or `free`"},
           "it is for deformable particles away from walls");
 }
@@ -143,34 +143,43 @@ void ParticleKind::declare_sections(deck::Section& section, const Registry& regi
   InterfaceSection list{*this, registry};
   section.section("Interface", list, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
-  if (!name.empty()) adaptation.film_resolution = particle.rigid() ? 0.5 : motion::AdaptationOptions::default_film_resolution;
+  complete_film_resolution(false);  // before the section is read, so that the deck's values contain the default
   section.section("Adaptation", adaptation, "refinement and coarsening of the particle's surface mesh");
 }
 
-void ParticleKind::reject(const ParticleScene& scene, Rejections& to) const {
-  const bool drop = membrane.fluid_interface(), strong = scene.load_is_strong(), rigid = particle.rigid();
-  const bool desingularised = scene.quadrature.rule == quadrature::LayerRule::desingularised;
-  const bool degenerate = surface.polar() && surface.poles == "plain", constrained = scene.volume.constraint != coupling::VolumeConservation::none;
+void ParticleKind::complete_film_resolution(bool films) {
+  const bool several = !name.empty();
+  if ((several || films) && !adaptation.film_resolution)
+    adaptation.film_resolution = several && particle.rigid() ? 0.5 : motion::AdaptationOptions::default_film_resolution;
+}
+
+void ParticleKind::reject(const ParticleScene& particle_scene, Rejections& to) const {
+  const bool drop = membrane.fluid_interface(), strong = particle_scene.load_is_strong(), rigid = particle.rigid();
+  const bool desingularised = particle_scene.quadrature.rule == quadrature::LayerRule::desingularised;
+  const bool degenerate = surface.polar() && surface.poles == "plain";
+  const bool constrained = particle_scene.volume.constraint != coupling::VolumeConservation::none;
   const std::string plain = "Surface/poles `plain`";
   const Chosen law("Membrane/law `" + membrane.law + "`", "Membrane/law of an elastic membrane");
   to.pair(adaptation.enabled && particle.shape.imported, "Adaptation/enabled", "Particle/shape `file`",
           "a spline space from a file has no mesh to refine");
-  to.pair(scene.accuracy.present && particle.shape.imported, "Accuracy", "Particle/shape `file`",
+  to.pair(particle_scene.accuracy.present && particle.shape.imported, "Accuracy", "Particle/shape `file`",
           "the mesh of a file is not refined, so that its error cannot be estimated");
   to.pair(!constrained && !strong && membrane.load_measure == "reference", "Volume/constraint `none`",
           "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
   to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "the load is not defined at the pole of a degenerate element");
   to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain,
           "the normal is not defined at the pole of a degenerate element");
-  to.pair(!drop && scene.interface_motion() != coupling::MeshMotion::material,
-          {"Interface/motion `" + deck::word(coupling::mesh_motions, scene.interface_motion()) + "`", "Interface/motion other than `material`"}, law,
-          "an elastic membrane moves with the fluid, `material`");
+  to.pair(!drop && particle_scene.interface_motion() != coupling::MeshMotion::material,
+          {"Interface/motion `" + deck::word(coupling::mesh_motions, particle_scene.interface_motion()) + "`",
+           "Interface/motion other than `material`"},
+          law, "an elastic membrane moves with the fluid, `material`");
   to.pair(surfactant && (rigid || !drop), "Interface/surfactant",
           {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"},
           "only the interface of a drop can have a surfactant");
-  const std::pair<bool, Chosen> works[] = {{scene.contact.limiter, "Contact/limiter"},
+  const surface::TubeOptions& tube = particle_scene.tube;
+  const std::pair<bool, Chosen> works[] = {{particle_scene.contact.limiter, "Contact/limiter"},
                                                 {particle.density_difference.has_value(), "Particle/density difference"},
-                                                {scene.tube.repulsion.has_value(), {scene.tube.list() + "/repulsion", "Tube/repulsion"}}};
+                                                {tube.repulsion.has_value(), {tube.list() + "/repulsion", "Tube/repulsion"}}};
   for (const auto& [with, what] : works)
     to.pair(with && strong, what, "Membrane/load `strong`", "its forces are included by virtual work, in the form `weak` only");
 }

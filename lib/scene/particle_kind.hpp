@@ -40,7 +40,7 @@ struct ParticleOptions {
   bool rigid() const { return motion != Motion::deforming; }
   std::string choice() const;  ///< returns for example "Particle/motion `free`", for messages
   void declare(deck::Section& section);
-  void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices that contradict the motion of the particle
+  void reject(const ParticleScene& particle_scene, Rejections& to) const;  ///< adds the choices that contradict the motion of the particle
 };
 
 /// Options that may differ between particles.
@@ -64,7 +64,10 @@ struct ParticleKind {
   /// user-defined loads and fields.
   void declare(deck::Section& section, const Registry& registry);
   void declare_sections(deck::Section& section, const Registry& registry);  ///< declares the sections Membrane, Surface, Interface and Adaptation
-  void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds the choices that contradict the mesh, membrane or interface
+  /// If the deck does not set Adaptation/film resolution, sets its default. A particle of the section Particles always has a default. The particle of
+  /// the section Particle has one if `films` is true: if there are films around a single particle (SharedOptions::has_films_around_one).
+  void complete_film_resolution(bool films);
+  void reject(const ParticleScene& particle_scene, Rejections& to) const;  ///< adds the choices that contradict the mesh, membrane or interface
 };
 
 }  // namespace tanktread

@@ -26,16 +26,16 @@ WallRow row_of(std::span<const stokes::PlaneWall> walls, const spline::Space& sp
 
 }  // namespace
 
-void check_in_front(const ParticleScene& scene, const Body& body) {
-  const WallRow row = row_of(scene.wall.planes(), body.space, body.initial, 1);
+void check_in_front(const ParticleScene& particle_scene, const Body& body) {
+  const WallRow row = row_of(particle_scene.wall.planes(), body.space, body.initial, 1);
   const Vec3& place = row.place;
-  const double gap = row.gap, least = scene.wall.contact_gap * scene.least_radius.value_or(scene.radius());
+  const double gap = row.gap, least = particle_scene.wall.contact_gap * particle_scene.least_radius.value_or(particle_scene.radius());
   if (gap >= least) return;
-  const std::string name = scene.name.empty() ? "The particle" : scene.path();
+  const std::string name = particle_scene.name.empty() ? "The particle" : particle_scene.path();
   const std::string where = formatted(" at [%.4g, %.4g, %.4g] ", place[0], place[1], place[2]);
   if (gap <= 0) throw UserError(name + " crosses the wall at the start:" + where + formatted("it reaches %.4g behind it.", -gap));
   throw UserError(name + " starts too close to the wall:" + where +
-                  formatted("the gap is %.4g, less than Wall/contact gap, %g R_C = %.4g.", gap, scene.wall.contact_gap, least));
+                  formatted("the gap is %.4g, less than Wall/contact gap, %g R_C = %.4g.", gap, particle_scene.wall.contact_gap, least));
 }
 
 void WallRow::add_columns(const Scene& scene, Columns& to) const {

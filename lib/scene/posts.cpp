@@ -85,35 +85,35 @@ void take_posts(Scene& scene) {
   scene.particles.emplace_back().particle.shape.radius = scene.posts.front().radius;
 }
 
-void check_posts(const SharedOptions& scene) {
-  const std::optional<stokes::PeriodicCell> cell = scene.domain.cell();
-  if (scene.posts.empty()) {
-    if (scene.flow.pressure_gradient && !scene.wall.solid)
+void check_posts(const SharedOptions& shared) {
+  const std::optional<stokes::PeriodicCell> cell = shared.domain.cell();
+  if (shared.posts.empty()) {
+    if (shared.flow.pressure_gradient && !shared.wall.solid)
       throw UserError(
           "Flow/pressure gradient needs two walls (Wall/distance) or posts (Particle/shape `cylinder`) in a Domain, because otherwise "
           "nothing resists the flow that it drives.");
     return;
   }
-  refuse(scene.tube.present, "Particle/shape `cylinder`", scene.tube.list(), "a post extends over a whole period and would cross the wall");
+  refuse(shared.tube.present, "Particle/shape `cylinder`", shared.tube.list(), "a post extends over a whole period and would cross the wall");
   if (!cell) throw UserError("Particle/shape `cylinder` needs a Domain: a post is one period of a cylinder along a periodic direction.");
-  if (!scene.wall.solid && cell->n() < 3)
+  if (!shared.wall.solid && cell->n() < 3)
     throw UserError(
         "Particle/shape `cylinder` needs a Domain that is periodic in three directions, or walls: give Domain/periodic `x1 x2 x3` or "
         "Wall/distance. Otherwise the velocity due to the forces of posts would grow without limit far from them.");
-  refuse(scene.wall.solid && !scene.wall.distance, "Particle/shape `cylinder`", "Wall without Wall/distance",
+  refuse(shared.wall.solid && !shared.wall.distance, "Particle/shape `cylinder`", "Wall without Wall/distance",
          "the velocity due to the forces of posts would grow without limit far from the wall; give Wall/distance");
-  refuse(!scene.wall.solid && scene.flow.type != "quiescent", "Particle/shape `cylinder`", scene.flow.choice(),
+  refuse(!shared.wall.solid && shared.flow.type != "quiescent", "Particle/shape `cylinder`", shared.flow.choice(),
          "only a pressure gradient can drive a flow past posts; give Flow/type `quiescent` and Flow/pressure gradient");
-  for (std::size_t p = 0; p < scene.posts.size(); ++p) {
-    const Post& post = scene.posts[p];
+  for (std::size_t p = 0; p < shared.posts.size(); ++p) {
+    const Post& post = shared.posts[p];
     const int axis = post.axis + 1;
     if (period_of(post, *cell).isZero(0))
       throw UserError(formatted("%s is x%d, but no lattice vector of Domain is along x%d.", post.path("axis").c_str(), axis, axis));
     for (std::size_t q = 0; q <= p; ++q)
-      if (distance(post, scene.posts[q], *cell, p == q) <= post.radius + scene.posts[q].radius)
+      if (distance(post, shared.posts[q], *cell, p == q) <= post.radius + shared.posts[q].radius)
         throw UserError(p == q ? post.path() + " touches its own image: its radius must be smaller than half the period across its axis."
-                               : post.path() + " and " + scene.posts[q].path() + " touch each other.");
-    for (const stokes::PlaneWall& wall : scene.wall.planes())
+                               : post.path() + " and " + shared.posts[q].path() + " touch each other.");
+    for (const stokes::PlaneWall& wall : shared.wall.planes())
       if (wall.height(post.center) <= post.radius) throw UserError(post.path() + " touches the wall.");
   }
 }

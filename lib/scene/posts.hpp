@@ -33,6 +33,6 @@ void take_posts(Scene& scene);
 
 /// Throws UserError if a post does not fit into the scene. If there are no posts, throws UserError if the scene has a pressure gradient but neither
 /// posts nor two walls, so that nothing resists the flow.
-void check_posts(const SharedOptions& scene);
+void check_posts(const SharedOptions& shared);
 
 }  // namespace tanktread

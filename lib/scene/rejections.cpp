@@ -12,25 +12,25 @@ namespace tanktread {
 namespace {
 
 /// Adds to `to` the choices that contradict user-defined loads and fields.
-void reject_registered(const ParticleScene& scene, Rejections& to) {
-  to.pair(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`",
+void reject_registered(const ParticleScene& particle_scene, Rejections& to) {
+  to.pair(!particle_scene.loads.empty() && particle_scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`",
           "loads are included by virtual work, in the form `weak` only");
   if (to.every())  // for a given deck, Load::rigid_conditions of each load is checked instead
     to.pair(true, "Membrane/loads that depend on the position", "Domain", "such a load is not the same in all cells");
-  to.pair(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields",
-          {scene.particle.choice(), "Particle/motion `prescribed` or `free`"}, "only deformable particles have surface fields");
+  to.pair(!particle_scene.fields.empty() && particle_scene.particle.rigid(), "Interface/fields",
+          {particle_scene.particle.choice(), "Particle/motion `prescribed` or `free`"}, "only deformable particles have surface fields");
 }
 
 }  // namespace
 
-void reject_power(const SharedOptions& scene, bool strong, Rejections& to) {
-  const stokes::FlowOptions& flow = scene.flow;
-  const bool asked = scene.output.power_balance, plates = scene.wall.solid && scene.wall.distance;
+void reject_power(const SharedOptions& shared, bool strong, Rejections& to) {
+  const stokes::FlowOptions& flow = shared.flow;
+  const bool asked = shared.output.power_balance, plates = shared.wall.solid && shared.wall.distance;
   const std::string word = "Output/power balance";
-  to.pair(asked && flow.type == "parabolic" && scene.domain.present && !plates, word,
+  to.pair(asked && flow.type == "parabolic" && shared.domain.present && !plates, word,
           {"Domain and " + flow.choice(), "Domain and Flow/type `parabolic`"},
           "the pressure of that flow does work on the flow that particles cause through a cell, which is included only between two plates");
-  to.pair(asked && !scene.tube.present && flow.user && !flow.user->affine(), word, {flow.choice(), "Flow/type of an added flow"},
+  to.pair(asked && !shared.tube.present && flow.user && !flow.user->affine(), word, {flow.choice(), "Flow/type of an added flow"},
           "the pressure of an added flow is not known unless its gradient is uniform");
   to.pair(asked && strong, word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
 }
@@ -53,9 +53,9 @@ void ParticleScene::reject(Rejections& to) const {
 
 std::string rejection_table(const Registry& registry) {
   Rejections all(true);
-  ParticleScene scene;
-  scene.registry = &registry;
-  scene.reject(all);
+  ParticleScene particle_scene;
+  particle_scene.registry = &registry;
+  particle_scene.reject(all);
   std::vector<Rejections::Row> rows = all.rows();
   std::ranges::stable_sort(rows, {}, &Rejections::Row::one);
   std::string text = "| choice | with | why not |\n|---|---|---|\n";

@@ -70,8 +70,8 @@ struct ParticlesSection {
 
 /// Throws UserError if the viscosity ratio is too large. The system for the velocity loses one digit to round-off per factor of ten in the ratio. The
 /// solver stagnates at a ratio of 1e15 times the tolerance in a tube, and at higher ratios without a tube.
-void check_viscosity_ratio(const ParticleScene& scene) {
-  const double ratio = scene.particle.viscosity_ratio, most = 1e14 * scene.solvers.tolerance;
+void check_viscosity_ratio(const ParticleScene& particle_scene) {
+  const double ratio = particle_scene.particle.viscosity_ratio, most = 1e14 * particle_scene.solvers.tolerance;
   if (ratio > most)
     throw UserError(
         formatted("Particle/viscosity ratio must be at most %.3g, 1e14 times Solvers/tolerance, because rounding errors grow with it, but "
@@ -80,8 +80,8 @@ void check_viscosity_ratio(const ParticleScene& scene) {
 }
 
 /// Throws UserError if a key of the particle's motion belongs to another motion.
-void check_motion(const ParticleScene& scene) {
-  const ParticleOptions& particle = scene.particle;
+void check_motion(const ParticleScene& particle_scene) {
+  const ParticleOptions& particle = particle_scene.particle;
   if (particle.motion != Motion::prescribed && (particle.velocity || particle.angular_velocity))
     throw UserError(std::string("Particle/") + (particle.velocity ? "velocity" : "angular velocity") +
                     " belongs to Particle/motion `prescribed`, but Particle/motion is " + text(particle.motion) + ".");
@@ -101,26 +101,26 @@ void list_idle_gravity(Scene& scene) {
 }
 
 /// Throws UserError if a key needs another key, or a section about the surroundings of the particle, that the deck does not have.
-void check_needs(const ParticleScene& scene) {
-  if (scene.particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
-  if (scene.flow.type == "duct" && !scene.tube.present)
+void check_needs(const ParticleScene& particle_scene) {
+  if (particle_scene.particle.density_difference && !particle_scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
+  if (particle_scene.flow.type == "duct" && !particle_scene.tube.present)
     throw UserError("Flow/type `duct` needs a section Tube, with at least Tube/section, or a section Channel.");
-  if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present && !scene.tube.present && !scene.domain.present)
+  if (particle_scene.adaptation.film_resolution && particle_scene.name.empty() && !particle_scene.has_films_around_one())
     throw UserError("Adaptation/film resolution needs several particles, a Domain or a wall, because otherwise there are no films.");
 }
 
 /// Throws UserError if the final time or the expected period is missing, or if it is not a multiple of the period of the flow.
-void check_times(const ParticleScene& scene) {
-  const bool in_time = scene.runs_in_time() && !scene.continuation.present && !scene.only_solids;
-  if (std::isnan(scene.time.final_time) && in_time && scene.particle.motion != Motion::prescribed)
+void check_times(const ParticleScene& particle_scene) {
+  const bool in_time = particle_scene.runs_in_time() && !particle_scene.continuation.present && !particle_scene.only_solids;
+  if (std::isnan(particle_scene.time.final_time) && in_time && particle_scene.particle.motion != Motion::prescribed)
     throw UserError("Time/final time is missing: give the time at which the run ends, in the deck's unit of time.");
-  if (scene.periodic.present && std::isnan(scene.periodic.period))
+  if (particle_scene.periodic.present && std::isnan(particle_scene.periodic.period))
     throw UserError("Periodic/period is missing: give the expected period, in the deck's unit of time.");
-  if (const auto& history = scene.flow.history; scene.periodic.present && history && history->frequency) {
-    const double cycles = scene.periodic.period * *history->frequency;
+  if (const auto& history = particle_scene.flow.history; particle_scene.periodic.present && history && history->frequency) {
+    const double cycles = particle_scene.periodic.period * *history->frequency;
     if (cycles < 0.5 || std::abs(cycles - std::round(cycles)) > 1e-9 * cycles)
       throw UserError(formatted("Periodic/period must be a multiple of the period of Flow/history, %.10g, but is %.10g.", 1 / *history->frequency,
-                                scene.periodic.period));
+                                particle_scene.periodic.period));
   }
 }
 
@@ -145,15 +145,14 @@ void check_several(const Scene& scene) {
 }
 
 /// Throws UserError if the mesh cannot have the element lengths that the adaptation requires.
-void check_adaptation(const ParticleScene& scene) {
-  if (!scene.adaptation.enabled) return;
+void check_adaptation(const ParticleScene& particle_scene) {
+  if (!particle_scene.adaptation.enabled) return;
   // Element length: side of a square with the mean element area on the sphere of equal volume.
-  const double area = 4 * std::numbers::pi * scene.radius() * scene.radius();
-  scene.adaptation.check(static_cast<int>(scene.surface.n_points()), std::sqrt(area / scene.surface.n_elements()));
+  const double area = 4 * std::numbers::pi * particle_scene.radius() * particle_scene.radius();
+  particle_scene.adaptation.check(static_cast<int>(particle_scene.surface.n_points()), std::sqrt(area / particle_scene.surface.n_elements()));
 }
 
-/// Sets the members of options that follow from several sections and that no section reads while it is declared. If the scene has one particle in a
-/// duct, in front of a wall or on a lattice, also sets the default of Adaptation/film resolution.
+/// Sets the members of options that follow from several sections and that no section reads while it is declared.
 void complete_derived(Scene& scene) {
   if (scene.spectrum.present) scene.quadrature.choose_smooth_sums();
   scene.periodic.driven = scene.flow.history.has_value();
@@ -161,10 +160,7 @@ void complete_derived(Scene& scene) {
     scene.tube.period = sides->front();
   scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
   scene.flow.plates = scene.wall.plates();
-  const bool films = scene.wall.present || scene.tube.present || scene.domain.present;
-  for (ParticleKind& kind : scene.particles)
-    if (films && kind.name.empty() && !kind.adaptation.film_resolution)
-      kind.adaptation.film_resolution = motion::AdaptationOptions::default_film_resolution;
+  for (ParticleKind& kind : scene.particles) kind.complete_film_resolution(scene.has_films_around_one());
 }
 
 /// Declares the sections of particles. Returns the particles of the section Particles. If the deck does not have this section, returns the single
@@ -326,9 +322,9 @@ double SharedOptions::next_snapshot(double now) const {
 }
 
 ParticleScene Scene::of(const ParticleKind& kind) const {
-  ParticleScene scene(*this, kind);
-  scene.solvers.rigid_bodies = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
-  return scene;
+  ParticleScene particle_scene(*this, kind);
+  particle_scene.solvers.rigid_bodies = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
+  return particle_scene;
 }
 
 std::vector<ParticleScene> Scene::particle_scenes() const {
@@ -342,17 +338,17 @@ ParticleScene Scene::first_deforming() const {
   return of(found == particles.end() ? particles.front() : *found);
 }
 
-std::string_view why_in_system(const SharedOptions& scene, const ParticleKind& kind) {
-  if (scene.only_solids) return {};
+std::string_view why_in_system(const SharedOptions& shared, const ParticleKind& kind) {
+  if (shared.only_solids) return {};
   if (!kind.name.empty()) return "Particles";
   if (!kind.particle.rigid()) return "Particle/motion";
-  if (scene.domain.present) return "Domain";
-  if (scene.output.power_balance) return "Output/power balance";
-  if (scene.steady.present || scene.periodic.present || scene.spectrum.present) return "Steady, Periodic or Spectrum";
-  if (scene.tube.repulsion) return "repulsion";
-  if (scene.flow.history && kind.particle.motion == Motion::prescribed) return "Flow/history";
-  if (!scene.series.empty()) return "Output/series";
-  return scene.flow.user && !scene.flow.user->affine() ? "Flow/type" : "";
+  if (shared.domain.present) return "Domain";
+  if (shared.output.power_balance) return "Output/power balance";
+  if (shared.steady.present || shared.periodic.present || shared.spectrum.present) return "Steady, Periodic or Spectrum";
+  if (shared.tube.repulsion) return "repulsion";
+  if (shared.flow.history && kind.particle.motion == Motion::prescribed) return "Flow/history";
+  if (!shared.series.empty()) return "Output/series";
+  return shared.flow.user && !shared.flow.user->affine() ? "Flow/type" : "";
 }
 
 /// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for several bodies of

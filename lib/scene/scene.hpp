@@ -77,6 +77,8 @@ struct SharedOptions {
   std::vector<std::pair<std::string, std::string>> files;  ///< files that the deck names: path, and name of the copy that the run keeps
 
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
+  /// Returns true if a single particle has films of fluid next to it: at a wall, or between the particle and its periodic images.
+  bool has_films_around_one() const { return wall.present || tube.present || domain.present; }
   /// Returns the section of the deck (Steady, Periodic or Spectrum) that replaces the simulation in time.
   Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }
   /// Returns the type of the flow, for messages about rejected combinations.
@@ -92,14 +94,14 @@ struct SharedOptions {
 
 /// Returns the key or section of the deck that requires a coupled system of all particles; empty if no system is required. No system is required if
 /// the scene has only solids, or if it is the motion or resistance problem of one rigid body, `kind`, which is then the only particle.
-std::string_view why_in_system(const SharedOptions& scene, const ParticleKind& kind);
+std::string_view why_in_system(const SharedOptions& shared, const ParticleKind& kind);
 
 /// One particle of a scene, with the options that it shares with the others.
 struct ParticleScene : SharedOptions, ParticleKind {
   ParticleScene() = default;
   ParticleScene(const SharedOptions& shared, const ParticleKind& kind) : SharedOptions(shared), ParticleKind(kind) {}
 
-  std::optional<double> least_radius;  ///< smallest radius R_C of all particles, by which gaps are divided; set by members()
+  std::optional<double> least_radius;  ///< smallest radius R_C of all particles, by which gaps are divided; set by make_members()
 
   /// Throws UserError if options of this particle, or shared options, contradict each other or if the problem is too large. `found`: rejected
   /// combinations of the whole scene.
@@ -128,7 +130,7 @@ struct ParticleScene : SharedOptions, ParticleKind {
 };
 
 /// Adds the choices that exclude the power balance (6.11) of all particles. `strong`: true for Membrane/load `strong`.
-void reject_power(const SharedOptions& scene, bool strong, Rejections& to);
+void reject_power(const SharedOptions& shared, bool strong, Rejections& to);
 
 /// Options of all modules: the shared options and the options of each particle.
 struct Scene : SharedOptions {

@@ -49,18 +49,18 @@ std::function<bool(const Vec3& x)> outside_of(const Post& post, const stokes::Pe
 }
 
 /// Returns the free directions of (2.46), in which the walls do not determine the mean velocity.
-std::vector<Vec3> free_directions(const SharedOptions& scene, const stokes::PeriodicCell& cell) {
+std::vector<Vec3> free_directions(const SharedOptions& shared, const stokes::PeriodicCell& cell) {
   std::vector<Vec3> free;
   if (cell.n() == 3)
     for (int c = 0; c < 3; ++c) free.push_back(Vec3::Unit(c));
-  else if (!scene.wall.distance)
-    for (int c = 0; c < 2; ++c) free.emplace_back(scene.wall.planes().front().axes().row(c).transpose());
+  else if (!shared.wall.distance)
+    for (int c = 0; c < 2; ++c) free.emplace_back(shared.wall.planes().front().axes().row(c).transpose());
   return free;
 }
 
 }  // namespace
 
-std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
+std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phases) {
   if (!scene.wall.solid && scene.posts.empty()) return {};
   const stokes::PeriodicCell cell = *scene.domain.cell();
   const stokes::AmbientFlow flow(scene.flow);
@@ -108,9 +108,9 @@ std::string solids_line(const Scene& scene, int ranks) {
   return line + formatted("factored once: %.1f MB on each of %d rank%s", 72e-6 * points * points, ranks, ranks > 1 ? "s" : "");
 }
 
-void SolidsRow::add_columns(const SharedOptions& scene, Columns& to) const {
+void SolidsRow::add_columns(const SharedOptions& shared, Columns& to) const {
   constexpr const char *walls = "; with walls in a Domain", *posts = "; with posts", *both = "; with two walls or posts in a Domain";
-  if (to.when(scene.wall.solid)) {
+  if (to.when(shared.wall.solid)) {
     to.add(wall_force, "x1 x2 x3",
            {"wall_force_",
             "force",
@@ -118,7 +118,7 @@ void SolidsRow::add_columns(const SharedOptions& scene, Columns& to) const {
             "included: between two walls it is chosen such that the normal forces on both are equal",
             {},
             walls});
-    if (to.when(scene.wall.distance.has_value()))
+    if (to.when(shared.wall.distance.has_value()))
       to.add(second_wall_force, "x1 x2 x3",
              {"second_wall_force_", "force", "component # of the force of the fluid on one period of the second wall", {}, walls});
   }
@@ -127,9 +127,9 @@ void SolidsRow::add_columns(const SharedOptions& scene, Columns& to) const {
     to.add(force, "x1 x2 x3",
            {prefix + "post_force_", "force", "component # of the force of the fluid on one period of the post", {}, posts});
   };
-  for (std::size_t k = 0; k < scene.posts.size(); ++k) add_force(scene.posts[k].name, k < post_forces.size() ? post_forces[k] : Vec3::Zero());
-  if (scene.posts.empty() && to.when(false)) add_force({}, Vec3::Zero());
-  if (!to.when(scene.wall.distance.has_value() || !scene.posts.empty())) return;
+  for (std::size_t k = 0; k < shared.posts.size(); ++k) add_force(shared.posts[k].name, k < post_forces.size() ? post_forces[k] : Vec3::Zero());
+  if (shared.posts.empty() && to.when(false)) add_force({}, Vec3::Zero());
+  if (!to.when(shared.wall.distance.has_value() || !shared.posts.empty())) return;
   to.add(mean_velocity, "x1 x2 x3",
          {"mean_velocity_",
           "length/time",
@@ -137,7 +137,7 @@ void SolidsRow::add_columns(const SharedOptions& scene, Columns& to) const {
           "posts included: flow rate divided by the area of the cross-section",
           {},
           both});
-  if (to.when(scene.flow.pressure_gradient.has_value()))
+  if (to.when(shared.flow.pressure_gradient.has_value()))
     to.add(
         permeability,
         {"permeability",
@@ -148,10 +148,10 @@ void SolidsRow::add_columns(const SharedOptions& scene, Columns& to) const {
          both});
 }
 
-SolidsRow solids_row(const SharedOptions& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient, const Solids::Flow& flow,
+SolidsRow solids_row(const SharedOptions& shared, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient, const Solids::Flow& flow,
                      const Vec3& particle_force, const Vec3& velocity_integral) {
   const Solids& solids = *of.solids;
-  const Vec3 gradient = ambient.change() * scene.flow.pressure_gradient.value_or(Vec3::Zero());
+  const Vec3 gradient = ambient.change() * shared.flow.pressure_gradient.value_or(Vec3::Zero());
   std::vector<Vec3> forces = solids.forces(flow.force);
   SolidsRow row;
   double volume = solids.cell().volume();
@@ -164,12 +164,12 @@ SolidsRow solids_row(const SharedOptions& scene, const coupling::SolidScene& of,
     const Vec3 each = n.dot(across) / static_cast<double>(of.planes.size()) * n;
     const auto on_wall = [&](std::size_t k) -> Vec3 {
       const stokes::PlaneWall& wall = of.planes[k];
-      return scene.flow.viscosity * volume * (ambient.gradient(wall.point()) * wall.normal()) - (forces[k] - n.dot(forces[k]) * n) + each;
+      return shared.flow.viscosity * volume * (ambient.gradient(wall.point()) * wall.normal()) - (forces[k] - n.dot(forces[k]) * n) + each;
     };
     row.wall_force = on_wall(0);
     if (of.planes.size() > 1) {
       row.second_wall_force = on_wall(1);
-      const double distance = *scene.wall.distance;
+      const double distance = *shared.wall.distance;
       volume *= distance;
       const quadrature::GaussRule& rule = quadrature::gauss(2);
       for (int q = 0; q < 2; ++q)
@@ -179,15 +179,15 @@ SolidsRow solids_row(const SharedOptions& scene, const coupling::SolidScene& of,
   }
   // In the integral equation, the pressure gradient also drives a fictitious flow inside the post. The force and the flow rate of this fictitious
   // flow are removed here.
-  for (std::size_t k = 0; k < scene.posts.size(); ++k) {
-    const Post& post = scene.posts[k];
+  for (std::size_t k = 0; k < shared.posts.size(); ++k) {
+    const Post& post = shared.posts[k];
     const Vec3 along = Vec3::Unit(post.axis);
     const double section = std::numbers::pi * post.radius * post.radius, length = period_of(post, solids.cell()).norm(), slope = gradient[post.axis];
     row.post_forces.push_back(-forces[of.planes.size() + k] + slope * section * length * along);
-    row.mean_velocity += slope * section * post.radius * post.radius / (8 * scene.flow.viscosity) * length / volume * along;
+    row.mean_velocity += slope * section * post.radius * post.radius / (8 * shared.flow.viscosity) * length / volume * along;
   }
-  if (gradient.norm() > 1e-12 * scene.flow.pressure_gradient.value_or(Vec3::Zero()).norm())
-    row.permeability = -scene.flow.viscosity * row.mean_velocity.dot(gradient) / gradient.squaredNorm();
+  if (gradient.norm() > 1e-12 * shared.flow.pressure_gradient.value_or(Vec3::Zero()).norm())
+    row.permeability = -shared.flow.viscosity * row.mean_velocity.dot(gradient) / gradient.squaredNorm();
   return row;
 }
 

@@ -15,7 +15,7 @@
 namespace tanktread {
 
 /// Returns the plates and posts of a scene with the factored operator of their tractions; nothing if the scene has no plates and posts. Collective.
-std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases);
+std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phases);
 
 /// Throws UserError if a particle crosses a post at the start.
 void check_outside_of_posts(const Scene& scene, const std::vector<Member>& members);
@@ -29,13 +29,13 @@ struct SolidsRow {
   std::vector<Vec3> post_forces;                                     ///< forces of the fluid on the posts
   Vec3 mean_velocity = Vec3::Zero();  ///< velocity averaged over the cell, including particles and posts
   double permeability = std::numeric_limits<double>::quiet_NaN();
-  void add_columns(const SharedOptions& scene, Columns& to) const;
+  void add_columns(const SharedOptions& shared, Columns& to) const;
 };
 
 /// Returns the data of plates and posts for the flow `flow` around them in the ambient flow `ambient`. `particle_force`: force of the particles on
 /// the fluid. `velocity_integral`: see SolidResponse::flow_integral; used only
 /// if there are two plates.
-SolidsRow solids_row(const SharedOptions& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient,
+SolidsRow solids_row(const SharedOptions& shared, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient,
                      const coupling::Solids::Flow& flow, const Vec3& particle_force, const Vec3& velocity_integral);
 
 }  // namespace tanktread

@@ -17,7 +17,7 @@ namespace {
 
 /// Throws UserError if the particle does not fit into the channel: if a sample point of its surface is in the wall or too close to an end, or if the
 /// gap to the wall is too small.
-void check_fits_channel(const ParticleScene& scene, const Body& body, const surface::TubeWall& wall) {
+void check_fits_channel(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall& wall) {
   const surface::Channel& channel = *wall.channel;
   const surface::Patches particle(surface::BezierMap(body.space), body.initial), around(surface::BezierMap(wall.space), wall.net);
   double first = channel.end(), last = channel.start();
@@ -37,16 +37,16 @@ void check_fits_channel(const ParticleScene& scene, const Body& body, const surf
                               "Channel/start = %.4g and Channel/end = %.4g.",
                               first, last, margin, channel.start(), channel.end()));
   const surface::ElementBoxes its(particle), walls(around);
-  const double least = scene.tube.contact_gap * scene.least_radius.value_or(body.radius);
+  const double least = particle_scene.tube.contact_gap * particle_scene.least_radius.value_or(body.radius);
   if (const double gap = surface::closest_points(its, walls, 1e-5 * wall.radius(), least).gap; gap < least)
     throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
-                              gap, scene.tube.contact_gap, least));
+                              gap, particle_scene.tube.contact_gap, least));
 }
 
-void check_fits(const ParticleScene& scene, const Body& body) {
-  if (const auto wall = body.duct->fixed_wall()) return check_fits_channel(scene, body, *wall);
+void check_fits(const ParticleScene& particle_scene, const Body& body) {
+  if (const auto wall = body.duct->fixed_wall()) return check_fits_channel(particle_scene, body, *wall);
   const surface::Outline& outline = body.duct->outline();
-  const Vec3& centre = scene.particle.shape.center;
+  const Vec3& centre = particle_scene.particle.shape.center;
   const double from_axis = outline.distance({centre[1], centre[2]});
   if (from_axis <= 0)
     throw UserError(
@@ -56,11 +56,11 @@ void check_fits(const ParticleScene& scene, const Body& body) {
   if (nearest.gap <= 0)
     throw UserError(formatted("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.",
                               where.c_str(), -nearest.gap, body.radius, outline.radius()));
-  const double least = scene.tube.contact_gap * scene.least_radius.value_or(body.radius);
+  const double least = particle_scene.tube.contact_gap * particle_scene.least_radius.value_or(body.radius);
   if (nearest.gap < least)
     throw UserError(
         formatted("The particle starts too close to the tube's wall: %s the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g.",
-                  where.c_str(), nearest.gap, scene.tube.contact_gap, least));
+                  where.c_str(), nearest.gap, particle_scene.tube.contact_gap, least));
 }
 
 /// Adds the flow rate and the pressure drops of the empty duct to the row. They are 0 if `flow` is not a duct flow.
@@ -74,20 +74,21 @@ TubeRow with_channel(const coupling::Tube& tube, const stokes::AmbientFlow& flow
 
 }  // namespace
 
-void reject_with_tube(const ParticleScene& scene, Rejections& to) {
-  const stokes::FlowOptions& flow = scene.flow;
-  const coupling::SolverOptions& solvers = scene.solvers;
-  const bool tube = scene.tube.present, straight = tube && !scene.tube.channel, all_blocks = !solvers.eliminates_walls();
-  const Chosen confined = scene.duct_choice(), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
-  to.pair(!scene.runs_in_time() && scene.tube.channel && flow.held == "flow rate", scene.sought(), "Flow/held `flow rate`",
+void reject_with_tube(const ParticleScene& particle_scene, Rejections& to) {
+  const stokes::FlowOptions& flow = particle_scene.flow;
+  const coupling::SolverOptions& solvers = particle_scene.solvers;
+  const bool tube = particle_scene.tube.present, straight = tube && !particle_scene.tube.channel, all_blocks = !solvers.eliminates_walls();
+  const Chosen confined = particle_scene.duct_choice(), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
+  to.pair(!particle_scene.runs_in_time() && particle_scene.tube.channel && flow.held == "flow rate", particle_scene.sought(), "Flow/held `flow rate`",
           "a particle in a channel moves with the fluid if the flow rate is prescribed, and can be at rest only if the pressure drop is; "
           "give `pressure drop`");
   const bool couette = straight && flow.type == "simple shear" && !flow.history;
-  to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, scene.flow_choice(),
+  to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, particle_scene.flow_choice(),
           "that flow is for unbounded fluid; in a tube Flow/type is `duct`, `quiescent` or, in a straight tube and without Flow/history, "
           "`simple shear`, with which the wall moves");
-  to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the length of a periodic tube is its period");
-  to.pair(tube && scene.quadrature.rule == quadrature::LayerRule::desingularised, "Quadrature/rule `desingularised`", confined,
+  to.pair(straight && particle_scene.domain.present && particle_scene.tube.length, "Tube/length", "Domain",
+          "the length of a periodic tube is its period");
+  to.pair(tube && particle_scene.quadrature.rule == quadrature::LayerRule::desingularised, "Quadrature/rule `desingularised`", confined,
           "its identities hold for closed surfaces, and the wall is not closed");
   to.pair(solvers.wall == "iterative" && straight, "Solvers/wall `iterative`", "Tube", "the wall of a straight tube is always factored");
   to.pair(tube && solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,
@@ -96,27 +97,28 @@ void reject_with_tube(const ParticleScene& scene, Rejections& to) {
           "the system of all blocks prescribes the flow rate; give `schur`");
 }
 
-void check_fit(const ParticleScene& scene, const Body& body) {
-  if (!scene.tube.present) return;
+void check_fit(const ParticleScene& particle_scene, const Body& body) {
+  if (!particle_scene.tube.present) return;
   try {
-    check_fits(scene, body);
+    check_fits(particle_scene, body);
   } catch (const UserError& error) {
-    if (scene.name.empty()) throw;
-    throw UserError(scene.path() + ": " + error.what());
+    if (particle_scene.name.empty()) throw;
+    throw UserError(particle_scene.path() + ": " + error.what());
   }
 }
 
-std::shared_ptr<const stokes::DuctFlow> duct(const ParticleScene& scene) {
-  if (!scene.tube.present) return {};
-  const double speed = scene.flow.mean_velocity ? *scene.flow.mean_velocity : scene.rate() * scene.radius();
-  if (scene.tube.channel)
-    return std::make_shared<const coupling::ChannelFlow>(scene.tube, scene.flow.viscosity, speed, scene.quadrature,
-                                                         coupling::WallSolver{scene.solvers.wall, scene.solvers.tolerance}, scene.walls);
-  return std::make_shared<const stokes::DuctFlow>(scene.tube, scene.flow.viscosity, speed);
+std::shared_ptr<const stokes::DuctFlow> make_duct(const ParticleScene& particle_scene) {
+  if (!particle_scene.tube.present) return {};
+  const double speed = particle_scene.flow.mean_velocity ? *particle_scene.flow.mean_velocity : particle_scene.rate() * particle_scene.radius();
+  if (particle_scene.tube.channel)
+    return std::make_shared<const coupling::ChannelFlow>(particle_scene.tube, particle_scene.flow.viscosity, speed, particle_scene.quadrature,
+                                                         coupling::WallSolver{particle_scene.solvers.wall, particle_scene.solvers.tolerance},
+                                                         particle_scene.walls);
+  return std::make_shared<const stokes::DuctFlow>(particle_scene.tube, particle_scene.flow.viscosity, speed);
 }
 
-std::shared_ptr<const surface::TubeWall> wall(const SharedOptions& scene, const Body& body) {
-  if (!scene.tube.present) return {};
+std::shared_ptr<const surface::TubeWall> make_wall(const SharedOptions& shared, const Body& body) {
+  if (!shared.tube.present) return {};
   if (auto fixed = body.duct->fixed_wall()) return fixed;
   const surface::Outline& outline = body.duct->outline();
   double first = 0, last = 0;  // smallest and largest x1, relative to the centroid, in the resting and the initial shape
@@ -125,8 +127,8 @@ std::shared_ptr<const surface::TubeWall> wall(const SharedOptions& scene, const 
     first = std::min(first, x1.minCoeff()), last = std::max(last, x1.maxCoeff());
   }
   const double length = last - first;
-  surface::TubeOptions options = scene.tube;
-  if (const double period = scene.tube.period; period > 0) {
+  surface::TubeOptions options = shared.tube;
+  if (const double period = shared.tube.period; period > 0) {
     const int elements = surface::elements_per_period(options, outline.radius(), period, std::min(length, period) / 2);
     if (const double most = most_wall_points() / options.azimuthal_elements; elements > most)
       throw UserError(
@@ -134,28 +136,28 @@ std::shared_ptr<const surface::TubeWall> wall(const SharedOptions& scene, const 
                     elements, most));
     return std::make_shared<surface::TubeWall>(surface::periodic_tube_wall(outline, options, period, elements, std::min(length, period) / 2));
   }
-  const double along = surface::tube_length(scene.tube, outline.radius(), length);
+  const double along = surface::tube_length(shared.tube, outline.radius(), length);
   auto wall = std::make_shared<surface::TubeWall>(surface::tube_wall(outline, options, along, length / 2));
   surface::check_length(*wall, first, last);
   return wall;
 }
 
-std::unique_ptr<coupling::Tube> tube(const SharedOptions& scene, const Body& body, Phases& phases) {
+std::unique_ptr<coupling::Tube> make_tube(const SharedOptions& shared, const Body& body, Phases& phases) {
   if (!body.wall) return {};
   coupling::TubeParameters parameters;
-  parameters.viscosity = scene.flow.viscosity;
-  if (scene.tube.channel) parameters.symmetry = body.symmetry;
-  parameters.holds_pressure_drop = scene.flow.held == "pressure drop";
-  parameters.quadrature = scene.quadrature;
-  parameters.direct = scene.solvers.direct;
-  parameters.walls = scene.walls;
+  parameters.viscosity = shared.flow.viscosity;
+  if (shared.tube.channel) parameters.symmetry = body.symmetry;
+  parameters.holds_pressure_drop = shared.flow.held == "pressure drop";
+  parameters.quadrature = shared.quadrature;
+  parameters.direct = shared.solvers.direct;
+  parameters.walls = shared.walls;
   if (const auto channel = std::dynamic_pointer_cast<const coupling::ChannelFlow>(body.duct))
     return std::make_unique<coupling::Tube>(channel, body.space, parameters, phases);
   return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
 }
 
-void TubeRow::add_columns(const SharedOptions& scene, Columns& to) const {
-  if (!to.when(scene.tube.present)) return;
+void TubeRow::add_columns(const SharedOptions& shared, Columns& to) const {
+  if (!to.when(shared.tube.present)) return;
   constexpr const char *tube = "; in a tube", *channel = "; in a channel";
   to.add(pressure_drop,
          {"disturbed_pressure_drop",
@@ -165,11 +167,11 @@ void TubeRow::add_columns(const SharedOptions& scene, Columns& to) const {
           {},
           tube});
   add_gap(gap, to);
-  if (to.when(scene.flow.held == "pressure drop"))
+  if (to.when(shared.flow.held == "pressure drop"))
     to.add(flow_rate, {"flow_rate", "length^3/time",
                        "flow rate through the tube or channel with the particles in it, if Flow/held is `pressure drop`",
                        {}, "; if Flow/held is `pressure drop`"});
-  if (to.when(scene.tube.channel.has_value())) {
+  if (to.when(shared.tube.channel.has_value())) {
     to.add(channel_pressure_drop,
            {"channel_pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel, at this time (2.30)", {}, channel});
     to.add(channel_extra_pressure_drop, {"channel_extra_pressure_drop",
@@ -192,7 +194,7 @@ void TubeRow::add_columns(const SharedOptions& scene, Columns& to) const {
           "R_T (radius of the circle with the area of the cross-section); a measure of error that vanishes in the exact solution (2.14)",
           {},
           tube});
-  if (to.when(!scene.domain.present))
+  if (to.when(!shared.domain.present))
     to.add(checks.cap_velocity, {"cap_velocity",
                                  "1",
                                  "largest disturbance velocity on the ends of the computed part of the tube divided by the mean velocity of "
@@ -246,11 +248,11 @@ double least_axial_position(const Scene& scene, const Body& body, const Columns&
   return least;
 }
 
-std::string coarse_wall(const SharedOptions& scene, const Body& body, const Columns& row) {
+std::string coarse_wall(const SharedOptions& shared, const Body& body, const Columns& row) {
   if (!body.wall) return {};
   const double gap = row.value("gap"), widest = body.wall->widest, time = row.value("time");
   if (gap > 0.6 * widest) return {};
-  const std::string list = scene.tube.list(), when = time > 0 && scene.runs_in_time() ? formatted("at time %.4g ", time) : "";
+  const std::string list = shared.tube.list(), when = time > 0 && shared.runs_in_time() ? formatted("at time %.4g ", time) : "";
   return when + formatted("the gap to the wall (%.2g) is narrower than 0.6 of the wall's elements (%.2g): set more %s/azimuthal elements and "
                           "%s/axial elements",
                           gap, widest, list.c_str(), list.c_str());

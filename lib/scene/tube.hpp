@@ -12,26 +12,26 @@ namespace tanktread {
 
 /// Returns the flow of the empty tube or channel. If Flow/type is not `duct`, the returned flow has the mean velocity R_C times
 /// ParticleScene::rate() and only serves to compute the pressure drop (2.7). Returns null if there is no tube.
-std::shared_ptr<const stokes::DuctFlow> duct(const ParticleScene& scene);
+std::shared_ptr<const stokes::DuctFlow> make_duct(const ParticleScene& particle_scene);
 
 /// Adds to `to` the combinations of keys that are not allowed with a tube or channel.
-void reject_with_tube(const ParticleScene& scene, Rejections& to);
+void reject_with_tube(const ParticleScene& particle_scene, Rejections& to);
 
 /// If the scene has a tube and the particle does not fit into it, throws UserError with the lengths concerned.
-void check_fit(const ParticleScene& scene, const Body& body);
+void check_fit(const ParticleScene& particle_scene, const Body& body);
 
 /// Returns the wall around the resting shapes of all particles in `body`. Throws UserError, with the lengths, if the tube is too short for the
 /// particles or its period is too long.
-std::shared_ptr<const surface::TubeWall> wall(const SharedOptions& scene, const Body& body);
+std::shared_ptr<const surface::TubeWall> make_wall(const SharedOptions& shared, const Body& body);
 
 /// Returns the tube around `body`, which stands for all particles of the scene; null if there is no tube.
-std::unique_ptr<coupling::Tube> tube(const SharedOptions& scene, const Body& body, Phases& phases);
+std::unique_ptr<coupling::Tube> make_tube(const SharedOptions& shared, const Body& body, Phases& phases);
 
 /// Data of the tube for one row of the results. For a periodic train, pressure drops refer to one period.
 struct TubeRow {
   double pressure_drop = 0, gap = 0, flow_rate = 0, channel_pressure_drop = 0, channel_extra_pressure_drop = 0;
   coupling::Tube::Checks checks;
-  void add_columns(const SharedOptions& scene, Columns& to) const;
+  void add_columns(const SharedOptions& shared, Columns& to) const;
 };
 
 /// Returns the data of the tube (pressure drop, gap) for the particle shapes of the evaluation `e`. `flow`: ambient flow at the time of the
@@ -48,7 +48,7 @@ double least_axial_position(const Scene& scene, const Body& body, const Columns&
 
 /// Returns a warning if the gap to the wall in a row of the results is smaller than 0.6 of the size of the widest wall element, because the error of
 /// the wall traction then exceeds 1e-4. Otherwise, and without a tube, returns an empty text.
-std::string coarse_wall(const SharedOptions& scene, const Body& body, const Columns& row);
+std::string coarse_wall(const SharedOptions& shared, const Body& body, const Columns& row);
 
 /// Throws RunFailure if the modelled part of the tube is too short for the shape x, because particles have moved apart or become long. Does nothing
 /// in a channel or in a periodic tube.

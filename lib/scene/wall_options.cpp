@@ -70,20 +70,22 @@ void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<sto
         "Wall/normal.");
 }
 
-void WallOptions::reject(const ParticleScene& scene, Rejections& to) const {
+void WallOptions::reject(const ParticleScene& particle_scene, Rejections& to) const {
   if (!present && !to.every()) return;
   // This row is only for the table of rejected combinations in the documentation. For a given deck, check() throws UserError if the flow is not along
   // the wall or not uniform on it.
   if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(stokes::along_the_wall));
-  to.pair(scene.flow.type == "duct" && !scene.tube.present, "Wall", "Flow/type `duct`",
+  to.pair(particle_scene.flow.type == "duct" && !particle_scene.tube.present, "Wall", "Flow/type `duct`",
           "the wall of a duct is given in a section Tube or Channel");
-  to.pair(scene.tube.present, "Wall", scene.duct_choice(), "a plane wall is represented by images, which need a fluid without other walls");
-  to.pair(scene.quadrature.rule != quadrature::LayerRule::adaptive, "Wall",
-          {"Quadrature/rule `" + deck::word(quadrature::layer_rules, scene.quadrature.rule) + "`", "Quadrature/rule `fixed` or `desingularised`"},
+  to.pair(particle_scene.tube.present, "Wall", particle_scene.duct_choice(),
+          "a plane wall is represented by images, which need a fluid without other walls");
+  to.pair(particle_scene.quadrature.rule != quadrature::LayerRule::adaptive, "Wall",
+          {"Quadrature/rule `" + deck::word(quadrature::layer_rules, particle_scene.quadrature.rule) + "`",
+           "Quadrature/rule `fixed` or `desingularised`"},
           "the film at a wall needs quadrature to a tolerance; give `adaptive`");
-  to.pair(!scene.runs_in_time() && !distance, scene.sought(), {"Wall", "Wall without Wall/distance"},
+  to.pair(!particle_scene.runs_in_time() && !distance, particle_scene.sought(), {"Wall", "Wall without Wall/distance"},
           "a deformable particle next to a single wall moves away from it or towards it, so that no shape is steady");
-  to.pair(scene.particle.drift == "held", "Wall", "Particle/drift `held`", "the distance from the wall must be free to change");
+  to.pair(particle_scene.particle.drift == "held", "Wall", "Particle/drift `held`", "the distance from the wall must be free to change");
 }
 
 std::optional<stokes::PlaneWall> WallOptions::plane() const {

@@ -34,7 +34,7 @@ struct WallOptions {
   /// both directions in the walls. The message is one sentence. `cell`: periodic cell of the scene, if any.
   void check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const;
 
-  void reject(const ParticleScene& scene, Rejections& to) const;  ///< adds to `to` the combinations of keys that are not allowed with a wall
+  void reject(const ParticleScene& particle_scene, Rejections& to) const;  ///< adds to `to` the combinations of keys that are not allowed with a wall
 
   std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall if it acts by images, otherwise nothing
   std::vector<stokes::PlaneWall> planes() const;   ///< returns the walls: none, one or two

@@ -28,7 +28,7 @@ struct Tumbling {
     deck::Document deck = deck::read({SOURCE_DIRECTORY "/inputs/jeffery.yaml"}, settings);
     deck.declare(scene);
     scene.check();
-    body = particle_system(scene, ranks, phases);
+    body = make_particle_system(scene, ranks, phases);
     scheme = motion::integrator(scene.time);
     state.x = body->start();
     state.history = {body->dynamics().velocity(state.x)};
@@ -39,7 +39,7 @@ struct Tumbling {
   Vec3 axis() const { return coupling::rotation_of(state.x) * scene.particles.front().particle.shape.rotation() * Vec3(1, 0, 0); }
 
   double inclination() {
-    return body->row(state, {}).value("inclination");
+    return body->next_row(state, {}).value("inclination");
   }
 };
 

@@ -24,7 +24,7 @@ namespace {
 
 /// Particle whose mesh is adapted, together with the state of all particles.
 struct Subject {
-  const ParticleScene& scene;
+  const ParticleScene& particle_scene;
   const Body& body;
   const spline::Block& block;
   const motion::State& state;
@@ -67,7 +67,7 @@ void record_change(Adapted& result, double moved, double radius) {
 
 std::unique_ptr<Body> on_mesh(const Subject& of, spline::TMesh mesh) {
   auto target = std::make_unique<Body>(of.body);
-  lay_out(of.scene, std::move(mesh), *target);
+  lay_out(of.particle_scene, std::move(mesh), *target);
   return target;
 }
 
@@ -134,8 +134,8 @@ std::vector<double> least_of_mesh(const Body& body, std::span<const double> valu
 }
 
 Findings findings(const Subject& particle, const surface::FieldAt& traction, const surface::FieldsAt& fields_at) {
-  const auto& [scene, body, block, state, x, films] = particle;
-  const motion::AdaptationOptions& options = scene.adaptation;
+  const auto& [particle_scene, body, block, state, x, films] = particle;
+  const motion::AdaptationOptions& options = particle_scene.adaptation;
   const std::vector<double> widths = least_of_mesh(body, films);
   const auto of = [&](auto indicator) {
     const std::vector<std::array<double, 2>> lengths = lengths_of(indicator);
@@ -165,8 +165,8 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction, con
 
 /// Removes the marks of T-mesh elements with a side at a pole, if the poles are degenerate or `Adaptation/indicator` is not `error`. As in Maestre et
 /// al. (2017), such elements are then refined only if the refinement of a neighbour requires it.
-void leave_poles(const ParticleScene& scene, const Body& body, std::vector<spline::Mark>& marks) {
-  if (body.mesh.lattice->pad == 0 || (scene.surface.poles != "plain" && scene.adaptation.indicator == "error")) return;
+void leave_poles(const ParticleScene& particle_scene, const Body& body, std::vector<spline::Mark>& marks) {
+  if (body.mesh.lattice->pad == 0 || (particle_scene.surface.poles != "plain" && particle_scene.adaptation.indicator == "error")) return;
   const spline::Tiling tiling = spline::elements(body.mesh);
   const auto degenerate = [&](const spline::Mark& mark) {
     return spline::is_degenerate(*body.mesh.lattice, tiling.tiles[static_cast<size_t>(mark.element)]);
@@ -177,14 +177,14 @@ void leave_poles(const ParticleScene& scene, const Body& body, std::vector<splin
 /// Refines all marked elements. If the mesh would exceed the allowed number of points, tries again with the tolerances and limits of the section
 /// Adaptation multiplied by 2, 4, … up to 64.
 Adapted refined(const Subject& of, const Findings& found) {
-  const auto& [scene, body, block, state, x, films] = of;
-  const int room = scene.adaptation.largest_number_of_points - body.space.n_points;
+  const auto& [particle_scene, body, block, state, x, films] = of;
+  const int room = particle_scene.adaptation.largest_number_of_points - body.space.n_points;
   const size_t before = spline::anchors(body.mesh).size();
   Adapted result;
   std::optional<spline::RepairRules> keeping;
   for (double factor = 1; factor <= 64; factor *= 2) {
-    auto marks = found.marks(scene.adaptation.coarser(factor));
-    leave_poles(scene, body, marks);
+    auto marks = found.marks(particle_scene.adaptation.coarser(factor));
+    leave_poles(particle_scene, body, marks);
     if (marks.empty()) break;
     if (!keeping) keeping = rules(body);
     spline::Refinement refinement = spline::refine(body.mesh, marks, *keeping);
@@ -202,7 +202,7 @@ Adapted refined(const Subject& of, const Findings& found) {
 /// Merges elements. If the surfaces on some of the merged elements would move by more than the tolerance, leaves these elements out and merges only
 /// the remaining ones.
 Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
-  const auto& [scene, body, block, state, x, films] = of;
+  const auto& [particle_scene, body, block, state, x, films] = of;
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
     auto target = on_mesh(of, spline::coarsen(body.mesh, merges, rules(body)));
     if (target->space.n_points >= body.space.n_points) return {};
@@ -213,14 +213,14 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
       return worse;
     });
     const double change = *std::max_element(defect.begin(), defect.end());
-    if (change <= scene.adaptation.coarsening_tolerance) {
+    if (change <= particle_scene.adaptation.coarsening_tolerance) {
       Adapted result = transferred(of, std::move(target), [&](const Net& field) { return projection(field).net; });
       result.finer = false;
       record_change(result, change, body.radius);
       return result;
     }
     std::vector<double> unmoved;
-    for (const double moved : defect) unmoved.push_back(scene.adaptation.coarsening_tolerance - moved);
+    for (const double moved : defect) unmoved.push_back(particle_scene.adaptation.coarsening_tolerance - moved);
     const std::vector<double> left = least_of_mesh(body, unmoved);
     std::erase_if(merges, [&](const spline::Merge& merge) { return left[static_cast<size_t>(merge.element)] < 0; });
   }
@@ -229,41 +229,41 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
 
 }  // namespace
 
-Adapted adapted(const ParticleScene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
+Adapted adapted(const ParticleScene& particle_scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields) {
-  const Subject particle{scene, body, block, state, block.rows(state.x), films};
+  const Subject particle{particle_scene, body, block, state, block.rows(state.x), films};
   const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.nested(), body.unstressed, particle.x, load)
                                                         : surface::field_of_net(body.nested(), load);
   const Findings found = findings(particle, traction, fields);
   Adapted finer = refined(particle, found);
-  if (finer.body || !scene.adaptation.coarsen) return finer;
+  if (finer.body || !particle_scene.adaptation.coarsen) return finer;
   Adapted coarser = coarsened(particle, found.merges);
   coarser.refused = finer.refused;
   coarser.full = finer.full;
   return coarser;
 }
 
-void refine_isolated_body(const ParticleScene& scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
-  if (!scene.adaptation.enabled) return;
+void refine_isolated_body(const ParticleScene& particle_scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
+  if (!particle_scene.adaptation.enabled) return;
   constexpr int most = 10;
   for (int k = 0; k < most; ++k) {
     Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
-    if (scene.adaptation.limits_load()) load = force_density(body);
+    if (particle_scene.adaptation.limits_load()) load = force_density(body);
     // Moves the centroid of the particle to x1 = 0, because x1 of the wall of a straight tube is measured from the centroid.
     if (body.wall && !body.wall->channel) x.col(0).array() -= surface::measures(body.space, x).centroid[0];
     std::vector<Member> only(1);
-    only[0].scene = scene;
+    only[0].scene = particle_scene;
     only[0].body = std::make_unique<Body>(std::move(body));
     only[0].block = {.n_points = only[0].body->space.n_points, .n_elements = static_cast<int>(only[0].body->space.elements.size())};
     std::vector<double> widths;
-    if (only[0].body->wall || scene.wall.present) widths = films(only, 0, x, {}, only[0].body->wall.get());
+    if (only[0].body->wall || particle_scene.wall.present) widths = films(only, 0, x, {}, only[0].body->wall.get());
     motion::State state;
     state.x = only[0].body->rest;
-    Adapted change = adapted(scene, *only[0].body, only[0].block, state, load, false, widths);
+    Adapted change = adapted(particle_scene, *only[0].body, only[0].block, state, load, false, widths);
     body = std::move(*only[0].body);
     if (!change.body || !change.finer) return;
     body = std::move(*change.body);
-    body.rest = surface::fitted_again(body.space, body.rest, scene.particle.shape);
+    body.rest = surface::fitted_again(body.space, body.rest, particle_scene.particle.shape);
     body.initial = body.unstressed = body.rest;
     body.symmetry = surface::Symmetry(body.space.n_points);
   }

@@ -32,7 +32,7 @@ struct Adapted {
 /// of this particle's load at state.x, per unstressed area if `per_unstressed_area` is true, otherwise per current area. `films`: width of the fluid
 /// film at each element of the space body.nested(); empty if films do not cause refinement. `fields`: values of the fields on the surface, scaled to
 /// order 1. The results of all ranks are equal.
-Adapted adapted(const ParticleScene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
+Adapted adapted(const ParticleScene& particle_scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields = {});
 
 /// Returns the warnings about an adaptation at this time: one for each limit of the section Adaptation that prevented a refinement, and one if a
@@ -43,6 +43,6 @@ std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& cha
 /// the film between body and wall, and the traction. After each refinement, fits the known shape on the new mesh. The mesh does not change afterwards
 /// because the body does not deform. `force_density` returns the force per area on the mesh of its argument, as control values of shape (N, 3). It is
 /// called only if Adaptation limits the error or the variation of the load. Collective.
-void refine_isolated_body(const ParticleScene& scene, Body& body, const std::function<Net(const Body& on)>& force_density);
+void refine_isolated_body(const ParticleScene& particle_scene, Body& body, const std::function<Net(const Body& on)>& force_density);
 
 }  // namespace tanktread

@@ -35,12 +35,14 @@ namespace {
 class CoupledParticles : public ParticleSystem {
  public:
   CoupledParticles(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)), solids_(solids(scene, phases)) {
+      : scene_(scene), ranks_(ranks), phases_(phases), members_(make_members(scene)), solids_(make_solids(scene, phases)) {
     check_apart(members_, scene.domain.cell());
     check_outside_of_posts(scene_, members_);
     set_up();
-    for (Member& member : members_) {
+    for (std::size_t p = 0; p < members_.size(); ++p) {
+      Member& member = members_[p];
       const Body& body = *member.body;
+      member.surfactant_mass = fields_->initial_mass(p);
       member.followed = site_ahead(body.nested(), body.rest, member.geometry->measures(body.rest).centroid, body.plane);
       member.place = spline::place(body.nested(), member.followed);
       follow(member);
@@ -55,20 +57,18 @@ class CoupledParticles : public ParticleSystem {
   const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
 
   bool resume(Resumed& resumed) override {
-    const bool another_mesh = restore(resumed.checkpoint, members_);
-    const auto require = [](bool fits) {
-      if (!fits) throw UserError("the newest checkpoint does not fit its scene, because another version of tanktread wrote it: run the deck again");
-    };
-    require(resumed.state.x.rows() >= n_points() && resumed.totals.phase_angle.size() == members_.size());
-    const Net x = resumed.state.x.topRows(n_points());
-    const bool another_symmetry = !stacked_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
-    if (another_mesh || another_symmetry) rebuild(x);
-    require(resumed.state.x.rows() == start().rows());
+    const bool another_mesh = restore_mesh(resumed.checkpoint, resumed.state.x);
+    require_fit(resumed.totals.phase_angle.size() == members_.size());
     motion::refreeze(dynamics(), resumed.state, resumed.state.time);
     capsule_->counts() = resumed.totals.counts;
     for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle[p];
     set_contacts(resumed.totals.contacts);
     return another_mesh;
+  }
+
+  void move_to(const output::Checkpoint& mesh, const Net& x) override {
+    restore_mesh(mesh, x);
+    capsule_->counts() = {};
   }
 
   void store(output::Checkpoint& checkpoint) const override { tanktread::store(members_, checkpoint); }
@@ -126,7 +126,7 @@ class CoupledParticles : public ParticleSystem {
     std::vector<Net> loads;
     for (const Member& member : members_) loads.push_back(member.own(load));
     for (std::size_t p = 0; p < members_.size(); ++p)
-      if (due(members_[p])) adapt(p, loads[p], own, totals);
+      if (due(members_[p])) adapt_mesh(p, loads[p], own, totals);
     if (replaced_.empty()) return false;
     const std::unique_ptr<SurfaceFields> fields = std::move(fields_);
     rebuild(own.x);
@@ -158,7 +158,7 @@ class CoupledParticles : public ParticleSystem {
 
   stokes::Evaluations kernel_evaluations() const override { return kernel_evaluations_ + capsule_->kernel_evaluations(); }
 
-  Columns row(const motion::State& whole_state, ProgressRow progress) override {
+  Columns next_row(const motion::State& whole_state, const ProgressRow& progress) override {
     const motion::State state = fields_->of_shape(whole_state);
     const auto here = fields_->evaluate(whole_state.x, state.history.front(), scene_.time.tolerance);
     // Solves the linear system for the velocity again in two cases: if the series of tractions on walls need a more accurate velocity than the step,
@@ -167,22 +167,23 @@ class CoupledParticles : public ParticleSystem {
     const bool mixed = std::ranges::any_of(members_, rigid) && !std::ranges::all_of(members_, rigid);
     if (mixed || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
     const Net v = here->fluid_velocity();
-    progress.time = state.time, progress.counts = capsule_->counts();
+    RunRow row{.progress = progress};
+    row.progress.time = state.time, row.progress.counts = capsule_->counts();
     ParticleRows rows(members_, *capsule_, *fields_, *here, state, whole_state.x, ranks_);
     const std::vector<RecordedParticle> recorded = recorded_particles(members_, state.x, v);
-    const Columns of_particles = rows.columns(progress.step.step, recorded);
-    Together whole = rows.together();
-    Columns row;
-    for (const coupling::Contact& contact : contacts_.all) whole.stresslet += stresslet_between(contact, state.x);
-    progress.add_columns(scene_, row);
-    whole.add_columns(scene_, row);
-    add_surroundings(scene_, members_, body(), *capsule_, *here, whole.stresslet, ranks_, row);
-    if (scene_.output.power_balance) powers(state).add_columns(row);
-    if (scene_.has_gaps() && scene_.contact.limiter) contacts_.add_columns(row);
-    add_series(scene_, state.time, recorded, row);
-    finish(row);
-    row.append(of_particles);
-    return row;
+    rows.advance_phases(row.progress.step.step);
+    const Columns of_particles = rows.columns(recorded);
+    row.together = rows.together();
+    for (const coupling::Contact& contact : contacts_.all) row.together.stresslet += stresslet_between(contact, state.x);
+    set_surroundings(scene_, members_, body(), *capsule_, *here, ranks_, row);
+    if (scene_.output.power_balance) row.powers = powers(state);
+    row.contacts = contacts_;
+    Columns columns;
+    row.add_columns(scene_, columns);
+    add_series(scene_, state.time, recorded, columns);
+    finish(columns);
+    columns.append(of_particles);
+    return columns;
   }
 
   SurfaceSnapshot snapshot(const motion::State& whole_state) override {
@@ -193,7 +194,7 @@ class CoupledParticles : public ParticleSystem {
     const Net load = here->load(), velocity = capsule_->slides() || !history.empty() ? here->fluid_velocity() : Net();
     return {x, [this, of_shape, &x, load, velocity](const output::Nodes& nodes) {
               std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, x, load, velocity);
-              fields_->add_to(nodes, x, fields);
+              fields_->add_to_snapshot(nodes, x, fields);
               if (capsule_->cell()) fields.push_back({"into cell", into_cell(members_, *capsule_->cell(), nodes, x)});
               return fields;
             }};
@@ -203,6 +204,22 @@ class CoupledParticles : public ParticleSystem {
   /// Returns the number of control points of all particles on their current meshes.
   Eigen::Index n_points() const {
     return std::accumulate(members_.begin(), members_.end(), 0, [](int n, const Member& member) { return n + member.body->space.n_points; });
+  }
+
+  static void require_fit(bool fits) {
+    if (!fits) throw UserError("the newest checkpoint does not fit its scene, because another version of tanktread wrote it: run the deck again");
+  }
+
+  /// Reads the meshes of the members from the checkpoint. If they or the symmetry of the shape differ from the current ones, rebuilds the system.
+  /// Returns true if a mesh was read. `y`: state x of shape and surface fields on these meshes.
+  bool restore_mesh(const output::Checkpoint& checkpoint, const Net& y) {
+    const bool another_mesh = restore(checkpoint, members_);
+    require_fit(y.rows() >= n_points());
+    const Net x = y.topRows(n_points());
+    const bool another_symmetry = !stacked_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
+    if (another_mesh || another_symmetry) rebuild(x);
+    require_fit(y.rows() == start().rows());
+    return another_mesh;
   }
 
   coupling::Powers powers(const motion::State& state) {
@@ -233,17 +250,17 @@ class CoupledParticles : public ParticleSystem {
   void set_up() {
     const std::unique_ptr<Body> before = std::exchange(stacked_, nullptr);
     arrange(members_);
-    stacked_ = stacked_body(members_);
-    if (stacked_ && scene_.tube.present) stacked_->wall = before ? before->wall : wall(scene_, *stacked_);
+    stacked_ = make_stacked_body(members_);
+    if (stacked_ && scene_.tube.present) stacked_->wall = before ? before->wall : make_wall(scene_, *stacked_);
     std::unique_ptr<coupling::Tube> around;
     if (capsule_ && capsule_->tube() && !capsule_->tube()->fixed())
       around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
     else
-      around = tube(scene_, body(), phases_);
+      around = make_tube(scene_, body(), phases_);
     power_.reset(), fields_.reset();
-    if (!stacked_) members_.front().geometry.reset(), members_.front().membrane.reset();  // they belong to the system
-    capsule_.reset();
-    capsule_ = tanktread::capsule(members_, body(), phases_, std::move(around), solids_);
+    if (!stacked_) members_.front().geometry.reset(), members_.front().membrane.reset();
+    capsule_.reset();  // the last owner, so that the old system is deleted before the new one is built
+    capsule_ = make_capsule(members_, body(), phases_, std::move(around), solids_);
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
 
@@ -251,7 +268,7 @@ class CoupledParticles : public ParticleSystem {
   double accuracy() const { return scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate()); }
 
   /// Adapts the mesh of particle p if the indicator requires it.
-  void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
+  void adapt_mesh(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
     if (const coupling::Tube* tube = capsule_->tube())
@@ -310,7 +327,7 @@ class CoupledParticles : public ParticleSystem {
   std::vector<Member> members_;
   std::optional<coupling::SolidScene> solids_;
   std::unique_ptr<Body> stacked_;  // body with the stacked nets of all particles; null if there is only one particle
-  std::unique_ptr<coupling::Capsule> capsule_;
+  std::shared_ptr<coupling::Capsule> capsule_;  // shared with the only member if there is one particle
   std::unique_ptr<SurfaceFields> fields_;
   std::optional<coupling::PowerBalance> power_;  // constructed at the first use
   coupling::OperationCounts counts_;  // work (solves, iterations) of the systems on earlier meshes
@@ -324,7 +341,7 @@ class CoupledParticles : public ParticleSystem {
 
 }  // namespace
 
-std::unique_ptr<ParticleSystem> coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+std::unique_ptr<ParticleSystem> make_coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
   return std::make_unique<CoupledParticles>(scene, ranks, phases);
 }
 

@@ -4,8 +4,7 @@
 #include "scene/particles/adaptation.hpp"
 #include "scene/particles/particle_system.hpp"
 #include "scene/particles/prescribed.hpp"
-#include "scene/plane_wall.hpp"
-#include "scene/tube.hpp"
+#include "scene/series/run_row.hpp"
 #include "surface/geometry.hpp"
 #include "system/solids/bodies/bounded_free_body.hpp"
 
@@ -16,8 +15,9 @@ namespace {
 class Free : public ParticleSystem {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : whole_(scene), scene_(scene.first()), ranks_(ranks), body_(refined(scene_, ranks, phases)), geometry_(body_.space),
-        tube_(tube(scene_, body_, phases)), tractions_(tractions_of(scene_, body_, ranks, tube_.get())), free_(driven(scene_, body_, tractions_)) {}
+      : scene_(scene), particle_scene_(scene.first()), ranks_(ranks), body_(make_refined_body(particle_scene_, ranks, phases)),
+        geometry_(body_.space), tube_(make_tube(particle_scene_, body_, phases)),
+        tractions_(make_tractions(particle_scene_, body_, ranks, tube_.get())), free_(make_driven_body(particle_scene_, body_, tractions_)) {}
 
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
@@ -55,23 +55,25 @@ class Free : public ParticleSystem {
 
   std::vector<PhaseAngle> phase_angle() const override { return {phase_angle_}; }
 
-  Columns row(const motion::State& state, ProgressRow progress) override {
+  Columns next_row(const motion::State& state, const ProgressRow& progress) override {
     const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
-    RigidRow now = rigid_row(scene_, body_, free_->flow(), geometry_, free_->surface(state.x), free_->motion(state.x), turn,
+    RunRow row;
+    RigidRow now = rigid_row(particle_scene_, body_, free_->flow(), geometry_, free_->surface(state.x), free_->motion(state.x), turn,
                              free_->stresslet(state.x), ranks_);
     now.centre = coupling::centre_of(state.x);
-    Columns row;
     if (tube_) {
       const double pressure_drop = free_->pressure_drop(state.x);
-      tube_row(*tube_, free_->flow(), free_->force_density(state.x), pressure_drop).add_columns(scene_, row);
+      row.tube = tube_row(*tube_, free_->flow(), free_->force_density(state.x), pressure_drop);
     }
-    if (const auto walls = scene_.wall.planes(); !walls.empty()) wall_row(walls, body_, free_->surface(state.x)).add_columns(whole_, row);
-    turn_to(state.x, progress.step.step, now);
-    now.add_columns(scene_, row);
-    progress.time = state.time, progress.counts = counts();
-    progress.add_columns(whole_, row);
-    finish(row);
-    return row;
+    if (scene_.wall.present) row.wall = wall_row(scene_.wall.planes(), body_, free_->surface(state.x));
+    advance_phase(state.x, progress.step.step, now);
+    row.progress = progress;
+    row.progress.time = state.time, row.progress.counts = counts();
+    Columns columns;
+    row.add_columns(scene_, columns);
+    now.add_columns(particle_scene_, columns);
+    finish(columns);
+    return columns;
   }
 
   SurfaceSnapshot snapshot(const motion::State& state) override {
@@ -83,31 +85,32 @@ class Free : public ParticleSystem {
   }
 
  private:
-  static Body refined(const ParticleScene& scene, coupling::Ranks& ranks, Phases& phases) {
-    Body body = tanktread::body(scene);
-    refine_isolated_body(scene, body, [&](const Body& on) {
-      const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
-      coupling::RigidTractions tractions = tractions_of(scene, on, ranks, wall.get());
-      const auto free = driven(scene, on, tractions);
+  static Body make_refined_body(const ParticleScene& particle_scene, coupling::Ranks& ranks, Phases& phases) {
+    Body body = make_body(particle_scene);
+    refine_isolated_body(particle_scene, body, [&](const Body& on) {
+      const std::unique_ptr<coupling::Tube> wall = make_tube(particle_scene, on, phases);
+      coupling::RigidTractions tractions = make_tractions(particle_scene, on, ranks, wall.get());
+      const auto free = make_driven_body(particle_scene, on, tractions);
       return free->force_density(coupling::placed(free->centre()));
     });
     return body;
   }
 
   /// Returns the free body with the given equation for its traction, in a tube or a medium if the scene has one.
-  static std::unique_ptr<coupling::LoneRigidBody> driven(const ParticleScene& scene, const Body& body, coupling::RigidTractions& tractions) {
-    const Vec3& centre = scene.particle.shape.center;
-    if (scene.tube.present)
-      return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
-                                                        drive_of(scene, body));
-    if (scene.medium())
-      return std::make_unique<coupling::FreeBodyInMedium>(tractions, body.rest, centre, body.radius, body.flow, drive_of(scene, body));
-    return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, drive_of(scene, body));
+  static std::unique_ptr<coupling::LoneRigidBody> make_driven_body(const ParticleScene& particle_scene, const Body& body,
+                                                                   coupling::RigidTractions& tractions) {
+    const Vec3& centre = particle_scene.particle.shape.center;
+    if (particle_scene.tube.present)
+      return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, particle_scene.flow.viscosity,
+                                                        drive_of(particle_scene, body));
+    if (particle_scene.medium())
+      return std::make_unique<coupling::FreeBodyInMedium>(tractions, body.rest, centre, body.radius, body.flow, drive_of(particle_scene, body));
+    return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, drive_of(particle_scene, body));
   }
 
-  /// Sets the tank-treading velocity, the frequency and the phase of a rigid body in the plane of the flow (Body::plane). The frequency (6.6) is the
-  /// angular velocity about the normal of this plane.
-  void turn_to(const Net& place, double step, RigidRow& now) {
+  /// Advances the phase of the rigid body by `step`. Sets in the row the phase, and the tank-treading velocity and frequency in the plane of the flow
+  /// (Body::plane). The frequency (6.6) is the angular velocity about the normal of this plane.
+  void advance_phase(const Net& place, double step, RigidRow& now) {
     const FlowPlane& plane = body_.plane;
     const Net x = free_->surface(place), v = coupling::rigid_velocity(x, {now.velocity, now.angular_velocity}, now.centre);
     const Vec3 centre = plane.components(now.measures.centroid), moves = plane.components(now.velocity);
@@ -117,8 +120,8 @@ class Free : public ParticleSystem {
     now.phase = phase_angle_.degrees;
   }
 
-  const Scene& whole_;
-  const ParticleScene scene_;
+  const Scene& scene_;
+  const ParticleScene particle_scene_;
   const coupling::Ranks& ranks_;
   Body body_;
   surface::Geometry geometry_;
@@ -131,12 +134,12 @@ class Free : public ParticleSystem {
 
 }  // namespace
 
-std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+std::unique_ptr<ParticleSystem> make_free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
   return std::make_unique<Free>(scene, ranks, phases);
 }
 
-std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
-  return scene.in_system() ? coupled_particles(scene, ranks, phases) : free_body(scene, ranks, phases);
+std::unique_ptr<ParticleSystem> make_particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases) {
+  return scene.in_system() ? make_coupled_particles(scene, ranks, phases) : make_free_body(scene, ranks, phases);
 }
 
 }  // namespace tanktread

@@ -45,6 +45,9 @@ class ParticleSystem {
   virtual Net start() const = 0;                                                 ///< returns State::x at time zero
   /// Resumes a run; returns true if this has changed the mesh of body().
   virtual bool resume(Resumed& resumed) = 0;
+  /// Changes to the mesh of another system of the same particles. `mesh`: data that store() of the other system has added. `x`: state on this mesh
+  /// (State::x). Operations so far are no longer counted. Does nothing for a free rigid body, whose mesh never changes.
+  virtual void move_to(const output::Checkpoint& /*mesh*/, const Net& /*x*/) {}
   virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
   /// Discards data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
   /// therefore discards them after each checkpoint.
@@ -62,19 +65,19 @@ class ParticleSystem {
   /// Returns the phase angle of each particle when the series were last computed.
   virtual std::vector<PhaseAngle> phase_angle() const = 0;
   virtual stokes::Evaluations kernel_evaluations() const = 0;  ///< on this rank, without those of walls, which SharedOptions::walls counts
-  /// Returns a row of results: the data of the particles and of `progress`, with the time and the work of the run. To be called once per row, in the
-  /// order of times, because phase angles advance by the step since the row before.
-  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;
+  /// Advances the phase angles by the step that led to the state (`progress.step`). Returns a row of results: the data of the particles and of
+  /// `progress`, with the time and the work of the run. To be called once per row, in the order of times.
+  virtual Columns next_row(const motion::State& state, const ProgressRow& progress) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfaceSnapshot snapshot(const motion::State& state) = 0;
 };
 
 /// Builds the system for the particles of the scene: a coupled system, or a free rigid body.
-std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> make_particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 /// Builds a coupled system of particles.
-std::unique_ptr<ParticleSystem> coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> make_coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 /// Builds a system that consists of one free rigid body.
-std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+std::unique_ptr<ParticleSystem> make_free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
 }  // namespace tanktread

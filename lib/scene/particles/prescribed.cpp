@@ -13,12 +13,12 @@ double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 
 
 }  // namespace
 
-void PrescribedRow::add_columns(const ParticleScene& scene, Columns& to) const {
+void PrescribedRow::add_columns(const ParticleScene& particle_scene, Columns& to) const {
   add_size(measures, to);
   add_stresslet(solution.stresslet, to);
   add_points(n_points, to);
   add_drag(solution.force, solution.torque, to);
-  const auto exact = exact_body(scene);
+  const auto exact = exact_body(particle_scene);
   if (to.when(exact && exact->force().norm() > 0)) {
     to.add(solution.error,
            {"drag_error", "1",
@@ -43,21 +43,22 @@ void PrescribedRow::add_columns(const ParticleScene& scene, Columns& to) const {
          {"kernel_evaluations", "1", "number of evaluations of the Stokes kernels for the boundary integrals, by all quadrature rules"});
 }
 
-coupling::RigidTractions tractions_of(const ParticleScene& scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
-  const auto single = coupling::single_body(body.space, body.radius, scene.flow.viscosity, scene.quadrature, scene.solvers, scene.medium());
+coupling::RigidTractions make_tractions(const ParticleScene& particle_scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
+  const auto single = coupling::single_body(body.space, body.radius, particle_scene.flow.viscosity, particle_scene.quadrature, particle_scene.solvers,
+                                            particle_scene.medium());
   if (tube) tube->particles().set(body.rest, single.particles);
   return {body.space, body.rest, body.rest, single, {tube}, {}, ranks};
 }
 
-RigidSolution rigid_solution(const ParticleScene& scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases) {
-  const Vec3& centre = scene.particle.shape.center;
-  const coupling::RigidDrive driven{true, prescribed_motion(scene)};
+RigidSolution rigid_solution(const ParticleScene& particle_scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases) {
+  const Vec3& centre = particle_scene.particle.shape.center;
+  const coupling::RigidDrive driven{true, prescribed_motion(particle_scene)};
   coupling::Tube* const tube = tractions.tube();
   RigidSolution s;
   {
     const auto clock = phases.time("tractions");
     if (tube) tube->set_shape(body.rest);
-    if (scene.reciprocal_forces()) {
+    if (particle_scene.reciprocal_forces()) {
       tractions.solve(body.rest, {&centre, 1}, {&driven, 1}, body.flow);
       s.density = tractions.solution().unknowns;
     } else {
@@ -66,15 +67,16 @@ RigidSolution rigid_solution(const ParticleScene& scene, const Body& body, coupl
     }
   }
   s.iterations = tractions.converged_iterations();
-  const auto integrals = tractions.integrals(0, s.density), corrected = scene.reciprocal_forces() ? tractions.solution().bodies.front() : integrals;
+  const auto integrals = tractions.integrals(0, s.density);
+  const auto corrected = particle_scene.reciprocal_forces() ? tractions.solution().bodies.front() : integrals;
   s.integral = -integrals.force;
   s.force = -corrected.force, s.torque = -corrected.torque;
   s.stresslet = -integrals.stresslet();
   if (tube) {
-    s.pressure_drop = (scene.reciprocal_forces() ? tractions.solution().pressure_correction : 0) - tube->pressure_of(s.density);
+    s.pressure_drop = (particle_scene.reciprocal_forces() ? tractions.solution().pressure_correction : 0) - tube->pressure_of(s.density);
     return s;
   }
-  if (const auto exact = exact_body(scene)) {
+  if (const auto exact = exact_body(particle_scene)) {
     const auto clock = phases.time("diagnostics");
     s.error = relative(s.force, exact->force());
     s.integral_error = relative(s.integral, exact->force());

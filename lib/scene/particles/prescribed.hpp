@@ -31,13 +31,13 @@ struct PrescribedRow {
   surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};
   int n_points = 0;
   double kernel_evaluations = 0;
-  void add_columns(const ParticleScene& scene, Columns& to) const;
+  void add_columns(const ParticleScene& particle_scene, Columns& to) const;
 };
 
 /// Returns the equation for the traction on the scene's body. `tube`: the tube around the body, or null.
-coupling::RigidTractions tractions_of(const ParticleScene& scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube);
+coupling::RigidTractions make_tractions(const ParticleScene& particle_scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube);
 
 /// Solves for the traction on a body with `Particle/motion: prescribed` in the flow of the deck. Collective.
-RigidSolution rigid_solution(const ParticleScene& scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases);
+RigidSolution rigid_solution(const ParticleScene& particle_scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases);
 
 }  // namespace tanktread

@@ -34,7 +34,7 @@ DeformingRow ParticleRows::deforming(std::size_t p, const Net& y) {
   now.energy += here_.load_energy(p);
   if (member.scene.viscous_membrane()) now.dissipation = here_.membrane_dissipation(p);
   now.intrinsic_viscosity = intrinsic_viscosity(capsule_.flow(), member.scene.flow.viscosity, now);
-  fields_.add_to(p, y, now, columns_[p]);
+  fields_.add_to_row(p, y, now, columns_[p]);
   return now;
 }
 
@@ -65,24 +65,25 @@ void ParticleRows::add_treading(const Net& v) {
       rows_[p]->velocity = found.row(p).head<3>().transpose(), rows_[p]->treading = {found(p, 3), found(p, 4)};
 }
 
-/// Advances the phase angle of particle p, the angle of the material point Member::followed about the centroid, over the last step. Sets it in the
-/// row.
-void ParticleRows::advance_phase(std::size_t p, double step) {
-  Member& member = members_[p];
-  const Body& body = *member.body;
-  ParticleRow& now = *rows_[p];
-  std::optional<double> angle;
-  if (!capsule_.particles()[p].slides())
-    angle = angle_in(body.plane, surface::value(body.nested(), member.own(state_.x), member.followed) - now.centre);
-  member.phase_angle.advance(step, now.treading.frequency, angle);
-  now.phase = member.phase_angle.degrees;
+/// The phase angle is the angle of the material point Member::followed about the centroid.
+void ParticleRows::advance_phases(double step) {
+  for (std::size_t p = 0; p < members_.size(); ++p) {
+    Member& member = members_[p];
+    if (member.scene.particle.rigid()) continue;
+    const Body& body = *member.body;
+    ParticleRow& now = *rows_[p];
+    std::optional<double> angle;
+    if (!capsule_.particles()[p].slides())
+      angle = angle_in(body.plane, surface::value(body.nested(), member.own(state_.x), member.followed) - now.centre);
+    member.phase_angle.advance(step, now.treading.frequency, angle);
+    now.phase = member.phase_angle.degrees;
+  }
 }
 
-Columns ParticleRows::columns(double step, const std::vector<RecordedParticle>& recorded) {
+Columns ParticleRows::columns(const std::vector<RecordedParticle>& recorded) {
   Columns all;
   for (std::size_t p = 0; p < members_.size(); ++p) {
     const Member& member = members_[p];
-    if (!member.scene.particle.rigid()) advance_phase(p, step);
     rows_[p]->add_columns(member.scene, columns_[p]);
     if (!recorded.empty()) add_series(member.scene, state_.time, recorded[p], columns_[p]);
     finish(columns_[p]);

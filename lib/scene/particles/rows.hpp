@@ -16,9 +16,11 @@ class ParticleRows {
   ParticleRows(std::vector<Member>& members, const coupling::Capsule& capsule, const SurfaceFields& fields, coupling::Evaluation& here,
                const motion::State& state, const Net& y, coupling::Ranks& ranks);
 
-  /// Advances the phase angle of each deforming particle by `step`, the step that led to the state, and returns the columns of all particles. The
-  /// fluid velocity on their surfaces is taken from `here`. `recorded`: particles for user-defined series; empty if there are none.
-  Columns columns(double step, const std::vector<RecordedParticle>& recorded);
+  /// Advances Member::phase_angle of each deforming particle by `step`, the step that led to the state. To be called once per state.
+  void advance_phases(double step);
+
+  /// Returns the columns of all particles. `recorded`: particles for user-defined series; empty if there are none.
+  Columns columns(const std::vector<RecordedParticle>& recorded);
 
   Together together() const;  ///< returns totals and means of all particles, without the stresslets of pairs in contact
 
@@ -26,7 +28,6 @@ class ParticleRows {
   DeformingRow deforming(std::size_t p, const Net& y);
   RigidRow rigid(std::size_t p, const coupling::RigidParticles& bodies);
   void add_treading(const Net& v);
-  void advance_phase(std::size_t p, double step);
 
   std::vector<Member>& members_;
   const coupling::Capsule& capsule_;

@@ -1,10 +1,5 @@
 #include "scene/particles/surroundings.hpp"
 
-#include "scene/particles/gaps.hpp"
-#include "scene/plane_wall.hpp"
-#include "scene/solids.hpp"
-#include "scene/tube.hpp"
-
 namespace tanktread {
 
 namespace {
@@ -24,28 +19,28 @@ Vec3 force_on_fluid(const std::vector<Member>& members, coupling::Evaluation& he
 
 }  // namespace
 
-void add_surroundings(const Scene& scene, const std::vector<Member>& members, const Body& all, coupling::Capsule& capsule, coupling::Evaluation& here,
-                      const Mat3& stresslet, const coupling::Ranks& ranks, Columns& row) {
+void set_surroundings(const Scene& scene, const std::vector<Member>& members, const Body& all, coupling::Capsule& capsule, coupling::Evaluation& here,
+                      const coupling::Ranks& ranks, RunRow& row) {
   const Net& x = here.x();
   if (all.wall) {
     check_spread(scene, *all.wall, capsule.geometry(), x);
-    tube_row(*capsule.tube(), capsule.flow(), here).add_columns(scene, row);
+    row.tube = tube_row(*capsule.tube(), capsule.flow(), here);
   }
   if (const auto& cell = capsule.cell()) {
-    DomainRow now{.cell = cell->vectors()};
+    DomainRow& now = row.domain;
+    now.cell = cell->vectors();
     const Vec3 force = force_on_fluid(members, here);
     const Mat3 gradient = capsule.flow().pauses() ? Mat3::Zero() : capsule.flow().cell_gradient();
     const Mat3 axes = axes_of_shear(gradient).value_or(all.plane.of_shear.value_or(all.plane.axes));
-    if (cell->n() == 3) now.set_stress(scene.flow.viscosity, gradient, *cell, axes, capsule.geometry().volume(x), stresslet, force);
+    if (cell->n() == 3) now.set_stress(scene.flow.viscosity, gradient, *cell, axes, capsule.geometry().volume(x), row.together.stresslet, force);
     if (coupling::SolidResponse* solids = capsule.solids()) {
       const coupling::Evaluation::SolidFlow flow = here.solid_flow();
       now.pressure_gradient = capsule.flow().change() * solids->scene().driving_gradient;
-      solids_row(scene, solids->scene(), capsule.flow(), flow.flow, force, flow.velocity_integral).add_columns(scene, row);
+      row.solids = solids_row(scene, solids->scene(), capsule.flow(), flow.flow, force, flow.velocity_integral);
     }
-    now.add_columns(scene, row);
   }
-  if (scene.has_gaps()) smallest_gap(members, x, ranks, capsule.cell()).add_columns(row);
-  if (scene.wall.present) wall_row(scene.wall.planes(), members, x).add_columns(scene, row);
+  if (scene.has_gaps()) row.nearest = smallest_gap(members, x, ranks, capsule.cell());
+  if (scene.wall.present) row.wall = wall_row(scene.wall.planes(), members, x);
 }
 
 }  // namespace tanktread

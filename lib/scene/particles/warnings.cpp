@@ -27,11 +27,13 @@ constexpr double stiff_area = 3e4;
 double wave_number(double h) { return std::numbers::pi / h; }
 
 /// Returns the mean of the viscosities of the inner and the outer fluid.
-double mean_viscosity(const ParticleScene& scene) { return scene.flow.viscosity * (1 + scene.particle.viscosity_ratio) / 2; }
+double mean_viscosity(const ParticleScene& particle_scene) {
+  return particle_scene.flow.viscosity * (1 + particle_scene.particle.viscosity_ratio) / 2;
+}
 
 /// Returns the advice to the user for elements that are too coarse, as a part of a sentence.
-std::string finer_mesh(const ParticleScene& scene) {
-  return scene.adaptation.enabled ? "set a finer mesh, or smaller limits in Adaptation" : "set a finer mesh, or Adaptation/enabled";
+std::string finer_mesh(const ParticleScene& particle_scene) {
+  return particle_scene.adaptation.enabled ? "set a finer mesh, or smaller limits in Adaptation" : "set a finer mesh, or Adaptation/enabled";
 }
 
 /// Returns the worst mesh quality over all ranks, from the quality `mine` of this rank's elements.
@@ -46,13 +48,13 @@ surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& rank
 
 }  // namespace
 
-double stiffness(const ParticleScene& scene, double h) {
-  const double k = wave_number(h), g = scene.modulus(), mu = mean_viscosity(scene);
-  const double in_plane = std::max(1 + scene.membrane.area_dilatation.value_or(1), 1.0) * g * k / (2 * mu);
-  return std::max(in_plane, scene.bending_modulus() * k * k * k / (4 * mu));
+double stiffness(const ParticleScene& particle_scene, double h) {
+  const double k = wave_number(h), g = particle_scene.modulus(), mu = mean_viscosity(particle_scene);
+  const double in_plane = std::max(1 + particle_scene.membrane.area_dilatation.value_or(1), 1.0) * g * k / (2 * mu);
+  return std::max(in_plane, particle_scene.bending_modulus() * k * k * k / (4 * mu));
 }
 
-StepFindings::StepFindings(const ParticleScene& scene, const Columns& row, const surface::Quality& quality, int n_elements)
+StepFindings::StepFindings(const ParticleScene& particle_scene, const Columns& row, const surface::Quality& quality, int n_elements)
     : time(row.value("time")),
       step(row.value("time_step")),
       smallest_tension(row.smallest("smallest_tension")),
@@ -60,7 +62,7 @@ StepFindings::StepFindings(const ParticleScene& scene, const Columns& row, const
       volume_error(std::max(row.largest("volume_error"), -row.smallest("volume_error"))),
       jacobian_ratio(quality.jacobian_ratio),
       aspect_ratio(quality.aspect_ratio) {
-  if (scene.tube.present || (scene.wall.present && !scene.adaptation.enabled)) gap = row.value("gap");
+  if (particle_scene.tube.present || (particle_scene.wall.present && !particle_scene.adaptation.enabled)) gap = row.value("gap");
   const std::vector<double> areas = row.of_particles("area");
   element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
 }

@@ -25,8 +25,8 @@ struct StepFindings {
 
   StepFindings() = default;
 
-  /// Reads the data from a row of the results. `scene`: scene of the first deforming particle.
-  StepFindings(const ParticleScene& scene, const Columns& row, const surface::Quality& quality, int n_elements);
+  /// Reads the data from a row of the results. `particle_scene`: scene of the first deforming particle.
+  StepFindings(const ParticleScene& particle_scene, const Columns& row, const surface::Quality& quality, int n_elements);
 };
 
 /// Warning for the user, and its kind. Each kind is shown only once.
@@ -46,7 +46,7 @@ class Warnings {
     std::vector<Warning> shown;  ///< warnings shown so far
   };
 
-  explicit Warnings(const ParticleScene& scene) : scene_(scene) {}
+  explicit Warnings(const ParticleScene& particle_scene) : scene_(particle_scene) {}
 
   /// Returns true if no warning of this kind was shown before, and records it as shown.
   bool fresh(const Warning& warning);
@@ -72,7 +72,7 @@ class Warnings {
 
 /// Returns the stiffness of an elastic membrane on elements of size h, 1/time: the larger of two rates of the shortest waves on the mesh, by in-plane
 /// deformation (4.5) and by bending. Both use the mean viscosity of the inner and the outer fluid.
-double stiffness(const ParticleScene& scene, double h);
+double stiffness(const ParticleScene& particle_scene, double h);
 
 /// Computes the quality of the mesh in the shape x. Throws RunFailure on all ranks if an element is folded or a control point is NaN. The ranks share
 /// the elements. Collective.

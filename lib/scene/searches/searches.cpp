@@ -30,45 +30,48 @@ membrane::RigidConditions conditions(std::span<const coupling::Particle> particl
 }
 
 /// Returns the lattice vectors of a periodic scene. Returns none if the scene is not periodic, or if it has a tube or channel.
-std::vector<Vec3> lattice_vectors(const SharedOptions& scene) {
+std::vector<Vec3> lattice_vectors(const SharedOptions& shared) {
   std::vector<Vec3> all;
-  if (!scene.domain.present || scene.tube.present) return all;
-  const stokes::PeriodicCell cell = scene.domain.cell().value();
+  if (!shared.domain.present || shared.tube.present) return all;
+  const stokes::PeriodicCell cell = shared.domain.cell().value();
   for (int d = 0; d < cell.n(); ++d) all.push_back(cell.vectors().col(d));
   return all;
 }
 
 /// Returns true if the flow has a uniform gradient with nonzero vorticity.
-bool turns(const SharedOptions& scene) {
-  if (scene.flow.type == "duct") return false;
-  const stokes::AmbientFlow ambient(scene.flow);
+bool turns(const SharedOptions& shared) {
+  if (shared.flow.type == "duct") return false;
+  const stokes::AmbientFlow ambient(shared.flow);
   const Mat3 gradient = ambient.gradient(Vec3::Zero());
   return ambient.affine() && (gradient - gradient.transpose()).norm() > 1e-12 * gradient.norm();
 }
 
 }  // namespace
 
-void reject_searches(const ParticleScene& scene, Rejections& to) {
-  const bool search = !scene.runs_in_time(), steady = scene.steady.present, drop = scene.membrane.fluid_interface();
-  const std::string& unstressed = scene.membrane.stress_free == "resting" ? scene.particle.shape.shape : scene.membrane.stress_free;
-  to.pair(steady && scene.periodic.present, "Steady", "Periodic", "a steady shape has no period; give one of them");
-  to.add(scene.continuation.present && !steady, "Continuation needs a section Steady, because it continues steady shapes.");
-  to.pair(search && scene.flow.history && !scene.periodic.present, {scene.sought().here, "Steady or Spectrum"}, "Flow/history",
-          "no shape is steady in a flow that changes in time");
-  to.pair(scene.time.steady_tolerance && scene.flow.history && scene.flow.history->type == "sine", "Time/steady tolerance",
+void reject_searches(const ParticleScene& particle_scene, Rejections& to) {
+  const bool search = !particle_scene.runs_in_time(), steady = particle_scene.steady.present, drop = particle_scene.membrane.fluid_interface();
+  const std::string &resting = particle_scene.particle.shape.shape, &stress_free = particle_scene.membrane.stress_free;
+  const std::string& unstressed = stress_free == "resting" ? resting : stress_free;
+  to.pair(steady && particle_scene.periodic.present, "Steady", "Periodic", "a steady shape has no period; give one of them");
+  to.add(particle_scene.continuation.present && !steady, "Continuation needs a section Steady, because it continues steady shapes.");
+  to.pair(search && particle_scene.flow.history && !particle_scene.periodic.present, {particle_scene.sought().here, "Steady or Spectrum"},
+          "Flow/history", "no shape is steady in a flow that changes in time");
+  to.pair(particle_scene.time.steady_tolerance && particle_scene.flow.history && particle_scene.flow.history->type == "sine", "Time/steady tolerance",
           "Flow/history/type `sine`", "no shape is steady in a flow that oscillates");
-  to.pair(search && !scene.posts.empty(), scene.sought(), "Particle/shape `cylinder`",
+  to.pair(search && !particle_scene.posts.empty(), particle_scene.sought(), "Particle/shape `cylinder`",
           "a particle among posts drifts past them, so that no shape is steady");
-  to.pair(search && scene.volume.constraint != coupling::VolumeConservation::exact, scene.sought(),
-          {"Volume/constraint `" + deck::word(coupling::volume_constraints, scene.volume.constraint) + "`", "Volume/constraint other than `exact`"},
+  to.pair(search && particle_scene.volume.constraint != coupling::VolumeConservation::exact, particle_scene.sought(),
+          {"Volume/constraint `" + deck::word(coupling::volume_constraints, particle_scene.volume.constraint) + "`",
+           "Volume/constraint other than `exact`"},
           "the volume must be conserved exactly, because it distinguishes between steady shapes");
-  to.pair(search && drop && scene.interface_motion() == coupling::MeshMotion::material, scene.sought(), "Interface/motion `material`",
-          "mesh points that move along the interface with the fluid do not become steady; give `normal` or `relaxed`");
-  to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), {scene.sought().here, "Steady"}, scene.flow_choice(),
+  to.pair(search && drop && particle_scene.interface_motion() == coupling::MeshMotion::material, particle_scene.sought(),
+          "Interface/motion `material`", "mesh points that move along the interface with the fluid do not become steady; give `normal` or `relaxed`");
+  to.pair(steady && particle_scene.elastic() && unstressed != "sphere" && turns(particle_scene), {particle_scene.sought().here, "Steady"},
+          particle_scene.flow_choice(),
           "the flow rotates, and a membrane whose unstressed shape is not a sphere swings or tumbles while it tank-treads; use Periodic");
-  to.pair(scene.spectrum.near && scene.spectrum.method == "krylov", "Spectrum/near", "Spectrum/method `krylov`",
+  to.pair(particle_scene.spectrum.near && particle_scene.spectrum.method == "krylov", "Spectrum/near", "Spectrum/method `krylov`",
           "that method finds the modes nearest to Spectrum/shift; give that key, or `dense`");
-  to.pair(scene.maxwell_membrane() && steady && turns(scene), "Steady with Membrane/relaxation time", scene.flow_choice(),
+  to.pair(particle_scene.maxwell_membrane() && steady && turns(particle_scene), "Steady with Membrane/relaxation time", particle_scene.flow_choice(),
           "the membrane tank-treads around its steady shape, so that the strain of its material points is not steady");
 }
 
@@ -120,13 +123,13 @@ double steady_step(const Scene& scene) {
   return step;
 }
 
-bool holds_centre(const ParticleScene& scene) {
-  if (scene.particle.drift) return *scene.particle.drift == "held";
-  if (scene.tube.present || scene.wall.present || scene.medium() || scene.particle.rigid()) return false;
-  if (!scene.body_force().isZero(0) || !scene.membrane.forces.total().isZero(0) || !scene.loads.empty()) return false;
-  const stokes::AmbientFlow flow(scene.flow);
+bool holds_centre(const ParticleScene& particle_scene) {
+  if (particle_scene.particle.drift) return *particle_scene.particle.drift == "held";
+  if (particle_scene.tube.present || particle_scene.wall.present || particle_scene.medium() || particle_scene.particle.rigid()) return false;
+  if (!particle_scene.body_force().isZero(0) || !particle_scene.membrane.forces.total().isZero(0) || !particle_scene.loads.empty()) return false;
+  const stokes::AmbientFlow flow(particle_scene.flow);
   if (!flow.affine()) return false;
-  const Vec3& center = scene.particle.shape.center;
+  const Vec3& center = particle_scene.particle.shape.center;
   if (!flow.velocity(center).isZero(0)) return false;
   return largest_growth_rate(flow.gradient(center)) > 1e-4 * flow.rate();  // in a rotated simple shear it is 0 exactly, and up to 1e-5 by rounding
 }

@@ -25,7 +25,7 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
                                                 std::span<const coupling::Particle> particles, int kinds = 6);
 
 /// Adds to `to` the combinations of keys that are not allowed in a search for steady shapes, periodic motions or spectra.
-void reject_searches(const ParticleScene& scene, Rejections& to);
+void reject_searches(const ParticleScene& particle_scene, Rejections& to);
 
 /// Returns Steady/step, the implicit step of the search in units of time. By default, it is half the inverse of the rate, but at most 10 relaxation
 /// times of each membrane. The bound is needed because the iteration amplifies velocity errors, in motions that no membrane opposes, by the ratio of
@@ -36,7 +36,7 @@ double steady_step(const Scene& scene);
 /// this. If this key is not set, returns true if the particle is deformable, there are no walls, and the given centre is a stagnation point of an
 /// affine flow with a growing direction (planar hyperbolic, four-roll, extension). In such a flow, a displacement of the particle by round-off grows
 /// like e^(rate t), so that a particle of steady shape would drift away.
-bool holds_centre(const ParticleScene& scene);
+bool holds_centre(const ParticleScene& particle_scene);
 
 /// Displaces the shape of the state by the vector c that moves the centroid to `place`, and changes the slopes and earlier positions of the time
 /// scheme accordingly. In an affine flow with gradient L, v(x + c) = v(x) + L c for any shape x. If x(t) is a motion, x(t) + c(t) with dc/dt = L c is

@@ -20,7 +20,7 @@ namespace tanktread {
 struct SteadySystem {
   /// `stops`: function that returns true if this rank is to stop because of a signal or a limit (see GuardedDynamics).
   SteadySystem(Scene of, coupling::Ranks& ranks, Phases& phases, std::function<bool()> stops)
-      : scene(std::move(of)), particles(coupled_particles(scene, ranks, phases)), is_to_stop(std::move(stops)) {
+      : scene(std::move(of)), particles(make_coupled_particles(scene, ranks, phases)), is_to_stop(std::move(stops)) {
     begin(particles->start());
   }
 
@@ -41,9 +41,7 @@ struct SteadySystem {
 
   /// Changes to the mesh of another system, and then calls begin(). Collective.
   void move_to(const output::Checkpoint& mesh, const Net& x) {
-    Resumed resumed;
-    resumed.state.x = x, resumed.totals.phase_angle = particles->phase_angle(), resumed.checkpoint = mesh;
-    particles->resume(resumed);
+    particles->move_to(mesh, x);
     begin(x);
   }
 

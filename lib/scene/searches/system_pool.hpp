@@ -33,7 +33,7 @@ class SystemPool {
   /// the systems that it returns. Collective.
   SystemPool(const Scene& scene, Changed changed, coupling::Ranks& ranks, Phases& phases, std::function<bool()> stops)
       : scene_(scene), changed_(std::move(changed)), ranks_(ranks), phases_(phases), stops_(std::move(stops)) {
-    systems_.emplace_front(Parameters(), built(scene));
+    systems_.emplace_front(Parameters(), make_system(scene));
   }
   SystemPool(const SystemPool&) = delete;
 
@@ -57,7 +57,7 @@ class SystemPool {
       return latest();
     }
     const auto clock = phases_.time("set-up");
-    const std::shared_ptr<SteadySystem> made = built(scene_at(parameters));
+    const std::shared_ptr<SteadySystem> made = make_system(scene_at(parameters));
     if (mesh_ && !(made->particles->body().rest == rest_ && made->particles->body().unstressed == unstressed_))
       throw UserError("the mesh has adapted, but the resting or unstressed shape depends on this key: set Adaptation/enabled to false");
     if (mesh_) made->move_to(*mesh_, x);
@@ -79,7 +79,7 @@ class SystemPool {
 
   /// Returns a new system with another scene, on the mesh of the system `like` and with the shape x. Collective.
   std::shared_ptr<SteadySystem> variant(const SteadySystem& like, Scene scene, const Net& x) {
-    std::shared_ptr<SteadySystem> made = built(std::move(scene));
+    std::shared_ptr<SteadySystem> made = make_system(std::move(scene));
     made->move_to(like.mesh(), x);
     return made;
   }
@@ -95,7 +95,7 @@ class SystemPool {
 
  private:
   /// Builds a system. When the system is deleted, its numbers of operations are added to `counts_` and `kernel_`.
-  std::shared_ptr<SteadySystem> built(Scene scene) {
+  std::shared_ptr<SteadySystem> make_system(Scene scene) {
     scene.walls = walls_;
     std::shared_ptr<SteadySystem> made(new SteadySystem(std::move(scene), ranks_, phases_, stops_), [this](SteadySystem* system) {
       counts_ = counts_ + system->particles->counts(), kernel_ += system->particles->kernel_evaluations();

@@ -69,7 +69,9 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
 
 /// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. If the flow has neither, the rate is the
 /// relaxation rate (ParticleScene::rate).
-double unit_speed(const ParticleScene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : scene.rate() * body.radius; }
+double unit_speed(const ParticleScene& particle_scene, const Body& body) {
+  return particle_scene.speed() > 0 ? particle_scene.speed() : particle_scene.rate() * body.radius;
+}
 
 /// Returns an array with one number per rank: `mine` for this rank and 0 for all others, so that a sum over ranks collects the numbers.
 std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
@@ -94,7 +96,7 @@ std::vector<int> own_elements(const surface::Geometry& geometry, const coupling:
 
 }  // namespace
 
-void ParticleRow::add_moving(const ParticleScene& one, Columns& to) const {
+void ParticleRow::add_moving(const ParticleScene& particle_scene, Columns& to) const {
   to.add(shape.inclination,
          {"inclination", "degree",
           "inclination: angle of the particle's longest axis of inertia with the first direction of the plane of the flow (x1), positive "
@@ -105,14 +107,14 @@ void ParticleRow::add_moving(const ParticleScene& one, Columns& to) const {
                                                              "surface"});
   add_points(n_points, to);
   add_velocity(velocity, to);
-  if (to.when(has_intrinsic_viscosity(one)))
+  if (to.when(has_intrinsic_viscosity(particle_scene)))
     to.add(intrinsic_viscosity, {"intrinsic_viscosity", "1",
                                  "intrinsic viscosity S:E/(2 mu V E:E), with the stresslet S (6.7), the particle's volume V, the outer "
                                  "viscosity mu and the rate of strain E of the flow at this time; 5/2 for a rigid sphere",
                                  "the rate of strain of the flow is zero at this time"});
 }
 
-void ParticleRow::add_turning(const ParticleScene& one, Columns& to) const {
+void ParticleRow::add_turning(const ParticleScene& particle_scene, Columns& to) const {
   to.add(axes.lengths, "1 2 3",
          {"axis_", "length", "semi-axis # of the ellipsoid with the particle's second moments (6.1); 1 is the longest"});
   to.add(axes.longest_defined ? Vec3(axes.directions.col(0)) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), axes_of_space,
@@ -131,7 +133,7 @@ void ParticleRow::add_turning(const ParticleScene& one, Columns& to) const {
                  "phase of tank-treading: angle about the centroid, in the plane of the flow, of the material point that starts at the "
                  "angle 0 (direction x1), positive like `tank_treading_velocity` and not reduced by whole turns. For a drop whose mesh "
                  "slides it is the time integral of `tank_treading_frequency`"});
-  if (!to.when(one.tube.present)) return;
+  if (!to.when(particle_scene.tube.present)) return;
   const auto off_axis = centre.tail<2>(), moves = velocity.tail<2>();
   to.add(off_axis.dot(moves) > 0 ? -moves.norm() : moves.norm(),
          {"migration_velocity",
@@ -141,22 +143,22 @@ void ParticleRow::add_turning(const ParticleScene& one, Columns& to) const {
           "; in a tube"});
 }
 
-void DeformingRow::add_columns(const ParticleScene& one, Columns& to) const {
+void DeformingRow::add_columns(const ParticleScene& particle_scene, Columns& to) const {
   to.add(shape.taylor_inertia, {"taylor_inertia", "1",
                                 "Taylor deformation parameter D = (L - B)/(L + B) (6.2), with the longest and shortest semi-axis L and B, "
                                 "in the plane of the flow, of the ellipsoid with the particle's second moments"});
   to.add(shape.taylor_surface, {"taylor_surface", "1",
                                 "Taylor deformation parameter D = (L - B)/(L + B) (6.2), with the longest and shortest distance L and B "
                                 "from the centroid to the surface, in the plane of the flow"});
-  add_moving(one, to);
+  add_moving(particle_scene, to);
   add_size(measures, to);
   to.add(volume_error, {"volume_error", "1", "relative error V/V0 - 1 of the particle's volume V, with its volume V0 at the start"});
-  if (to.when(one.adaptation.enabled))
+  if (to.when(particle_scene.adaptation.enabled))
     to.add(refit_error, {"refit_error", "1",
                          "sum of the displacements of the current and the unstressed surface by all refinements and coarsenings of the "
                          "mesh so far, divided by R_C, the radius of the sphere with the particle's volume"});
   add_energy(energy, to);
-  if (to.when(one.viscous_membrane()))
+  if (to.when(particle_scene.viscous_membrane()))
     to.add(dissipation, {"membrane_dissipation", "force length/time", "power dissipated by the viscosity of the membrane (3.10), (3.25)"});
   to.add(
       tension.smallest,
@@ -166,7 +168,7 @@ void DeformingRow::add_columns(const ParticleScene& one, Columns& to) const {
        "not the stresses of Membrane/relaxation time and of surface viscosity"});
   to.add(tension.compressed_area, {"compressed_area", "1", "fraction of the membrane's area where a principal tension is negative, so "
                                                            "that the membrane may wrinkle"});
-  if (to.when(!one.membrane.fluid_interface()))
+  if (to.when(!particle_scene.membrane.fluid_interface()))
     to.add(tension.area_change,
            {"local_area_change", "1", "largest relative change of area anywhere on the membrane: maximum of |J - 1|, with J the current "
                                       "area divided by the unstressed area of the same material"});
@@ -179,26 +181,26 @@ void DeformingRow::add_columns(const ParticleScene& one, Columns& to) const {
                           "root mean square of the part of the normal velocity v.n that changes the shape smoothly (6.8), divided like "
                           "`normal_velocity`. The run is steady when it falls below Time/steady tolerance"});
   add_centroid(centre, to);
-  add_turning(one, to);
+  add_turning(particle_scene, to);
 }
 
-void RigidRow::add_columns(const ParticleScene& one, Columns& to) const {
-  add_moving(one, to);
+void RigidRow::add_columns(const ParticleScene& particle_scene, Columns& to) const {
+  add_moving(particle_scene, to);
   to.add(angular_velocity, axes_of_space, {"angular_velocity_", "1/time", "component # of the angular velocity of the rigid body"});
   to.add(quaternion, "0 1 2 3",
          {"quaternion_", "1",
           "component # of the quaternion of the rotation from the initial to the current orientation; 0 is the scalar part"});
-  if (to.when(one.time.steady_tolerance.has_value()))
+  if (to.when(particle_scene.time.steady_tolerance.has_value()))
     to.add(shape_velocity, {"shape_velocity", "1",
                             "root mean square of the normal velocity due to the rotation of the rigid body, divided by rate x R_C, or in a "
                             "tube by the mean velocity (6.8). The run is steady when it falls below Time/steady tolerance"});
-  if (one.in_system()) {
+  if (particle_scene.in_system()) {
     add_size(measures, to);
     add_centroid(centre, to);
     add_drag(drag, torque, to);
   } else {
     to.add(centre, axes_of_space, {"center_", "length", "component # of the position of the rigid body's centre"});
-    add_turning(one, to);
+    add_turning(particle_scene, to);
   }
 }
 
@@ -237,9 +239,9 @@ Eigen::Vector<double, 6> components(const Mat3& tensor) {
   return Eigen::Vector<double, 6>{{tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1), tensor(0, 2), tensor(1, 2)}};
 }
 
-bool has_intrinsic_viscosity(const SharedOptions& scene) {
-  if (scene.tube.present) return false;
-  const stokes::AmbientFlow flow(scene.flow);
+bool has_intrinsic_viscosity(const SharedOptions& shared) {
+  if (shared.tube.present) return false;
+  const stokes::AmbientFlow flow(shared.flow);
   const Mat3 gradient = flow.gradient(Vec3::Zero());
   return flow.affine() && (gradient + gradient.transpose()).norm() > 1e-10 * gradient.norm();
 }
@@ -271,8 +273,8 @@ double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, co
   return now.stresslet.cwiseProduct(strain).sum() / (2 * viscosity * now.measures.volume * strain.squaredNorm());
 }
 
-RigidRow rigid_row(const ParticleScene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
-                   const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
+RigidRow rigid_row(const ParticleScene& particle_scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry,
+                   const Net& x, const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
                    const coupling::Ranks& ranks) {
   RigidRow now;
   now.n_points = body.space.n_points;
@@ -283,12 +285,12 @@ RigidRow rigid_row(const ParticleScene& scene, const Body& body, const stokes::A
   now.centre = now.measures.centroid;
   now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
   now.quaternion << turn.w(), turn.vec();
-  now.intrinsic_viscosity = intrinsic_viscosity(flow, scene.flow.viscosity, now);
-  if (!scene.time.steady_tolerance) return now;
+  now.intrinsic_viscosity = intrinsic_viscosity(flow, particle_scene.flow.viscosity, now);
+  if (!particle_scene.time.steady_tolerance) return now;
   const std::vector<int> elements = indices(geometry.bezier().n_elements());
   const Net v = coupling::rigid_velocity(x, motion, now.centre);
   const std::vector<double> sums = surface::shape_velocity_sums(geometry.bezier(), x, v, body.radius, elements);
-  now.shape_velocity = surface::shape_velocity(sums, scene.tube.present) / unit_speed(scene, body);
+  now.shape_velocity = surface::shape_velocity(sums, particle_scene.tube.present) / unit_speed(particle_scene, body);
   return now;
 }
 
@@ -316,18 +318,18 @@ surface::Deformation deformation(const surface::Geometry& geometry, const FlowPl
   return result;
 }
 
-DeformingRow deforming_row(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane,
-                           const Net& x, const Net& slope, const coupling::Ranks& ranks) {
+DeformingRow deforming_row(const ParticleScene& particle_scene, const Body& body, const surface::Geometry& geometry,
+                           const membrane::Membrane& membrane, const Net& x, const Net& slope, const coupling::Ranks& ranks) {
   const std::vector<int> blocks = ranks.share(geometry.n_blocks());
   const std::vector<int> elements = own_elements(geometry, ranks);
   const std::vector<int>& sites = body.symmetry.fundamental();  // fundamental collocation sites; all other sites are symmetry images of these
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
-  const membrane::ElementTensions tensions = membrane.element_tensions(x, elements, global_tension(scene, body, x));
+  const membrane::ElementTensions tensions = membrane.element_tensions(x, elements, global_tension(particle_scene, body, x));
   const auto [moments, energy, area, compressed, smallest, change, fastest, shape] = ranks.of_all(std::array{
       geometry.block_moments(x, blocks), surface::block_sums(membrane.element_energies(x, elements)), surface::block_sums(tensions.area),
       surface::block_sums(tensions.compressed), slots(ranks, elements.empty() ? 0 : tensions.smallest), slots(ranks, tensions.area_change),
-      slots(ranks, normal_velocity(scene, body, geometry, x, slope, own)),
+      slots(ranks, normal_velocity(particle_scene, body, geometry, x, slope, own)),
       surface::shape_velocity_sums(geometry.bezier(), x, slope, body.radius, elements)});
   DeformingRow now;
   now.n_points = body.space.n_points;
@@ -338,20 +340,21 @@ DeformingRow deforming_row(const ParticleScene& scene, const Body& body, const s
   now.energy = sum(energy);
   now.tension = {least(smallest, ranks, geometry.n_blocks()), sum(compressed) / sum(area), std::ranges::max(change)};
   now.normal_velocity = std::ranges::max(fastest);
-  now.shape_velocity = surface::shape_velocity(shape, scene.tube.present) / unit_speed(scene, body);
+  now.shape_velocity = surface::shape_velocity(shape, particle_scene.tube.present) / unit_speed(particle_scene, body);
   now.centre = now.measures.centroid;
   return now;
 }
 
-void add_treading(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now) {
+void add_treading(const ParticleScene& particle_scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v,
+                  ParticleRow& now) {
   const FlowPlane& plane = body.plane;
   now.velocity = surface::centroid_velocity(geometry.bezier(), x, v);
-  const bool elastic = !scene.membrane.fluid_interface();
+  const bool elastic = !particle_scene.membrane.fluid_interface();
   now.treading = surface::tank_treading(geometry.bezier(), plane.turned(x), plane.turned(v), elastic ? &body.unstressed : nullptr,
                                         plane.components(now.centre), plane.components(now.velocity));
 }
 
-double normal_velocity(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
+double normal_velocity(const ParticleScene& particle_scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites) {
   double largest = 0;
   const Vec3 frame = surface::centroid_velocity(geometry.bezier(), x, slope);
@@ -366,7 +369,7 @@ double normal_velocity(const ParticleScene& scene, const Body& body, const surfa
     const Vec3 v = surface::position({map.degree(element), velocities}, s, t) - frame;
     largest = std::max(largest, std::abs(v.dot(at.s.cross(at.t).normalized())));
   }
-  return largest / unit_speed(scene, body);
+  return largest / unit_speed(particle_scene, body);
 }
 
 }  // namespace tanktread

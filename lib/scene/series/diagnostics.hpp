@@ -25,25 +25,25 @@ struct ParticleRow {
   double energy = 0, intrinsic_viscosity = 0, phase = 0;
 
   virtual ~ParticleRow() = default;
-  /// Adds the columns of this particle to a row. `one`: scene with the options of this particle only.
-  virtual void add_columns(const ParticleScene& one, Columns& to) const = 0;
+  /// Adds the columns of this particle to a row. `particle_scene`: scene with the options of this particle only.
+  virtual void add_columns(const ParticleScene& particle_scene, Columns& to) const = 0;
 
  protected:
-  void add_moving(const ParticleScene& one, Columns& to) const;   ///< adds the columns that every moving particle has
-  void add_turning(const ParticleScene& one, Columns& to) const;  ///< adds semi-axes, tank-treading and migration
+  void add_moving(const ParticleScene& particle_scene, Columns& to) const;   ///< adds the columns that every moving particle has
+  void add_turning(const ParticleScene& particle_scene, Columns& to) const;  ///< adds semi-axes, tank-treading and migration
 };
 
 struct DeformingRow : ParticleRow {
   double volume_error = 0, refit_error = 0, dissipation = 0, normal_velocity = 0, shape_velocity = 0;
   membrane::TensionSummary tension;
-  void add_columns(const ParticleScene& one, Columns& to) const override;
+  void add_columns(const ParticleScene& particle_scene, Columns& to) const override;
 };
 
 struct RigidRow : ParticleRow {
   Vec3 angular_velocity = Vec3::Zero(), drag = Vec3::Zero(), torque = Vec3::Zero();
   Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< quaternion of the rotation since the start, the scalar part first
   double shape_velocity = 0;                             ///< shape velocity (6.8), computed only if Time/steady tolerance is given
-  void add_columns(const ParticleScene& one, Columns& to) const override;
+  void add_columns(const ParticleScene& particle_scene, Columns& to) const override;
 };
 
 /// Totals over all particles (control points, energy and stresslet), and the mean velocity of all particles.
@@ -66,15 +66,16 @@ void add_gap(double to_wall, Columns& to);
 Eigen::Vector<double, 6> components(const Mat3& tensor);
 
 /// Returns true if the flow is unbounded and affine with a nonzero rate of strain, so that `intrinsic_viscosity` is defined.
-bool has_intrinsic_viscosity(const SharedOptions& scene);
+bool has_intrinsic_viscosity(const SharedOptions& shared);
 
 /// Computes the row data of a capsule or drop that follow from its shape x and velocity `slope`. Other data, such as the stresslet, are not set.
 /// Collective.
-DeformingRow deforming_row(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane,
-                           const Net& x, const Net& slope, const coupling::Ranks& ranks);
+DeformingRow deforming_row(const ParticleScene& particle_scene, const Body& body, const surface::Geometry& geometry,
+                           const membrane::Membrane& membrane, const Net& x, const Net& slope, const coupling::Ranks& ranks);
 
 /// Sets in `now` the velocity of the centroid and the tank-treading of the surface x, whose material moves at the velocity v.
-void add_treading(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
+void add_treading(const ParticleScene& particle_scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v,
+                  ParticleRow& now);
 
 /// Computes the Taylor parameter D and the inclination in the plane of the flow, and the extents along x1, x2 and x3. If the flow is not planar, uses
 /// the plane of the longest and the shortest axis of inertia instead. If the middle axis is as long as the longest or the shortest axis, this plane
@@ -88,8 +89,8 @@ double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, co
 
 /// Returns the row of a rigid body with the surface x, the velocities `motion` and the rotation `turn` since the start. `flow`: flow at the time of
 /// the row. Drag and torque are not set. Collective.
-RigidRow rigid_row(const ParticleScene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
-                   const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
+RigidRow rigid_row(const ParticleScene& particle_scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry,
+                   const Net& x, const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
                    const coupling::Ranks& ranks);
 
 /// Returns the angle of y in the plane, in degrees in (-180, 180], from the plane's first direction, positive in the sense of positive tank-treading
@@ -101,7 +102,7 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
 
 /// Returns the largest normal velocity |v.n| at the collocation sites `sites`, with v = `slope`, divided by ParticleScene::speed(), or by
 /// R_C times ParticleScene::rate() if this speed is 0. v is relative to the velocity of the centroid. The result is zero if the shape is steady.
-double normal_velocity(const ParticleScene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
+double normal_velocity(const ParticleScene& particle_scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 
 }  // namespace tanktread

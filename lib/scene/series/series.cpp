@@ -3,15 +3,10 @@
 #include <sstream>
 #include <unordered_map>
 
-#include "scene/particles/gaps.hpp"
 #include "scene/particles/prescribed.hpp"
-#include "scene/plane_wall.hpp"
 #include "scene/series/diagnostics.hpp"
+#include "scene/series/run_row.hpp"
 #include "scene/series/surface_fields.hpp"
-#include "scene/solids.hpp"
-#include "scene/tube.hpp"
-#include "system/contact.hpp"
-#include "system/power_balance.hpp"
 
 namespace tanktread {
 
@@ -46,8 +41,8 @@ std::size_t rank(const std::string& name) {
 /// Adds the columns of all registered series of the type Series. If arguments `of` are given, the values of the columns are computed by calling each
 /// series with these arguments. Otherwise the columns have no values.
 template <class Series, class... Of>
-void add_series_of(const SharedOptions& scene, Columns& to, const Of&... of) {
-  for (const SeriesParts::Chosen& part : scene.series) {
+void add_series_of(const SharedOptions& shared, Columns& to, const Of&... of) {
+  for (const SeriesParts::Chosen& part : shared.series) {
     const auto made = part.make();
     const Series* const series = std::get_if<Series>(&made);
     if (!series) continue;
@@ -58,12 +53,12 @@ void add_series_of(const SharedOptions& scene, Columns& to, const Of&... of) {
 
 }  // namespace
 
-void add_series(const SharedOptions& scene, double time, const RecordedParticle& particle, Columns& to) {
-  add_series_of<ParticleSeries>(scene, to, time, particle);
+void add_series(const SharedOptions& shared, double time, const RecordedParticle& particle, Columns& to) {
+  add_series_of<ParticleSeries>(shared, to, time, particle);
 }
 
-void add_series(const SharedOptions& scene, double time, std::span<const RecordedParticle> particles, Columns& to) {
-  add_series_of<RunSeries>(scene, to, time, particles);
+void add_series(const SharedOptions& shared, double time, std::span<const RecordedParticle> particles, Columns& to) {
+  add_series_of<RunSeries>(shared, to, time, particles);
 }
 
 void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
@@ -93,45 +88,44 @@ void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
           "number of iterations of the linear solver for velocities (viscosity ratio other than 1) since the start of the run"});
 }
 
+void RunRow::add_columns(const Scene& scene, Columns& to) const {
+  progress.add_columns(scene, to);
+  tube.add_columns(scene, to);
+  solids.add_columns(scene, to);
+  if (scene.has_gaps()) domain.add_columns(scene, to);
+  if (scene.only_solids) return;
+  wall.add_columns(scene, to);
+  if (!scene.in_system()) return;
+  together.add_columns(scene, to);
+  if (to.when(scene.output.power_balance)) powers.add_columns(to);
+  if (!scene.has_gaps()) return;
+  nearest.add_columns(to);
+  if (to.when(scene.contact.limiter)) contacts.add_columns(to);
+}
+
 Columns run_columns(const Scene& scene, bool every) {
   Columns all(every);
-  ProgressRow().add_columns(scene, all);
-  TubeRow().add_columns(scene, all);
-  if (scene.only_solids) {
-    SolidsRow().add_columns(scene, all), DomainRow().add_columns(scene, all);
-    put_in_order(all);
-    return all;
-  }
-  WallRow().add_columns(scene, all);
-  SolidsRow().add_columns(scene, all);
-  if (!scene.in_system()) {
+  RunRow().add_columns(scene, all);
+  if (!scene.only_solids && !scene.in_system()) {
     const ParticleScene one = scene.first();
     one.particle.motion == Motion::free ? RigidRow().add_columns(one, all) : PrescribedRow().add_columns(one, all);
-  } else {
-    Together().add_columns(scene, all);
-    if (all.when(scene.output.power_balance)) coupling::Powers().add_columns(all);
   }
-  if (scene.has_gaps()) {
-    Nearest().add_columns(all);
-    DomainRow().add_columns(scene, all);
-    if (all.when(scene.contact.limiter)) coupling::Contacts().add_columns(all);
-  }
-  add_series_of<RunSeries>(scene, all);
+  if (!scene.only_solids) add_series_of<RunSeries>(scene, all);
   put_in_order(all);
   return all;
 }
 
-Columns particle_columns(const ParticleScene& one, bool every) {
+Columns particle_columns(const ParticleScene& particle_scene, bool every) {
   Columns all(every);
-  if (one.particle.rigid()) {
-    RigidRow().add_columns(one, all);
+  if (particle_scene.particle.rigid()) {
+    RigidRow().add_columns(particle_scene, all);
   } else {
-    DeformingRow().add_columns(one, all);
-    if (all.when(one.surfactant.has_value())) SurfactantRow().add_columns(all);
-    for (const auto& part : one.loads) part.add_columns(all);
-    for (const auto& part : one.fields) part.add_columns(all);
+    DeformingRow().add_columns(particle_scene, all);
+    if (all.when(particle_scene.surfactant.has_value())) SurfactantRow().add_columns(all);
+    for (const auto& part : particle_scene.loads) part.add_columns(all);
+    for (const auto& part : particle_scene.fields) part.add_columns(all);
   }
-  add_series_of<ParticleSeries>(one, all);
+  add_series_of<ParticleSeries>(particle_scene, all);
   put_in_order(all);
   return all;
 }

@@ -45,11 +45,11 @@ Columns run_columns(const Scene& scene, bool every = false);
 
 /// Returns the columns of one particle of a system; their names do not contain the name of the particle. If `every`, also returns the columns that
 /// this particle does not have, for the manual.
-Columns particle_columns(const ParticleScene& one, bool every = false);
+Columns particle_columns(const ParticleScene& particle_scene, bool every = false);
 
 /// Adds the columns of user-defined series: the first function for one particle, the second for the whole run.
-void add_series(const SharedOptions& scene, double time, const RecordedParticle& particle, Columns& to);
-void add_series(const SharedOptions& scene, double time, std::span<const RecordedParticle> particles, Columns& to);
+void add_series(const SharedOptions& shared, double time, const RecordedParticle& particle, Columns& to);
+void add_series(const SharedOptions& shared, double time, std::span<const RecordedParticle> particles, Columns& to);
 
 /// Sorts the columns of the program in the order of the manual. The columns of user-defined parts follow in the order in which they were added.
 void put_in_order(Columns& columns);

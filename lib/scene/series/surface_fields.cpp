@@ -18,19 +18,18 @@ Scene with_field_lengths_of(const Scene& first, Scene scene) {
 
 SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule) : members_(members), capsule_(capsule) {
   for (std::size_t p = 0; p < members.size(); ++p) {
-    const ParticleScene& scene = members[p].scene;
-    Body& body = *members[p].body;
-    if (scene.surfactant) {
-      auto surfactant = std::make_unique<membrane::Surfactant>(body.space, body.rest, *scene.surfactant, body.modulus,
-                                                               scene.surfactant->diffusivity_of(scene.flow.rate(), body.radius));
+    const ParticleScene& particle_scene = members[p].scene;
+    const Body& body = *members[p].body;
+    if (particle_scene.surfactant) {
+      auto surfactant = std::make_unique<membrane::Surfactant>(body.space, body.rest, *particle_scene.surfactant, body.modulus,
+                                                               particle_scene.surfactant->diffusivity_of(particle_scene.flow.rate(), body.radius));
       membrane::Surfactant* const known = surfactant.get();
-      if (body.surfactant_mass == 0) body.surfactant_mass = known->mass(known->start(body.initial));
       all_.push_back({p, std::move(surfactant), known});
     }
-    if (scene.maxwell_membrane())
-      all_.push_back({p, std::make_unique<membrane::MaxwellElement>(body.space, body.rest, capsule.membrane().order(), scene.membrane.viscosity,
-                                                                    *scene.membrane.relaxation_time)});
-    for (const auto& part : scene.fields)
+    if (particle_scene.maxwell_membrane())
+      all_.push_back({p, std::make_unique<membrane::MaxwellElement>(body.space, body.rest, capsule.membrane().order(),
+                                                                    particle_scene.membrane.viscosity, *particle_scene.membrane.relaxation_time)});
+    for (const auto& part : particle_scene.fields)
       all_.push_back({p, part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}), nullptr, &part});
   }
   if (all_.empty()) return;
@@ -61,7 +60,7 @@ void SurfaceFields::put_back(const motion::State& own, motion::State& state) con
 
 motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies) {
   if (!motion_) return own;
-  const auto transfer = [&](const Net& y, const Net& shape) { return y.size() > 0 ? transferred(before, y, shape, bodies) : Net(); };
+  const auto transfer = [&](const Net& y, const Net& shape) { return y.size() > 0 ? transferred_net(before, y, shape, bodies) : Net(); };
   motion::State state;
   state.time = old.time, state.step = old.step, state.slope_error = old.slope_error, state.memory = old.memory;
   state.x = transfer(old.x, own.x), state.frozen = transfer(old.frozen, own.frozen), state.frozen_time = old.frozen_time;
@@ -71,7 +70,7 @@ motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::St
 
 /// Transfers the control net y of a state to the current meshes. `shape`: shape on the current meshes. `before`: the fields on the previous meshes.
 /// The rows of y below the shape are the coefficients of the fields; they are transferred from the previous meshes.
-Net SurfaceFields::transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
+Net SurfaceFields::transferred_net(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
   before.motion_->set_fields(y);
   Net now = motion_->start(shape);
   for (std::size_t k = 0; k < all_.size(); ++k) {
@@ -130,11 +129,10 @@ surface::FieldsAt SurfaceFields::values_at(std::size_t p) const {
   };
 }
 
-void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
-  const auto& loads = capsule_.particles()[p].loads;
-  const auto& parts = members_[p].scene.loads;  // user-defined loads that the deck uses; they are the last entries of `loads`
-  for (std::size_t k = 0; k < parts.size(); ++k)
-    parts[k].add_columns(loads[loads.size() - parts.size() + k]->values(members_[p].own(shape(y))), to);
+void SurfaceFields::add_to_row(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
+  const Member& member = members_[p];
+  for (std::size_t k = 0; k < member.scene.loads.size(); ++k)
+    member.scene.loads[k].add_columns(member.loads.registered[k]->values(member.own(shape(y))), to);
   for (std::size_t k = 0; k < all_.size(); ++k) {
     const One& one = all_[k];
     if (one.particle != p) continue;
@@ -143,11 +141,16 @@ void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Colum
     if (one.part) one.part->add_columns(one.field->values(), to);
     if (!one.surfactant) continue;
     const auto [smallest, largest] = one.surfactant->extremes();
-    const Member& member = members_[p];
     now.tension.smallest = member.scene.surfactant->tension(largest) + global_tension(member.scene, *member.body, member.own(shape(y)));
-    const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / members_[p].body->surfactant_mass;
+    const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / member.surfactant_mass;
     SurfactantRow{mass, smallest, largest}.add_columns(to);
   }
+}
+
+double SurfaceFields::initial_mass(std::size_t p) const {
+  for (const One& one : all_)
+    if (one.particle == p && one.surfactant) return one.surfactant->mass(one.surfactant->start(members_[p].body->initial));
+  return 0;
 }
 
 double SurfaceFields::power(const Net& v) const {
@@ -175,7 +178,7 @@ void SurfaceFields::add_registered(const output::Nodes& nodes, const Net& x, std
   }
 }
 
-void SurfaceFields::add_to(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
+void SurfaceFields::add_to_snapshot(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
   add_registered(nodes, x, fields);
   Net values = Net::Zero(capsule_.n_points(), 3);
   bool any = false;

@@ -66,12 +66,14 @@ class SurfaceFields {
 
   /// Adds the contributions of the fields of particle p to the particle's row `now`, and the columns of its fields and registered loads to `to`. `y`
   /// must be the state that was set last by set_state().
-  void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
+  void add_to_row(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
+  /// Returns the mass of the surfactant of particle p at the start of a run; 0 without surfactant.
+  double initial_mass(std::size_t p) const;
   /// Returns the power of the loads of all fields if the surface material moves at the velocity v.
   double power(const Net& v) const;
   /// Adds the values that fields and loads write to snapshots at the shape x, and replaces the tensions of interfaces with surfactant by their values
   /// at the local concentration.
-  void add_to(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const;
+  void add_to_snapshot(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const;
 
  private:
   struct One {
@@ -81,7 +83,7 @@ class SurfaceFields {
     const membrane::FieldParts::Chosen* part = nullptr;  // user-defined part (see deck::Parts) that created this field; null for a built-in field
   };
 
-  Net transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);
+  Net transferred_net(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);
   void add_registered(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const;
 
   const std::vector<Member>& members_;

@@ -17,7 +17,7 @@ TEST(Adaptation, AllShapesOfAParticleAreOnItsNewMesh) {
                                    "Adaptation: {enabled: true, surface tolerance: 1.0e-6, levels: 1}, Time: {final time: 1}}\n");
   deck.declare(scene);
   scene.check();
-  std::vector<Member> refined = members(scene), resumed = members(scene);
+  std::vector<Member> refined = make_members(scene), resumed = make_members(scene);
   const Body& body = *refined.front().body;
   motion::State state;
   state.x = body.initial;

@@ -97,7 +97,7 @@ TEST(FlowHistory, ASpheroidsAngleFollowsFromTheStrainSoFar) {
     deck::Document deck = deck::read({SOURCE_DIRECTORY "/inputs/jeffery.yaml"}, settings);
     deck.declare(scene);
     scene.check();
-    const std::unique_ptr<ParticleSystem> body = particle_system(scene, ranks, phases);
+    const std::unique_ptr<ParticleSystem> body = make_particle_system(scene, ranks, phases);
     const auto scheme = motion::integrator(scene.time);
     motion::State state;
     state.x = body->start();
@@ -105,7 +105,7 @@ TEST(FlowHistory, ASpheroidsAngleFollowsFromTheStrainSoFar) {
     state.step = motion::first_step(body->dynamics(), state, scene.time);
     while (state.time < 3) {
       scheme->advance(body->dynamics(), state, 3);
-      const double found = body->row(state, {}).value("inclination");
+      const double found = body->next_row(state, {}).value("inclination");
       EXPECT_NEAR(found, jeffery(strain(state.time)), 2e-3) << "at " << state.time;  // six elements per side cause an error of 1e-5 of a period
     }
   };

@@ -223,7 +223,7 @@ std::string particle(const std::string& name, double x1, const std::string& list
 TEST(Members, WithEqualMeshesShareTheirTables) {
   const Scene all = scene("  Particles:\n" + particle("first", 0) + particle("softer", 3, ", Membrane: {capillary number: 0.1}") +
                           particle("equal", 6.1) + particle("flatter", 9, ", shape: ellipsoid, semi-axes: [1, 1, 0.9]") + "  Contact: {}\n");
-  std::vector<Member> members = tanktread::members(all);
+  std::vector<Member> members = make_members(all);
   arrange(members);
   ASSERT_EQ(members.size(), 4u);
   for (std::size_t p = 1; p < members.size(); ++p) EXPECT_EQ(members[p].geometry, members[0].geometry);
@@ -237,8 +237,8 @@ TEST(Members, HaveTheMeshAndTheShapeOfASingleParticle) {
   const Scene all = scene("  Particles:\n" + particle("first", 0) + particle("turned", 3, ", orientation: [0, 40, 10]") + particle("flat", 6, flat) +
                           particle("flat and turned", 9, flat + ", orientation: [20, 0, 30]") + particle("large", 15, ", radius: 2") +
                           "    fine: {center: [20, 0, 0], Surface: {elements per side: 4}}\n  Contact: {}\n");
-  for (const Member& member : tanktread::members(all)) {
-    const Body alone = body(member.scene);
+  for (const Member& member : make_members(all)) {
+    const Body alone = make_body(member.scene);
     ASSERT_EQ(member.body->rest.rows(), alone.rest.rows()) << member.name;
     EXPECT_LT((member.body->rest - alone.rest).cwiseAbs().maxCoeff(), 1e-13) << member.name;
     EXPECT_EQ(member.body->space.n_points, alone.space.n_points) << member.name;
@@ -250,7 +250,7 @@ TEST(Members, HaveTheSymmetryOfASingleParticleWhetherTheyHaveANameOrNot) {
   const std::string around = "  Channel: {section: circle, radius: 1, profile: constriction, depth: 0.5, half length: 2}\n";
   const std::string place = "{radius: 0.4, center: [-2.6, 0, 0]}\n";
   const auto order = [&](const std::string& particle) {
-    return tanktread::members(scene("  Flow: {type: duct, mean velocity: 1}\n" + around + particle)).front().body->symmetry.order();
+    return make_members(scene("  Flow: {type: duct, mean velocity: 1}\n" + around + particle)).front().body->symmetry.order();
   };
   EXPECT_GT(order("  Particle: " + place), 1);
   EXPECT_EQ(order("  Particles: {a: " + place + "}\n"), order("  Particle: " + place));

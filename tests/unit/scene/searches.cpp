@@ -19,8 +19,8 @@ std::size_t free_number(const std::string& lists) {
   std::vector<std::unique_ptr<Body>> bodies;
   std::vector<coupling::Particle> particles;
   for (const ParticleScene& one : scene.particle_scenes()) {
-    bodies.push_back(std::make_unique<Body>(body(one)));
-    particles.emplace_back().loads = loads(one, *bodies.back(), nullptr);
+    bodies.push_back(std::make_unique<Body>(make_body(one)));
+    particles.emplace_back().loads = make_loads(one, *bodies.back(), nullptr).all();
   }
   return free_motions(scene, stokes::AmbientFlow(scene.flow), 1, particles).size();
 }

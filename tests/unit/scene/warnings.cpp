@@ -122,7 +122,7 @@ TEST(Soundness, EndsARunWithAFoldedElement) {
   Scene scene;
   deck::Document deck = deck::read({}, {"Surface/elements per side=4"});
   deck.declare(scene);
-  const Body sphere = body(scene.first());
+  const Body sphere = make_body(scene.first());
   const surface::BezierMap map(sphere.space);
   const coupling::Ranks ranks;
   EXPECT_GT(soundness(map, sphere.rest, ranks).jacobian_ratio, 0.4);
