@@ -30,7 +30,8 @@ class Rejections {
   /// rejected combination that the current deck contains.
   explicit Rejections(bool every = false) : every_(every) {}
 
-  /// Adds the combination of two choices if both are made (`both`) or if all combinations are collected. `why`: reason, without a full stop.
+  /// Adds the combination of two choices if both are made (`both`) or if all combinations are collected. `why`: reason, without a full stop. `both`
+  /// is also evaluated for a default scene, with every() true: a condition that needs keys of the deck must test every() first.
   void pair(bool both, const Chosen& one, const Chosen& other, const std::string& why) {
     if (every_) rows_.push_back({one.any, other.any, why});
     else if (both) sentences_.push_back(contradiction(one.here, other.here, why));

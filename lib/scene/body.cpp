@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -93,7 +94,8 @@ membrane::Law law(const membrane::Options& options, double modulus) {
   if (options.law == "Mooney-Rivlin") return membrane::MooneyRivlin{modulus, options.neo_hookean_share.value()};
   if (options.law == "expression") return membrane::UserLaw{modulus, options.strain_energy()};
   if (options.fluid_interface()) return membrane::SurfaceTension{modulus};
-  return membrane::NeoHookean{modulus};
+  if (options.law == "neo-Hookean") return membrane::NeoHookean{modulus};
+  throw std::logic_error("Membrane/law " + options.law + " has no class");
 }
 
 membrane::Repulsion repulsion(const surface::TubeOptions& tube, const surface::TubeWall& wall) {

@@ -37,7 +37,9 @@ void ParticleOptions::reject(const ParticleScene& particle_scene, Rejections& to
   to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", stiff, "there is no fluid in a rigid particle");
   to.pair(rigid() && shape.initial, "Particle/initial shape", stiff,
           "a rigid particle keeps its resting shape; give its shape by Particle/shape");
-  to.pair(held && particle_scene.flow.type == "parabolic", "Particle/drift `held`", particle_scene.flow_choice(), "it is for flows " + gradient);
+  const auto& added_flow = particle_scene.flow.user;
+  const bool bends = particle_scene.flow.type == "parabolic" || (added_flow && !added_flow->affine());
+  to.pair(held && bends, "Particle/drift `held`", particle_scene.flow_choice(), "it is for flows " + gradient);
   to.pair(held && (tube || rigid()), "Particle/drift `held`",
           {tube ? duct.here : stiff.here, "Tube, Channel, or Particle/motion `prescribed` or `free`"},
           "it is for particles that deform in a flow " + gradient);

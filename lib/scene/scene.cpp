@@ -133,6 +133,8 @@ void check_several(const Scene& scene) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies only to deformable particles
     const std::string list = one.path();
     if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load must be the same for all particles.");
+    if (one.particle.drift == "held" && alone.size() > 1)
+      throw UserError(list + "/drift `held` is for a single particle: held at their places, particles would not move relative to each other.");
     try {
       one.check();
     } catch (UserErrors& errors) {
@@ -263,6 +265,7 @@ void ParticleScene::check(Rejections found) const {
   check_posts(*this);
   if (only_solids) {
     found.pair(!runs_in_time(), sought(), "Particle/shape `cylinder`", "nothing deforms in a scene of posts only");
+    domain.reject(*this, found), wall.reject(*this, found);
     return found.throw_if_any();
   }
   particle.shape.check();
@@ -275,7 +278,7 @@ void ParticleScene::check(Rejections found) const {
                     deck::number_text(snapshot_interval()) + ".");
   reject(found);
   found.throw_if_any();
-  modulus();
+  modulus();  // throws UserError if the deck does not determine it
   time_options().check();
   check_adaptation(*this);
   check_memory(*this);
@@ -344,7 +347,7 @@ std::string_view why_in_system(const SharedOptions& shared, const ParticleKind& 
   if (!kind.particle.rigid()) return "Particle/motion";
   if (shared.domain.present) return "Domain";
   if (shared.output.power_balance) return "Output/power balance";
-  if (shared.steady.present || shared.periodic.present || shared.spectrum.present) return "Steady, Periodic or Spectrum";
+  if (!shared.runs_in_time()) return "Steady, Periodic or Spectrum";
   if (shared.tube.repulsion) return "repulsion";
   if (shared.flow.history && kind.particle.motion == Motion::prescribed) return "Flow/history";
   if (!shared.series.empty()) return "Output/series";

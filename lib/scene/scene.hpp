@@ -144,6 +144,7 @@ struct Scene : SharedOptions {
 
   /// Reads the deck. Sections are declared in an order in which each may use those before it: Flow, Tube and Channel before Surface, whose default
   /// mesh depends on the width of the duct; Domain before Solvers. Options that follow from several sections are set at the end (complete_derived).
+  /// Then files are read and copies expanded, see prepare() in app/program.cpp; check() comes last.
   void declare(deck::Section& root);
 
   /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.

@@ -32,6 +32,25 @@ Tanktread:
 """
 
 
+LATTICE = """
+Tanktread:
+  Flow: {type: quiescent}
+  Domain: {side lengths: [5.0, 5.0, 5.0]}
+  Particles:
+    ball: {motion: free, center: [-1.04, 0.0, 0.0], force: [2.0, 0.0, 0.0], Surface: {elements per side: 3}}
+    cell: {center: [1.04, 0.0, 0.0], Membrane: {law: Skalak, shear modulus: 2.0}, Surface: {elements per side: 3}}
+  Contact: {limit: 0.1, limiter: true}
+  Time: {final time: 0.01}
+"""
+
+
+def the_forces_of_a_contact_cancel_in_the_mean_pressure_gradient_of_a_lattice():
+    deck(LATTICE)
+    run("deck.yaml", "--output", "lattice", "--quiet")
+    check(series("lattice", "contact_force")[-1] > 0.1, "they are in contact")
+    check(abs(series("lattice", "pressure_gradient_x1") - 2.0 / 125).max() < 1e-12, "it is not the force on the ball per volume of the cell")
+
+
 def the_contact_force_equals_the_force_that_drives_the_spheres():
     for solver in ("first kind", "second kind"):
         deck(SPHERES)

@@ -116,6 +116,15 @@ def a_volume_other_than_the_resting_one_is_conserved_and_restored():
     close(series("own", "volume_error")[-1], 0, 1e-13, "volume_error")
 
 
+def the_own_volume_of_a_shape_of_another_run_is_kept_after_a_resume():
+    run(deck(THEN % "stretch: [1.2, 0.9, 0.8], volume: own"), "--output", "first", "--quiet", "--set", "Time/final time=0.01")
+    run(deck(THEN % "run: first, volume: own"), "--output", "then", "--quiet", "--set", "Time/final time=0.02")
+    run("--resume", "then", "--quiet", "--set", "Time/final time=0.05")
+    volume = series("then", "volume")
+    close(volume[0], series("first", "volume")[-1], 1e-12, "volume")
+    check(abs(volume / volume[0] - 1).max() < 1e-13, volume)
+
+
 def the_adapted_mesh_of_another_run_is_used():
     run(deck(FIRST % ("0.5", "true")), "--output", "first", "--quiet")
     check(series("first", "n_control_points")[-1] > 98, "the first run refines")

@@ -166,6 +166,10 @@ def the_force_on_posts_of_a_square_array_is_the_known_one():
     close(along, (-math.log(c) - 1.47634 + 2 * c - c * c / 2 - 0.0509713 * c**4) / (4 * c) * c / math.pi, 1e-4 * along, "permeability along")
 
 
+def a_flow_that_varies_in_time_is_refused_for_posts_alone():
+    refused(["Flow/history", "`cylinder`"], deck(POST), "--set", "Flow/history/times=[0, 1]", "--set", "Flow/history/amplitudes=[1, 2]")
+
+
 def posts_and_particles_balance_the_pressure_gradient():
     text = """
 Tanktread:

@@ -128,7 +128,7 @@ class CoupledParticles : public ParticleSystem {
     for (std::size_t p = 0; p < members_.size(); ++p)
       if (due(members_[p])) adapt_mesh(p, loads[p], own, totals);
     if (replaced_.empty()) return false;
-    const std::unique_ptr<SurfaceFields> fields = std::move(fields_);
+    const std::unique_ptr<SurfaceFields> fields = std::move(fields_);  // outlives its capsule, see SurfaceFields::transferred
     rebuild(own.x);
     capsule_->restore_constraints(own.x);
     if (!own.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
@@ -171,8 +171,7 @@ class CoupledParticles : public ParticleSystem {
     row.progress.time = state.time, row.progress.counts = capsule_->counts();
     ParticleRows rows(members_, *capsule_, *fields_, *here, state, whole_state.x, ranks_);
     const std::vector<RecordedParticle> recorded = recorded_particles(members_, state.x, v);
-    rows.advance_phases(row.progress.step.step);
-    const Columns of_particles = rows.columns(recorded);
+    const Columns of_particles = rows.columns(row.progress.step.step, recorded);
     row.together = rows.together();
     for (const coupling::Contact& contact : contacts_.all) row.together.stresslet += stresslet_between(contact, state.x);
     set_surroundings(scene_, members_, body(), *capsule_, *here, ranks_, row);
@@ -210,14 +209,17 @@ class CoupledParticles : public ParticleSystem {
     if (!fits) throw UserError("the newest checkpoint does not fit its scene, because another version of tanktread wrote it: run the deck again");
   }
 
-  /// Reads the meshes of the members from the checkpoint. If they or the symmetry of the shape differ from the current ones, rebuilds the system.
+  /// Reads the meshes and volumes of the members from the checkpoint. If they or the symmetry of the shape differ from the current ones, rebuilds the
+  /// system.
   /// Returns true if a mesh was read. `y`: state x of shape and surface fields on these meshes.
   bool restore_mesh(const output::Checkpoint& checkpoint, const Net& y) {
     const bool another_mesh = restore(checkpoint, members_);
     require_fit(y.rows() >= n_points());
     const Net x = y.topRows(n_points());
     const bool another_symmetry = !stacked_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
-    if (another_mesh || another_symmetry) rebuild(x);
+    const auto keeps = [](const coupling::Particle& particle, const Member& member) { return particle.kept_volume == member.body->volume; };
+    const bool same_volumes = std::ranges::equal(capsule_->particles(), members_, keeps);
+    if (another_mesh || another_symmetry || !same_volumes) rebuild(x);
     require_fit(y.rows() == start().rows());
     return another_mesh;
   }
@@ -246,7 +248,8 @@ class CoupledParticles : public ParticleSystem {
     return force.dot(apart) / 3 * Mat3::Identity() - (force * apart.transpose() + apart * force.transpose()) / 2;
   }
 
-  /// Builds the coupled system and all other data for the current meshes. The wall of a tube is kept.
+  /// Builds the coupled system and all other data for the current meshes. The wall of a straight tube is kept. The tube of a channel is made again;
+  /// its wall is that of SharedOptions::walls.
   void set_up() {
     const std::unique_ptr<Body> before = std::exchange(stacked_, nullptr);
     arrange(members_);

@@ -57,7 +57,7 @@ class ParticleSystem {
   virtual bool enforce_gaps(motion::State&, double /*step*/) { return true; }
   virtual coupling::Contacts contacts() const { return {}; }                      ///< returns the current contacts
   virtual void set_contacts(const coupling::Contacts&) {}  ///< sets the contact forces that act from now on; they refer to the current mesh
-  /// Adapts meshes after a step; returns true if this has changed the mesh of body().
+  /// Moves the centroid back if it is held, then adapts meshes after a step; returns true if this has changed the mesh of body().
   virtual bool adapt(motion::State& state, RunTotals& totals) = 0;
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once

@@ -80,7 +80,8 @@ void ParticleRows::advance_phases(double step) {
   }
 }
 
-Columns ParticleRows::columns(const std::vector<RecordedParticle>& recorded) {
+Columns ParticleRows::columns(double step, const std::vector<RecordedParticle>& recorded) {
+  advance_phases(step);
   Columns all;
   for (std::size_t p = 0; p < members_.size(); ++p) {
     const Member& member = members_[p];

@@ -16,15 +16,14 @@ class ParticleRows {
   ParticleRows(std::vector<Member>& members, const coupling::Capsule& capsule, const SurfaceFields& fields, coupling::Evaluation& here,
                const motion::State& state, const Net& y, coupling::Ranks& ranks);
 
-  /// Advances Member::phase_angle of each deforming particle by `step`, the step that led to the state. To be called once per state.
-  void advance_phases(double step);
-
-  /// Returns the columns of all particles. `recorded`: particles for user-defined series; empty if there are none.
-  Columns columns(const std::vector<RecordedParticle>& recorded);
+  /// Returns the columns of all particles. Advances Member::phase_angle of each deforming particle by `step`, the step that led to the state; to be
+  /// called once per state. `recorded`: particles for user-defined series; empty if there are none.
+  Columns columns(double step, const std::vector<RecordedParticle>& recorded);
 
   Together together() const;  ///< returns totals and means of all particles, without the stresslets of pairs in contact
 
  private:
+  void advance_phases(double step);
   DeformingRow deforming(std::size_t p, const Net& y);
   RigidRow rigid(std::size_t p, const coupling::RigidParticles& bodies);
   void add_treading(const Net& v);

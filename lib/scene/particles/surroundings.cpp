@@ -4,14 +4,15 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the force of all particles on the fluid. The force of a deformable particle without registered loads is known exactly. With registered
-/// loads, it is computed as the virtual work of all loads of the particle in a translation, in which elastic loads do no work.
-Vec3 force_on_fluid(const std::vector<Member>& members, coupling::Evaluation& here) {
+/// Returns the force of all particles on the fluid. Without contacts, the force of a deformable particle without registered loads is known exactly.
+/// With contacts or registered loads, it is computed as the virtual work of all loads of the particle in a translation, in which elastic loads do no
+/// work. `touching`: whether particles are in contact. The forces of contacts cancel in the sum.
+Vec3 force_on_fluid(const std::vector<Member>& members, coupling::Evaluation& here, bool touching) {
   Vec3 force = Vec3::Zero();
   for (std::size_t p = 0; p < members.size(); ++p) {
     const ParticleScene& one = members[p].scene;
     if (one.particle.rigid()) force += here.rigid().force(p);
-    else if (one.loads.empty()) force += members[p].body->volume * one.body_force() + one.membrane.forces.total();
+    else if (one.loads.empty() && !touching) force += members[p].body->volume * one.body_force() + one.membrane.forces.total();
     else force -= members[p].own(here.work()).colwise().sum().transpose();
   }
   return force;
@@ -29,7 +30,7 @@ void set_surroundings(const Scene& scene, const std::vector<Member>& members, co
   if (const auto& cell = capsule.cell()) {
     DomainRow& now = row.domain;
     now.cell = cell->vectors();
-    const Vec3 force = force_on_fluid(members, here);
+    const Vec3 force = force_on_fluid(members, here, capsule.solver().forces().contacts.size() > 0);
     const Mat3 gradient = capsule.flow().pauses() ? Mat3::Zero() : capsule.flow().cell_gradient();
     const Mat3 axes = axes_of_shear(gradient).value_or(all.plane.of_shear.value_or(all.plane.axes));
     if (cell->n() == 3) now.set_stress(scene.flow.viscosity, gradient, *cell, axes, capsule.geometry().volume(x), row.together.stresslet, force);

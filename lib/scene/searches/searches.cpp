@@ -164,8 +164,7 @@ namespace {
 /// in the error message. Throws UserError if the deck has no such number.
 double number_of(const Scene& scene, const std::string& deck, const std::string& path, const std::string& of) {
   deck::Document read = deck::read_text(deck);
-  Scene again = scene;
-  again.particles.clear(), again.expect.all.clear();
+  Scene again(*scene.registry);
   read.declare(again);
   const auto values = read.values();
   const auto found = values.find(path);

@@ -65,7 +65,7 @@ void add_gap(double to_wall, Columns& to);
 /// Returns components 11, 22, 33, 12, 13, 23 of a symmetric tensor.
 Eigen::Vector<double, 6> components(const Mat3& tensor);
 
-/// Returns true if the flow is unbounded and affine with a nonzero rate of strain, so that `intrinsic_viscosity` is defined.
+/// Returns true if there is no duct and the flow is affine with a nonzero rate of strain, so that `intrinsic_viscosity` is defined.
 bool has_intrinsic_viscosity(const SharedOptions& shared);
 
 /// Computes the row data of a capsule or drop that follow from its shape x and velocity `slope`. Other data, such as the stresslet, are not set.

@@ -51,7 +51,7 @@ Columns particle_columns(const ParticleScene& particle_scene, bool every = false
 void add_series(const SharedOptions& shared, double time, const RecordedParticle& particle, Columns& to);
 void add_series(const SharedOptions& shared, double time, std::span<const RecordedParticle> particles, Columns& to);
 
-/// Sorts the columns of the program in the order of the manual. The columns of user-defined parts follow in the order in which they were added.
+/// Sorts the columns in the order of the manual. Columns that this order does not contain follow in the order in which they were added.
 void put_in_order(Columns& columns);
 
 /// Sorts the columns of a row in the order of the manual and checks them. Throws RunFailure if the check fails (see Columns::check).

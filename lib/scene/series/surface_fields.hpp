@@ -49,8 +49,8 @@ class SurfaceFields {
   void put_back(const motion::State& own, motion::State& state) const;
 
   /// Returns the state `old` transferred to the current meshes. `own`: the shapes of `old`, which are already on the current meshes. `before`: the
-  /// fields on the previous meshes. `bodies`: for each particle, its body with the previous mesh; null if the mesh is unchanged. If there are fields,
-  /// the result has no slopes and no secants.
+  /// fields on the previous meshes, whose capsule may be deleted already. `bodies`: for each particle, its body with the previous mesh; null if the
+  /// mesh is unchanged. If there are fields, the result has no slopes and no secants.
   motion::State transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies);
 
   /// Passes the state y to the fields. Also passes it to the capsule, unless `distance` > 0 and the capsule was last evaluated at a state within
