@@ -62,6 +62,7 @@ const RigidParticles& Evaluation::rigid() {
 
 /// Computes the load and the unknowns from the velocity if it is known; otherwise solves for them.
 void Evaluation::find_unknowns() {
+  if (known_.unknowns.size() > 0) return;
   if (given_.size() == 0 || !system_->solver().unknowns_are_velocities()) require_solution();
   if (solved_) return;
   known_.unknowns = given_;
@@ -133,6 +134,8 @@ Mat3 Evaluation::moment_by_traction(std::size_t p) {
   if (!solved_ && near_) return near_->moment_by_traction(p);
   require_solution();
   system_->evaluate(x_, known_.velocity, known_.error);  // solves again if another shape was solved last
+  Net inside = x_;
+  system_->solver().place(inside);
   return system_->solver().moment_by_traction(p);
 }
 

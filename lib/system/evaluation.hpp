@@ -33,8 +33,8 @@ class Evaluation {
   const Slip& slip() const { return known_.slip; }       ///< slip along the meshes of interfaces; empty if the system is not solved at x
 
   /// Returns the control values of the load of the fluids on the membranes, per unstressed or per current area, depending on the particle. For a
-  /// rigid body whose unknown is a density w, this is the load df of (2.23): a field of the form of a rigid motion whose resultants are the force and
-  /// torque on the fluid. For a body whose unknown is the traction, it is the traction on the body.
+  /// rigid body whose unknown is a density w, this is the load df of (2.23): a field of the form of a rigid motion whose resultants are minus the
+  /// force and torque of the body on the fluid. For a body whose unknown is the traction, it is the traction on the body.
   const Net& load();
 
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape

@@ -57,8 +57,8 @@ Net VelocitySolver::membrane_load(const Net& x, WorkOfLoads& known, VolumeProjec
   return membranes_.load(x, known.work, direction);
 }
 
-/// Computes (4.2) in the cell. Tube and rigid bodies must be set to the shape x. Returns the velocity of the control points, and sets the other
-/// quantities of `found`, whose allowed error is given.
+/// Computes (4.2) in the cell. All walls and the rigid bodies must be set to the shape x. Returns the velocity of the control points, and sets the
+/// other quantities of `found`, whose allowed error is given.
 Net VelocitySolver::solve_in_cell(const Net& x, const Net& guess, SolvedShape& found) {
   if (!in_fluid(x)) return not_a_number(x);
   push_bodies(x);
@@ -67,7 +67,7 @@ Net VelocitySolver::solve_in_cell(const Net& x, const Net& guess, SolvedShape& f
   if (!interface_) return fluid;
   found.fluid = symmetric(fluid);
   const auto clock = phases_.time("interface motion");
-  Net v = interface_->velocity(x, volume.active() ? volume.gradient : volumes_.gradient(x), fluid, found.slip);
+  Net v = interface_->velocity(x, volume.gradient.size() > 0 ? volume.gradient : volumes_.gradient(x), fluid, found.slip);
   volume.apply(v);  // removes the small change of volume that the spline interpolation of the normal velocity causes
   return v;
 }

@@ -36,7 +36,9 @@ struct SolvedShape {
   Net fluid;         ///< velocity of the fluids; no rows if no control point slides
   Slip slip;         ///< slip of the fluids along the meshes of interfaces; empty if no control point slides
   Net unknowns;      ///< unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies, or their velocity if the
-                     ///< unknown is the traction. On a lattice, velocities of the particles' images in the cell, unlike `velocity` and `fluid`
+                     ///< unknown is the traction. On a lattice, velocities of the particles' images in the cell,
+                     ///< unlike `velocity` and `fluid`, if the system was solved. Evaluation::find_unknowns stores those of the particles, which
+                     ///< only walls use, where both are equal
   WorkOfLoads loads;
   Net load;                                ///< see Evaluation::load
   std::optional<Tube::Response> response;  ///< response of the tube; not set if a velocity system was solved, because the solution changes it
@@ -97,7 +99,7 @@ class VelocitySolver {
   struct Forces {
     Net contacts, fields;
 
-    std::array<const Net*, 2> all() const { return {&contacts, &fields}; }
+    std::array<const Net*, 2> all() const { return {&contacts, &fields}; }  // a kind that acts on rigid bodies is also used in push_bodies()
   };
   bool set_forces(Net Forces::* of, Net work);  ///< sets one kind of additional forces for all later calls. Returns whether it has changed
   const Forces& forces() const { return forces_; }

@@ -62,13 +62,7 @@ Tube::Response VelocitySolver::add_walls(const Net& f, const Net& v, bool with_e
   FluidWalls eliminated = walls_;
   if (!eliminates_walls()) eliminated.tube = nullptr;
   FluidWalls::Response response = eliminated.respond(f, v, with_empty);
-  if (solids_) {
-    Net part = targets_.zero();
-    solids_->velocities(response.solids, part);
-    targets_.gather(false, part);
-    u += part;
-  }
-  if (response.tube.velocity.size() > 0) u += response.tube.velocity;
+  eliminated.add_velocity(response, targets_, u);
   return response.tube;
 }
 

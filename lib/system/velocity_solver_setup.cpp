@@ -43,8 +43,7 @@ VelocitySolver::VelocitySolver(const spline::Space& space, const Net& unstressed
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
       krylov_(parameters_.solvers.of(parameters_.solvers.velocity)) {
   assert(!tube_ || !targets_.projection());  // the tube responds at the collocation sites
-  if (solids_) solids_->particles().set(membranes_.unstressed(), particles());
-  if (tube_) tube_->particles().set(membranes_.unstressed(), particles());
+  walls_.set_particles(membranes_.unstressed(), particles());
   if (std::ranges::any_of(particles(), &Particle::by_traction))
     bodies_.tractions = std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, walls_, layout_.points(),
                                                          layout_.ranks());

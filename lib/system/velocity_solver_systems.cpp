@@ -102,7 +102,9 @@ Net VelocitySolver::solve_blocks(const Net& x, const Net& f, const VolumeProject
   const LinearSystem linear = system.linear_system(velocity_blocks(particles()), parameters_.solvers.tube);
   const SolveReport report = krylov_.solve(linear, right, unknowns, parameters_.solvers.tolerance);
   record_solve(report, unknowns.allFinite(), parameters_.solvers.tolerance);
-  return as_net(unknowns.head(rhs.size()));
+  Net v = as_net(unknowns.head(rhs.size()));
+  volume.apply(v);
+  return v;
 }
 
 /// Returns the velocity of deformable particles for the unknowns y of solve_tractions(); 0 in the rows of bodies.
@@ -144,6 +146,7 @@ Net VelocitySolver::traction_product(const Net& x, const VolumeProjection& volum
 Net VelocitySolver::solve_tractions(const Net& x, const VolumeProjection& volume, const Net& flow, SolvedShape& found) {
   const auto clock = phases_.time("tractions");
   layers_.assemble(x, viscous());
+  // Copies of x and volume, because RigidTractions keeps these functions for moment().
   const auto product = [this, x, volume](const Net& y, const Net& caused) { return traction_product(x, volume, y, caused); };
   const auto load = [this, x, volume, known = found.load](const Net& y) {
     return Net(known + traction_load(x, y, deformable_velocity(volume, y)));

@@ -229,6 +229,8 @@ class Scene:
                 deck["Domain"] = {"periodic": " ".join(directions), "side lengths": [4.0]}
         deck["Time"] = {"scheme": c["scheme"], "final time": STEPS * STEP}
         deck["Time"].update({"fixed step": STEP} if c["step"] == "fixed" else {"initial step": STEP, "maximum step": STEP, "tolerance": 1e-3})
+        if c["kind"] == "vesicle" and c["scheme"] == "bs3" and c["step"] == "fixed":
+            deck["Time"]["fixed step"] /= 2  # bending makes the explicit scheme unstable with the whole step on a refined mesh
         if c["scheme"] == "crank-nicolson":
             deck["Time"]["nonlinear solver"] = "anderson"  # without it, (4.1) diverges for long steps
         if c["symmetry"] == "none":
@@ -494,7 +496,9 @@ class Trial:
         because the quadrature rules differ."""
         tolerance = 1e-5 if self.c["duct"] == "channel" else 1e-6 if self.implicit() else 1e-8
         whole = self.run("whole", Scene(self.c, more=[("Symmetry", "use", "none")]))
-        fewer = self.c["scheme"] == "rkc2" and (_series(self.base)["evaluations"] != _series(whole)["evaluations"]).any()
+        fewer = False
+        if self.c["scheme"] == "rkc2" and not self.scene.steady():  # a single body with prescribed motion takes no steps
+            fewer = (_series(self.base)["evaluations"] != _series(whole)["evaluations"]).any()
         self.compare(self.base, whole, tolerance, excluded=re.compile(NEAREST.pattern + "|.*(iterations|assemblies)"), rows=1 if fewer else None)
 
     def checks(self, ranks):

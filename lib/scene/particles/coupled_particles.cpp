@@ -256,7 +256,7 @@ class CoupledParticles : public ParticleSystem {
     stacked_ = make_stacked_body(members_);
     if (stacked_ && scene_.tube.present) stacked_->wall = before ? before->wall : make_wall(scene_, *stacked_);
     std::unique_ptr<coupling::Tube> around;
-    if (capsule_ && capsule_->tube() && !capsule_->tube()->fixed())
+    if (capsule_ && capsule_->tube() && capsule_->tube()->fits_other_mesh())
       around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
     else
       around = make_tube(scene_, body(), phases_);

@@ -32,7 +32,7 @@ class FrozenLayers {
   Net double_layer(const Net& v) const;  ///< returns D v
 
   bool has_double() const { return layers_.has_double(); }
-  bool empty() const { return single_.empty() && nodal_.empty(); }  ///< true until the first call of assemble()
+  bool empty() const { return at_.size() == 0; }  ///< true until the first call of assemble()
   double bytes() const;                     ///< memory in bytes, over all ranks, of the layers whose size grows like N^2
   stokes::Evaluations evaluations() const;  ///< kernel evaluations of the layers that this object has created
 

@@ -28,8 +28,6 @@ class FrozenOperator {
   /// Computes the rows of u = A f at the rank-owned targets; other rows are unchanged.
   void apply(const Net& f, Net& u) const;
 
-  bool empty() const { return entries_.empty(); }
-
  private:
   std::vector<int> targets_;
   int n_ = 0;

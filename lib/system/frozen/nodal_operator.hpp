@@ -57,8 +57,6 @@ class NodalOperator {
   /// Returns whether each rank computes only a part of every sum. A f is then the sum, over all ranks, of the results u of `apply`.
   bool shared() const { return tree_ && parts_ > 1; }
 
-  bool empty() const { return targets_.empty(); }
-
  private:
   void find_near(const Surface& surface, double reach);
   void subtract_rule(const Surface& surface);

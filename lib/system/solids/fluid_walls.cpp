@@ -2,6 +2,11 @@
 
 namespace tanktread::coupling {
 
+void FluidWalls::set_particles(const Net& unstressed, std::span<const Particle> particles) const {
+  if (tube) tube->particles().set(unstressed, particles);
+  if (solids) solids->particles().set(unstressed, particles);
+}
+
 void FluidWalls::set_shape(const Net& x, const Targets& targets, std::optional<double> origin) const {
   if (tube) tube->set_shape(x, origin);
   if (solids) solids->set_shape(x, targets.values() * x, targets.own());
@@ -18,6 +23,15 @@ FluidWalls::Response FluidWalls::respond(const Net& f, const Net& v, bool with_e
   if (solids && with_empty) found.solids = found.solids + solids->empty();
   if (tube) found.tube = tube->respond(f, v);
   return found;
+}
+
+void FluidWalls::add_velocity(const Response& response, const Targets& targets, Net& u) const {
+  if (tube) u += response.tube.velocity;
+  if (!solids) return;
+  Net part = targets.zero();
+  solids->velocities(response.solids, part);
+  targets.gather(false, part);
+  u += part;
 }
 
 void FluidWalls::add_velocity_at(const Eigen::SparseMatrix<double>& values, const Net& x, const Response& response, std::span<const int> own,

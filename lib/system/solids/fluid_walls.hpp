@@ -21,6 +21,9 @@ struct FluidWalls {
 
   bool any() const { return tube || solids; }
 
+  /// Passes the unstressed net of the particles, and their viscosity ratios and measures of loads, to the boundaries. Required before set_shape().
+  void set_particles(const Net& unstressed, std::span<const Particle> particles) const;
+
   /// Sets the boundaries to the net x of the particles. `targets`: points at which velocities are evaluated. `origin`: see Tube::set_shape.
   /// Collective.
   void set_shape(const Net& x, const Targets& targets, std::optional<double> origin) const;
@@ -37,6 +40,9 @@ struct FluidWalls {
   /// Returns the responses to the load f and the velocity v of the particles; an empty v counts as zero. `with_empty`: whether the flow that solids
   /// cause without particles is included. In a tube this flow is part of the ambient flow. Collective.
   Response respond(const Net& f, const Net& v, bool with_empty) const;
+
+  /// Adds to u the velocity of a response at the targets passed to set_shape(). Collective.
+  void add_velocity(const Response& response, const Targets& targets, Net& u) const;
 
   /// Adds to rows `own` of u the velocity of a response at points on the particles. `values`: values of the basis functions at the points. x: net of
   /// the particles. Collective if Tube::velocity_at() is.

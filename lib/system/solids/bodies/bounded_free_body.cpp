@@ -11,6 +11,7 @@ const BoundedFreeBody::Solution& BoundedFreeBody::solution(const Net& position) 
   if (same(position, position_)) return solution_;
   position_ = {};  // invalidates the cached solution, also if the solve throws
   solution_ = solve(position);
+  ++solves_;
   position_ = position;
   return solution_;
 }
@@ -67,6 +68,7 @@ Net FreeBodyInTube::density_at_rest(const Net& position, const Net& velocities) 
   Eigen::VectorXd right(n), z = Eigen::VectorXd::Zero(n);
   Eigen::Map<Net>(right.data(), n / 3, 3) = velocities * turn;
   iterations_ += body_.solve_iteratively({{{"traction", n}}, apply, precondition}, right, z);
+  ++solves_;
   return as_net(z) * turn.transpose();
 }
 

@@ -16,7 +16,7 @@ class BoundedFreeBody : public LoneRigidBody {
   RigidMotion motion(const Net& position) const override { return solution(position).motion; }
   Net force_density(const Net& position) const override { return solution(position).density; }
   Mat3 stresslet(const Net& position) const override { return solution(position).stresslet; }
-  long linear_solves() const override { return evaluations(); }
+  long linear_solves() const override { return solves_; }
 
  protected:
   struct Solution {
@@ -34,6 +34,7 @@ class BoundedFreeBody : public LoneRigidBody {
   const Solution& solution(const Net& position) const;  ///< returns solve(), or the result of its latest call if that was for the same position
 
   RigidTractions& body_;
+  mutable long solves_ = 0;  // number of systems solved
 
  private:
   virtual Solution solve(const Net& position) const = 0;

@@ -41,9 +41,9 @@ struct SelfCorrection {
 ///
 /// The density w replaces v in the unknowns. The integral does not change if a rigid motion is added to w. The rigid motion <w> nearest to w (least
 /// squares) is therefore not determined by the integral, and represents another unknown of the body. If the force and torque are given, this unknown
-/// is the motion, V = <w>. The vectors a and b in the load df = -(a + b x r) are then chosen such that df has the given force and torque on the
-/// fluid. If the motion V is given, df = (mu/R_C) <w>, and the force follows. This is the completed double layer: Power & Miranda 1987; Kim & Karrila
-/// 1991, chapter 15.
+/// is the motion, V = <w>. The vectors a and b in the load df = -(a + b x r) are then chosen such that the resultants of a + b x r are the given
+/// force and torque of the body on the fluid. If the motion V is given, df = (mu/R_C) <w>, and the force follows. This is the completed double layer:
+/// Power & Miranda 1987; Kim & Karrila 1991, chapter 15.
 ///
 /// Nets stack the control points of all particles. The rows of a body in a net x represent the position of the rigid body that fits them best.
 ///

@@ -1,7 +1,6 @@
 #include "system/solids/bodies/rigid_tractions.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <stdexcept>
 #include <utility>
 
@@ -103,7 +102,6 @@ void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
 
 /// Returns B y (see Surroundings::product), the left-hand side of the system for the unknowns y, including the regularising term of (2.10).
 Net RigidTractions::product(const Net& y) {
-  assert(around_ || !walls_.any() || walls_.tube);  // only Surroundings::product contains the response of plates and posts
   const Net caused = repeats_ ? Net() : layer_.velocity(y);
   if (!around_) return walls_.tube ? Net(caused + walls_.tube->respond(load(y)).velocity) : caused;
   Net all = around_->product(y, caused);
@@ -149,6 +147,7 @@ Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
 }
 
 void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around) {
+  if (!around && walls_.solids) throw std::logic_error("among plates and posts, a body needs the surroundings of its traction");
   around_ = std::move(around);
   x_ = x, sites_ = collocation_ * x;
   centres_.assign(centres.begin(), centres.end());
@@ -159,7 +158,7 @@ void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std:
 /// residual velocity, computed from Solution::residual. In a channel the residual on the wall is included (2.42).
 Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z, const Eigen::VectorXd& residual) {
   Eigen::VectorXd work = z.transpose() * residual;
-  if (!walls_.tube || !walls_.tube->fixed() || !all_rigid()) return work;
+  if (!walls_.tube || !walls_.tube->corrects_walls() || !all_rigid()) return work;
   const Tube::WallResidual on_wall = walls_.tube->wall_residual(load(y));
   for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(on_wall, walls_.tube->respond(load(as_net(z.col(k)))));
   return work;

@@ -73,6 +73,9 @@ struct TubeParameters {
 ///                             open                              periodic
 ///   c                         integral over the inlet (2.13)    v_inf per unit pressure drop of a period
 ///   images of the particle    none                              in the kernels of one period
+///
+/// Where else the kinds differ: v_inf in the weights of f and its correction (ParticleData, pressure_correction), checks(), gap(), inside(); the
+/// origin of the frame (VelocitySolver::move_into_cell, cell_origin; Capsule::evaluated_about); images as known terms (TubeSystem).
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
@@ -172,6 +175,9 @@ class Tube {
 
   /// Returns whether the wall is fixed in the laboratory frame (a channel), so that results depend on the position along the channel.
   bool fixed() const { return wall().channel != nullptr; }
+
+  bool corrects_walls() const { return fixed(); }  ///< whether wall_residual() contributes to the correction of forces (2.42)
+  bool fits_other_mesh() const { return !fixed(); }  ///< whether the tube can be kept (second constructor of a tube) if the particle's mesh changes
 
   /// Returns whether the points `rows` of x are inside the duct; in a channel, also between its ends.
   bool inside(const Net& x, std::span<const int> rows) const;
