@@ -178,10 +178,11 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
   return name;
 }
 
-/// Replaces `file` by its path, as returned by `found`. Registers it to be copied into the results directory under the name `kept`.
+/// Replaces `file` by its path, as returned by `found`. Registers it, or the newest snapshot of a run with this directory, to be copied into the
+/// results directory under the name `kept`.
 void find_and_keep(std::string& file, const std::string& kept, const Arguments& arguments, Scene& scene) {
   file = found(file, kept, arguments);
-  scene.files.emplace_back(file, kept);
+  scene.files.emplace_back(output::newest_file(file), kept);
 }
 
 /// Finds the files (shapes, positions of copies) that the deck names in the section of a particle, and reads the shape.
@@ -191,11 +192,8 @@ void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
   if (shape.file) find_and_keep(*shape.file, kept_surface(kind), arguments, scene);
   if (auto& file = kind.membrane.stress_free_file) find_and_keep(*file, kept_stress_free(kind), arguments, scene);
   shape.read();
-  auto& initial = shape.initial;
-  if (!arguments.resume.empty() && initial && (initial->file || initial->run)) initial.reset();  // the shape is read from the checkpoint
-  if (initial)
-    for (auto* name : {&initial->file, &initial->run})
-      if (*name) *name = found(**name, {}, arguments);
+  if (auto& initial = shape.initial; initial && (initial->file || initial->run))
+    find_and_keep(initial->file ? *initial->file : *initial->run, kept_initial(kind), arguments, scene);
 }
 
 /// Reads the scene of a deck, with its files, and checks it.

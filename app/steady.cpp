@@ -68,7 +68,10 @@ class SteadyRun {
   /// Adapts the mesh to the shape. Returns whether the mesh has changed. If the mesh has been coarsened at the same point of a branch, does nothing,
   /// because refinement and coarsening could alternate forever.
   bool adapt() {
-    if (totals_.coarsenings > earlier_coarsenings_ || !system_->particles->adapt(state_, totals_)) return false;
+    if (totals_.coarsenings > earlier_coarsenings_) return false;
+    const bool changed = system_->particles->adapt(state_, totals_);
+    for (const Warning& remark : system_->particles->remarks()) warn_once_(remark);
+    if (!changed) return false;
     results_.remesh(system_->particles->body(), system_->particles->bezier());
     system_->begin(state_.x);
     return true;

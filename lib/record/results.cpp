@@ -76,6 +76,10 @@ output::Entries<double> with_earlier(const Phases& phases, const output::Entries
 
 std::string kept_surface(const ParticleKind& kind) { return (kind.name.empty() ? "particle" : kind.name) + ".iga"; }
 
+std::string kept_initial(const ParticleKind& kind) {
+  return (kind.name.empty() ? "particle" : kind.name) + "_initial" + (kind.particle.shape.initial->file ? ".iga" : ".h5");
+}
+
 std::string kept_stress_free(const ParticleKind& kind) { return (kind.name.empty() ? "particle" : kind.name) + "_stress_free.iga"; }
 
 std::string kept_places(const ParticleKind& kind) { return kind.name + ".csv"; }

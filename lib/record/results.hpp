@@ -45,6 +45,7 @@ struct RunRequest {
 /// Names of files in the results directory that are copies of files named by the deck. With the copies, a run can be resumed without the originals.
 constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< returns the name of the copy of a particle's shape file
+std::string kept_initial(const ParticleKind& kind);  ///< returns the name of the copy of the file, or of the snapshot, with the initial shape
 std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name of the copy of the file of the stress-free shape
 std::string kept_places(const ParticleKind& kind);   ///< returns the name of the copy of the file named by `Particles/<name>/copies/file`
 /// Returns the name of the copy of a file with an outline or with a channel's points: the name of the original file without its folder.

@@ -31,7 +31,7 @@ coupling::RigidMotion prescribed_motion(const ParticleScene& particle_scene) {
 }
 
 std::optional<ExactBody> exact_body(const ParticleScene& particle_scene) {
-  if (particle_scene.wall.present || particle_scene.domain.medium) return {};
+  if (particle_scene.wall.present || particle_scene.medium()) return {};
   const surface::ParticleShape& shape = particle_scene.particle.shape;
   const coupling::RigidMotion motion = prescribed_motion(particle_scene);
   if (particle_scene.tube.present || (shape.shape != "sphere" && shape.shape != "spheroid" && shape.shape != "ellipsoid")) return {};

@@ -52,8 +52,8 @@ std::vector<Member> make_members(const Scene& scene);
 /// finds the same site.
 void follow(Member& member);
 
-/// Sets the blocks (rows in the nets of all particles) of all members and, if there are several, their geometries and membranes. Their bodies must
-/// exist.
+/// Sets the blocks (rows in the nets of all particles) of all members and, if there are several, their geometries and membranes;
+/// their bodies then have no symmetry. The bodies must exist.
 void arrange(std::vector<Member>& members);
 
 /// Returns one body that represents all members: its nets are the stacked nets of the members, its radius is the largest R_C, and its volume is the

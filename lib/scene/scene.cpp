@@ -95,8 +95,8 @@ void check_motion(const ParticleScene& particle_scene) {
 
 /// Adds Flow/gravity to the keys without effect if no particle has a weight.
 void list_idle_gravity(Scene& scene) {
-  const auto has_weight = [](const ParticleScene& one) { return one.particle.density_difference.has_value(); };
-  if (scene.flow.gravity && std::ranges::none_of(scene.particle_scenes(), has_weight))
+  const auto has_weight = [](const ParticleKind& one) { return one.particle.density_difference.has_value(); };
+  if (scene.flow.gravity && std::ranges::none_of(scene.particles, has_weight))
     scene.idle_keys.push_back("Flow/gravity has no effect without Particle/density difference: remove the key.");
 }
 
@@ -129,8 +129,9 @@ void check_times(const ParticleScene& particle_scene) {
 void check_several(const Scene& scene) {
   const std::vector<ParticleScene> alone = scene.particle_scenes();
   const bool strong = alone.front().load_is_strong();
+  const bool deform = std::ranges::any_of(alone, [](const ParticleScene& one) { return !one.particle.rigid(); });
   for (ParticleScene one : alone) {
-    one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies only to deformable particles
+    if (deform && one.particle.rigid()) one.volume_given = false;  // the section Volume applies only to deformable particles
     const std::string list = one.path();
     if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load must be the same for all particles.");
     if (one.particle.drift == "held" && alone.size() > 1)
@@ -205,7 +206,7 @@ void Scene::declare(deck::Section& root) {
   if (tube.present) only.duct_half_width = tube.half_width();  // read by the declaration of Surface
   const bool several = root.given("Particles");
   particles = declare_particles(root, only, *registry);
-  if (several || root.given("Domain") || root.documenting())
+  if (several || root.given("Domain") || tube.periodic_length || root.documenting())
     root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
   else if (root.given("Contact"))
     throw UserError("Contact needs Particles or Domain, because a single particle has no gaps to other particles.");

@@ -150,8 +150,8 @@ struct Scene : SharedOptions {
   /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
   void check() const;
 
-  /// Returns true if the deck has the section Particles, even with one particle. Names of series and arrays depend on it; what the particles do
-  /// depends only on their number.
+  /// Returns true if the deck has the section Particles, even with one particle. Names of series and arrays depend on it; so do
+  /// whether a rigid body is solved for alone, and the defaults of Adaptation/film resolution and Output/between steps.
   bool named() const { return !particles.front().name.empty(); }
 
   /// Return the scenes of all particles, and of the first one. In them, Solvers/rigid bodies is not `auto`.

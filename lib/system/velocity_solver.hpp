@@ -166,6 +166,7 @@ class VelocitySolver {
   const Targets& targets() const { return targets_; }
   Membranes& membranes() { return membranes_; }
   const Membranes& membranes() const { return membranes_; }
+  Volumes& volumes() { return volumes_; }
   const Volumes& volumes() const { return volumes_; }
   ParticleLayers& layers() { return layers_; }
   const ParticleLayers& layers() const { return layers_; }

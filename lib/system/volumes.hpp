@@ -30,6 +30,8 @@ class Volumes {
   const surface::Geometry& geometry() const { return geometry_; }
   double error(double volume, std::size_t p) const { return volume / kept_[p] - 1; }  ///< V/V0 - 1 of particle p
 
+  void keep(double volume, std::size_t p) { kept_[p] = volume; }  ///< prescribes the volume V0 of particle p
+
   /// Returns b = dV/dx, see VolumeProjection.
   Net gradient(const Net& x) const;
 

@@ -125,6 +125,15 @@ def the_own_volume_of_a_shape_of_another_run_is_kept_after_a_resume():
     check(abs(volume / volume[0] - 1).max() < 1e-13, volume)
 
 
+def a_resumed_run_starts_from_its_copy_of_the_initial_shape():
+    """The flat particle fits between the walls, the sphere does not."""
+    run(deck(THEN % "stretch: [1.2, 1.2, 0.69]"), "--output", "flat", "--quiet", "--set", "Time/final time=0.001")
+    wall = "  Wall: { point: [0, 0, -0.9] }\n"
+    run(deck(THEN % "run: flat" + wall), "--output", "then", "--quiet", "--set", "Time/final time=0.001")
+    shutil.rmtree("flat")
+    run("--resume", "then", "--quiet", "--set", "Time/final time=0.002")
+
+
 def the_adapted_mesh_of_another_run_is_used():
     run(deck(FIRST % ("0.5", "true")), "--output", "first", "--quiet")
     check(series("first", "n_control_points")[-1] > 98, "the first run refines")

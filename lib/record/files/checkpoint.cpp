@@ -113,6 +113,13 @@ std::optional<Saved> newest_checkpoint(const fs::path& directory) {
   return std::nullopt;
 }
 
+fs::path newest_file(const fs::path& path) try {
+  const auto saved = fs::is_directory(path) ? newest_checkpoint(path) : std::nullopt;
+  return saved ? saved->file.path : path;
+} catch (const std::exception&) {
+  return path;
+}
+
 namespace {
 
 std::string numbered(const char* name, std::size_t k) { return name + std::to_string(k); }

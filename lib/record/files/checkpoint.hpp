@@ -65,6 +65,9 @@ struct Saved {
 /// a newer snapshot file (permission, a failing disk), because the newer file may be undamaged.
 std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
 
+/// Returns the newest undamaged snapshot file of the directory `path`. Returns `path` if it is no directory or if this file cannot be found.
+std::filesystem::path newest_file(const std::filesystem::path& path);
+
 /// Adds the complete state of a time integration to the checkpoint.
 void store(const motion::State& state, Checkpoint& checkpoint);
 

@@ -209,17 +209,16 @@ class CoupledParticles : public ParticleSystem {
     if (!fits) throw UserError("the newest checkpoint does not fit its scene, because another version of tanktread wrote it: run the deck again");
   }
 
-  /// Reads the meshes and volumes of the members from the checkpoint. If they or the symmetry of the shape differ from the current ones, rebuilds the
-  /// system.
+  /// Reads the meshes and volumes of the members from the checkpoint. If the meshes or the symmetry of the shape differ from the current ones,
+  /// rebuilds the system.
   /// Returns true if a mesh was read. `y`: state x of shape and surface fields on these meshes.
   bool restore_mesh(const output::Checkpoint& checkpoint, const Net& y) {
     const bool another_mesh = restore(checkpoint, members_);
     require_fit(y.rows() >= n_points());
     const Net x = y.topRows(n_points());
     const bool another_symmetry = !stacked_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
-    const auto keeps = [](const coupling::Particle& particle, const Member& member) { return particle.kept_volume == member.body->volume; };
-    const bool same_volumes = std::ranges::equal(capsule_->particles(), members_, keeps);
-    if (another_mesh || another_symmetry || !same_volumes) rebuild(x);
+    if (another_mesh || another_symmetry) rebuild(x);
+    for (std::size_t p = 0; p < members_.size(); ++p) capsule_->solver().volumes().keep(members_[p].body->volume, p);
     require_fit(y.rows() == start().rows());
     return another_mesh;
   }

@@ -19,8 +19,8 @@
 namespace tanktread {
 
 /// Returns the rigid motions about the origin that leave the problem invariant: the Lie derivative of the flow along them is 0, the walls do not
-/// change, and every load moves with its particle. In (4.17), Q projects onto these motions. `size`: length scale of the particles, R_C. `kinds`: 6,
-/// or 3 for translations only.
+/// change, and every load moves with its particle. In (4.17), Q projects onto these motions. In a tube, only the
+/// translation along it; in a channel, none. `size`: length scale of the particles, R_C. `kinds`: 6, or 3 for translations only.
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
                                                 std::span<const coupling::Particle> particles, int kinds = 6);
 
@@ -33,9 +33,9 @@ void reject_searches(const ParticleScene& particle_scene, Rejections& to);
 double steady_step(const Scene& scene);
 
 /// Returns true if the particle is moved after every step so that its centroid is at the centre given in the deck. The key `Particle/drift` decides
-/// this. If this key is not set, returns true if the particle is deformable, there are no walls, and the given centre is a stagnation point of an
-/// affine flow with a growing direction (planar hyperbolic, four-roll, extension). In such a flow, a displacement of the particle by round-off grows
-/// like e^(rate t), so that a particle of steady shape would drift away.
+/// this. If this key is not set, returns true if the particle is deformable, there are no walls, weights, net forces on the membrane or registered
+/// loads, and the given centre is a stagnation point of an affine flow with a growing direction (planar hyperbolic, four-roll, extension). In such a
+/// flow, a displacement of the particle by round-off grows like e^(rate t), so that a particle of steady shape would drift away.
 bool holds_centre(const ParticleScene& particle_scene);
 
 /// Displaces the shape of the state by the vector c that moves the centroid to `place`, and changes the slopes and earlier positions of the time

@@ -48,8 +48,9 @@ class SystemPool {
     rest_ = latest()->particles->body().rest, unstressed_ = latest()->particles->body().unstressed;
   }
 
-  /// Returns the system for these values of the parameters. A new system starts from the shape x. If the deck does not allow the values, throws
-  /// RunFailure instead of UserError, so that the points of the branch computed so far are kept. Collective.
+  /// Returns the system for these values of the parameters. A new system starts from the initial shape of the deck or, once the mesh has adapted,
+  /// from x. If the deck does not allow the values, throws RunFailure instead of UserError, so that the points of the branch computed so far are
+  /// kept. Collective.
   std::shared_ptr<SteadySystem> at(const Parameters& parameters, const Net& x) try {
     const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<SteadySystem>>::first);
     if (known != systems_.end()) {
