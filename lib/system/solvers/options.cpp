@@ -49,7 +49,8 @@ void SolverOptions::declare(deck::Section& section) {
                   "with a Time/nonlinear solver other than `plain`");
   section.key("tolerance", tolerance, deck::between(1e-15, 1e-1), "1",
               "relative residual to which the linear systems for velocities (viscosity ratio other than 1) and for tractions (rigid "
-              "particles, Solvers/wall `iterative`) are solved. Keep it well below Quadrature/tolerance");
+              "particles, Solvers/wall `iterative`) are solved. Keep it well below Quadrature/tolerance. Velocities that are recorded after implicit "
+              "steps are solved for to a tenth of the error that Time/tolerance allows, if that is larger");
   section.key("double layer", double_layer, deck::Choice{"auto", "assembled", "matrix-free"},
               "treatment of the double-layer operator in the linear systems for velocities with a viscosity ratio other than 1. `assembled`: a "
               "matrix, assembled once per velocity. `matrix-free`: summed in every iteration of the solver, which needs less memory. `auto`: "
