@@ -129,9 +129,8 @@ void check_times(const ParticleScene& particle_scene) {
 void check_several(const Scene& scene) {
   const std::vector<ParticleScene> alone = scene.particle_scenes();
   const bool strong = alone.front().load_is_strong();
-  const bool deform = std::ranges::any_of(alone, [](const ParticleScene& one) { return !one.particle.rigid(); });
   for (ParticleScene one : alone) {
-    if (deform && one.particle.rigid()) one.volume_given = false;  // the section Volume applies only to deformable particles
+    one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies only to deformable particles
     const std::string list = one.path();
     if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load must be the same for all particles.");
     if (one.particle.drift == "held" && alone.size() > 1)
