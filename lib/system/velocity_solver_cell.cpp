@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "system/dynamics.hpp"
 #include "system/velocity_solver.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
 
