@@ -9,41 +9,17 @@
 
 #include "stokes/flow/ambient_flow.hpp"
 #include "system/capsule_parameters.hpp"
-#include "system/interface_motion.hpp"
 #include "system/membranes.hpp"
 #include "system/parallel/layout.hpp"
 #include "system/solids/bodies/body_preconditioner.hpp"
-#include "system/solids/bodies/rigid_particles.hpp"
 #include "system/solids/fluid_walls.hpp"
+#include "system/solved_shape.hpp"
 #include "system/targets/particle_layers.hpp"
 #include "system/volumes.hpp"
 
 namespace tanktread::coupling {
 
 class RigidTractions;
-
-/// Virtual work of the loads. `work`: dE/dx of all loads minus the virtual work of the additional forces (VelocitySolver::set_forces), one row per
-/// control point; 0 for rigid bodies. `sums`: surface integrals on which the loads depend (see Loads), summed over all ranks.
-struct WorkOfLoads {
-  Net work;
-  std::vector<Net> sums;
-};
-
-/// Solution of (4.2) at one shape. Nets have one row per control point of all particles.
-struct SolvedShape {
-  double error = 0;  ///< allowed error of the velocity (Capsule::norm per unit of time), if larger than the error due to Solvers/tolerance
-  Net velocity;      ///< velocity of the control points
-  Net fluid;         ///< velocity of the fluids; no rows if no control point slides
-  Slip slip;         ///< slip of the fluids along the meshes of interfaces; empty if no control point slides
-  Net unknowns;      ///< unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies, or their velocity if the
-                     ///< unknown is the traction. On a lattice, velocities of the particles' images in the cell,
-                     ///< unlike `velocity` and `fluid`, if the system was solved. Evaluation::find_unknowns stores those of the particles, which
-                     ///< only walls use, where both are equal
-  WorkOfLoads loads;
-  Net load;                                ///< see Evaluation::load
-  std::optional<Tube::Response> response;  ///< response of the tube; not set if a velocity system was solved, because the solution changes it
-  std::optional<RigidParticles> rigid;     ///< rigid bodies with their motion, if there are any
-};
 
 /// Solves for the velocity v(x) of all particles at a shape x, the stacked control nets. solve() is the entry point; solve_second_kind() lists its
 /// stages. The functions are in velocity_solver.cpp (stages), velocity_solver_systems.cpp (linear systems), velocity_solver_cell.cpp (lattices,

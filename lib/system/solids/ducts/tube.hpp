@@ -74,8 +74,8 @@ struct TubeParameters {
 ///   c                         integral over the inlet (2.13)    v_inf per unit pressure drop of a period
 ///   images of the particle    none                              in the kernels of one period
 ///
-/// Where else the kinds differ: v_inf in the weights of f and its correction (ParticleData, pressure_correction), checks(), gap(), inside(); the
-/// origin of the frame (VelocitySolver::move_into_cell, cell_origin; Capsule::evaluated_about); images as known terms (TubeSystem).
+/// A new kind of duct also needs decisions in: ParticleData and pressure_correction() (v_inf in the weights of f), checks(), gap(), inside();
+/// VelocitySolver::move_into_cell(), cell_origin() and Capsule::evaluated_about() (origin of the frame); TubeSystem (known velocity of images).
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
