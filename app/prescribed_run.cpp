@@ -1,7 +1,9 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "app/runs.hpp"
 #include "app/signals.hpp"
@@ -49,10 +51,12 @@ void StationaryRun::end_set_up() {
   stop_where_told(scene_.output.too_late(seconds()));
 }
 
-int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel) {
+int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel,
+                          std::span<const Warning> remarks) {
   std::optional<Phases::Scope> clock(std::in_place, phases, "output");
   Results results(scene_, request_, body, surface::BezierMap(body.space), ranks);
   results.record(row);
+  for (const Warning& remark : remarks) results.warn(remark.sentence);
   if (const std::string coarse = coarse_wall(scene_, body, row); !coarse.empty()) results.warn(coarse);
   motion::State state;
   state.x = body.rest;
@@ -68,7 +72,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   StationaryRun run(scene, request, "Particle/motion `prescribed`");
   const ParticleScene particle_scene = scene.first();
   Body body = make_body(particle_scene);
-  refine_isolated_body(particle_scene, body, [&](const Body& on) {
+  const std::vector<Warning> remarks = refine_isolated_body(particle_scene, body, [&](const Body& on) {
     const std::unique_ptr<coupling::Tube> wall = make_tube(particle_scene, on, run.phases);
     coupling::RigidTractions there = make_tractions(particle_scene, on, run.ranks, wall.get());
     return rigid_solution(particle_scene, on, there, run.phases).density;
@@ -94,7 +98,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   Account account;
   account.counts = {{"unknowns", 3L * body.space.n_points}, {"solver_iterations", solution.iterations}};
   account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
-  return run.record(body, columns, snapshot(particle_scene, body, solution), std::move(account), kernel);
+  return run.record(body, columns, snapshot(particle_scene, body, solution), std::move(account), kernel, remarks);
 }
 
 }  // namespace tanktread

@@ -39,9 +39,10 @@ class StationaryRun {
   void end_set_up();  ///< throws motion::Stopped if a stop signal has arrived or the wall-clock limit has passed
   double seconds() const { return ranks.seconds_since(start_); }  ///< returns the wall time since the run began
 
-  /// Records the row, and the snapshot of the surface body.rest. Adds the plan and `kernel`, the kernel evaluations of all ranks, to `account`, and
-  /// closes the results. Returns the exit code like `simulate`.
-  int record(const Body& body, Columns& row, const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel);
+  /// Records the row, and the snapshot of the surface body.rest. Adds the plan and `kernel`, the kernel evaluations of all ranks, to `account`,
+  /// shows the warnings `remarks`, and closes the results. Returns the exit code like `simulate`.
+  int record(const Body& body, Columns& row, const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel,
+             std::span<const Warning> remarks = {});
 
   coupling::Ranks ranks;
   Phases phases = started();

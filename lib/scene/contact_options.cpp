@@ -12,7 +12,7 @@ void ContactOptions::declare(deck::Section& section) {
               "smallest allowed gap between two particles, divided by R_C, the radius of the sphere with the volume of the smallest "
               "particle. If a gap becomes smaller, the run ends with a checkpoint, unless Contact/limiter is true");
   section.key("limiter", limiter,
-              "if true, contact forces keep the gaps between particles at Contact/limit or above, to 1 % of it, and the run continues. They act "
+              "if true, contact forces keep the gaps between particles at Contact/limit or above, to 2 % of it, and the run continues. They act "
               "along the normals at the nearest points of two particles, only push (4.23), and vanish while the fluid keeps the gaps "
               "open; the series `contact_force` and `contact_impulse` record them. Gaps to a wall are not limited");
   if (limiter && !section.given("limit"))

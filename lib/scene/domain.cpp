@@ -119,8 +119,6 @@ void DomainOptions::reject(const ParticleScene& particle_scene, Rejections& to) 
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
   to.pair(particle_scene.quadrature.rule == quadrature::LayerRule::desingularised, "Domain", "Quadrature/rule `desingularised`",
           "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
-  to.pair(particle_scene.flow.history && particle_scene.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
-          "nothing moves, so that one steady problem is solved");
   to.pair(directions() < 3 && !particle_scene.wall.solid && (prescribed || weight || pushed || particle_scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
           {prescribed ? particle_scene.particle.choice()

@@ -150,8 +150,7 @@ coupling::Particle particle(const Member& member) {
   if (particle_scene.particle.rigid()) particle.rigid = drive_of(particle_scene, body);
   particle.by_traction = particle_scene.particle.rigid() && particle_scene.solvers.rigid_bodies == coupling::BodyEquation::first_kind;
   particle.interface_motion = particle_scene.interface_motion();
-  const double rate = particle_scene.flow.rate() > 0 ? particle_scene.flow.rate() : body.modulus / (particle_scene.flow.viscosity * body.radius);
-  particle.interface_speed = particle_scene.interface.relaxation * (particle_scene.flow.type == "duct" ? particle_scene.speed() : rate * body.radius);
+  particle.interface_speed = particle_scene.interface.relaxation * particle_scene.unit_speed();
   // In a search for a periodic motion that does not turn, the net does not turn, because a net that has turned would not recur.
   particle.interface_turns = !particle_scene.periodic.present || particle_scene.periodic.turn != 0;
   particle.kept_volume = body.volume;

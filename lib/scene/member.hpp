@@ -7,7 +7,7 @@
 
 #include "scene/body.hpp"
 #include "scene/scene.hpp"
-#include "scene/series/run_totals.hpp"
+#include "scene/series/phase_angle.hpp"
 #include "membrane/membrane.hpp"
 #include "record/files/checkpoint.hpp"
 #include "spline/locate.hpp"

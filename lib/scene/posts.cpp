@@ -94,16 +94,12 @@ void check_posts(const SharedOptions& shared) {
           "nothing resists the flow that it drives.");
     return;
   }
-  refuse(shared.tube.present, "Particle/shape `cylinder`", shared.tube.list(), "a post extends over a whole period and would cross the wall");
+  if (shared.tube.present) return;  // rejected by reject_posts()
   if (!cell) throw UserError("Particle/shape `cylinder` needs a Domain: a post is one period of a cylinder along a periodic direction.");
   if (!shared.wall.solid && cell->n() < 3)
     throw UserError(
         "Particle/shape `cylinder` needs a Domain that is periodic in three directions, or walls: give Domain/periodic `x1 x2 x3` or "
         "Wall/distance. Otherwise the velocity due to the forces of posts would grow without limit far from them.");
-  refuse(shared.wall.solid && !shared.wall.distance, "Particle/shape `cylinder`", "Wall without Wall/distance",
-         "the velocity due to the forces of posts would grow without limit far from the wall; give Wall/distance");
-  refuse(!shared.wall.solid && shared.flow.type != "quiescent", "Particle/shape `cylinder`", shared.flow.choice(),
-         "only a pressure gradient can drive a flow past posts; give Flow/type `quiescent` and Flow/pressure gradient");
   for (std::size_t p = 0; p < shared.posts.size(); ++p) {
     const Post& post = shared.posts[p];
     const int axis = post.axis + 1;
@@ -116,6 +112,20 @@ void check_posts(const SharedOptions& shared) {
     for (const stokes::PlaneWall& wall : shared.wall.planes())
       if (wall.height(post.center) <= post.radius) throw UserError(post.path() + " touches the wall.");
   }
+}
+
+void reject_posts(const SharedOptions& shared, Rejections& to) {
+  const bool posts = !shared.posts.empty();
+  const Chosen cylinder("Particle/shape `cylinder`");
+  to.pair(posts && shared.tube.present, cylinder, shared.duct_choice(), "a post extends over a whole period and would cross the wall");
+  to.pair(posts && shared.wall.solid && !shared.wall.distance, cylinder, "Wall without Wall/distance",
+          "the velocity due to the forces of posts would grow without limit far from the wall; give Wall/distance");
+  to.pair(posts && !shared.tube.present && !shared.wall.solid && shared.flow.type != "quiescent", cylinder, shared.flow_choice(),
+          "only a pressure gradient can drive a flow past posts; give Flow/type `quiescent` and Flow/pressure gradient");
+  to.pair(posts && !shared.runs_in_time(), shared.sought(), cylinder,
+          shared.only_solids ? "nothing deforms in a scene of posts only" : "a particle among posts drifts past them, so that no shape is steady");
+  to.pair(shared.flow.history && shared.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
+          "nothing moves, so that one steady problem is solved");
 }
 
 }  // namespace tanktread

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/rejections.hpp"
+#include "scene/posts.hpp"
 #include "scene/scene.hpp"
 #include "scene/searches/searches.hpp"
 #include "scene/tube.hpp"
@@ -35,14 +36,19 @@ void reject_power(const SharedOptions& shared, bool strong, Rejections& to) {
   to.pair(asked && strong, word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
 }
 
+void ParticleScene::reject_surroundings(Rejections& to) const {
+  reject_with_tube(*this, to);
+  domain.reject(*this, to);
+  wall.reject(*this, to);
+  reject_posts(*this, to);
+}
+
 void ParticleScene::reject(Rejections& to) const {
   reject_searches(*this, to);
   particle.reject(*this, to);
   ParticleKind::reject(*this, to);
   contact.reject(*this, to);
-  reject_with_tube(*this, to);
-  domain.reject(*this, to);
-  wall.reject(*this, to);
+  reject_surroundings(to);
   reject_registered(*this, to);
   if (to.every()) {
     reject_power(*this, load_is_strong(), to);

@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "base/errors.hpp"
-#include "base/formatted.hpp"
 #include "deck/units.hpp"
 #include "deck/words.hpp"
-#include "scene/memory.hpp"
-#include "scene/searches/searches.hpp"
-#include "scene/tube.hpp"
 #include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
@@ -68,90 +63,17 @@ struct ParticlesSection {
   }
 };
 
-/// Throws UserError if the viscosity ratio is too large. The system for the velocity loses one digit to round-off per factor of ten in the ratio. The
-/// solver stagnates at a ratio of 1e15 times the tolerance in a tube, and at higher ratios without a tube.
-void check_viscosity_ratio(const ParticleScene& particle_scene) {
-  const double ratio = particle_scene.particle.viscosity_ratio, most = 1e14 * particle_scene.solvers.tolerance;
-  if (ratio > most)
-    throw UserError(
-        formatted("Particle/viscosity ratio must be at most %.3g, 1e14 times Solvers/tolerance, because rounding errors grow with it, but "
-                  "is %.3g; for a rigid particle give Particle/motion `free`.",
-                  most, ratio));
-}
-
-/// Throws UserError if a key of the particle's motion belongs to another motion.
-void check_motion(const ParticleScene& particle_scene) {
-  const ParticleOptions& particle = particle_scene.particle;
-  if (particle.motion != Motion::prescribed && (particle.velocity || particle.angular_velocity))
-    throw UserError(std::string("Particle/") + (particle.velocity ? "velocity" : "angular velocity") +
-                    " belongs to Particle/motion `prescribed`, but Particle/motion is " + text(particle.motion) + ".");
-  if (particle.motion != Motion::free && (particle.force || particle.torque))
-    throw UserError(std::string("Particle/") + (particle.force ? "force" : "torque") +
-                    " is for Particle/motion `free`, but Particle/motion is " + text(particle.motion) +
-                    (particle.rigid()
-                         ? ": the force on a body with prescribed motion follows from its motion."
-                         : ": for a deformable particle give a force per volume, by Particle/density difference and Flow/gravity."));
-}
-
-/// Adds Flow/gravity to the keys without effect if no particle has a weight.
-void list_idle_gravity(Scene& scene) {
+/// Adds the keys of several sections that have no effect together.
+void list_idle_keys(Scene& scene) {
   const auto has_weight = [](const ParticleKind& one) { return one.particle.density_difference.has_value(); };
-  if (scene.flow.gravity && std::ranges::none_of(scene.particles, has_weight))
-    scene.idle_keys.push_back("Flow/gravity has no effect without Particle/density difference: remove the key.");
-}
-
-/// Throws UserError if a key needs another key, or a section about the surroundings of the particle, that the deck does not have.
-void check_needs(const ParticleScene& particle_scene) {
-  if (particle_scene.particle.density_difference && !particle_scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
-  if (particle_scene.flow.type == "duct" && !particle_scene.tube.present)
-    throw UserError("Flow/type `duct` needs a section Tube, with at least Tube/section, or a section Channel.");
-  if (particle_scene.adaptation.film_resolution && particle_scene.name.empty() && !particle_scene.has_films_around_one())
-    throw UserError("Adaptation/film resolution needs several particles, a Domain or a wall, because otherwise there are no films.");
-}
-
-/// Throws UserError if the final time or the expected period is missing, or if it is not a multiple of the period of the flow.
-void check_times(const ParticleScene& particle_scene) {
-  const bool in_time = particle_scene.runs_in_time() && !particle_scene.continuation.present && !particle_scene.only_solids;
-  if (std::isnan(particle_scene.time.final_time) && in_time && particle_scene.particle.motion != Motion::prescribed)
-    throw UserError("Time/final time is missing: give the time at which the run ends, in the deck's unit of time.");
-  if (particle_scene.periodic.present && std::isnan(particle_scene.periodic.period))
-    throw UserError("Periodic/period is missing: give the expected period, in the deck's unit of time.");
-  if (const auto& history = particle_scene.flow.history; particle_scene.periodic.present && history && history->frequency) {
-    const double cycles = particle_scene.periodic.period * *history->frequency;
-    if (cycles < 0.5 || std::abs(cycles - std::round(cycles)) > 1e-9 * cycles)
-      throw UserError(formatted("Periodic/period must be a multiple of the period of Flow/history, %.10g, but is %.10g.", 1 / *history->frequency,
-                                particle_scene.periodic.period));
-  }
-}
-
-/// Checks each of several particles as a separate scene, and checks that the particles can be combined in one scene. Throws UserError with the name
-/// of the particle in the message.
-void check_several(const Scene& scene) {
-  const std::vector<ParticleScene> alone = scene.particle_scenes();
-  const bool strong = alone.front().load_is_strong();
-  for (ParticleScene one : alone) {
-    one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies only to deformable particles
-    const std::string list = one.path();
-    if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load must be the same for all particles.");
-    if (one.particle.drift == "held" && alone.size() > 1)
-      throw UserError(list + "/drift `held` is for a single particle: held at their places, particles would not move relative to each other.");
-    try {
-      one.check();
-    } catch (UserErrors& errors) {
-      for (std::string& sentence : errors.all) sentence.insert(0, list + ": ");
-      throw UserErrors(errors.all);
-    } catch (const UserError& error) {
-      throw UserError(list + ": " + error.what());
-    }
-  }
-}
-
-/// Throws UserError if the mesh cannot have the element lengths that the adaptation requires.
-void check_adaptation(const ParticleScene& particle_scene) {
-  if (!particle_scene.adaptation.enabled) return;
-  // Element length: side of a square with the mean element area on the sphere of equal volume.
-  const double area = 4 * std::numbers::pi * particle_scene.radius() * particle_scene.radius();
-  particle_scene.adaptation.check(static_cast<int>(particle_scene.surface.n_points()), std::sqrt(area / particle_scene.surface.n_elements()));
+  const auto add = [&](bool idle, const std::string& key, const std::string& why) {
+    if (idle) scene.idle_keys.push_back(key + " has no effect " + why + ": remove the key.");
+  };
+  add(scene.flow.gravity && std::ranges::none_of(scene.particles, has_weight), "Flow/gravity", "without Particle/density difference");
+  add(scene.only_solids && scene.output.power_balance, "Output/power balance", "in a scene of posts only");
+  add(scene.only_solids && !scene.series.empty(), "Output/series", "in a scene of posts only");
+  add(scene.solvers.rigid_bodies == coupling::BodyEquation::second_kind && !scene.in_system(), "Solvers/rigid bodies `second kind`",
+      "on a rigid body alone, whose tractions are the unknowns");
 }
 
 /// Sets the members of options that follow from several sections and that no section reads while it is declared.
@@ -205,10 +127,6 @@ void Scene::declare(deck::Section& root) {
   if (tube.present) only.duct_half_width = tube.half_width();  // read by the declaration of Surface
   const bool several = root.given("Particles");
   particles = declare_particles(root, only, *registry);
-  if (several || root.given("Domain") || tube.periodic_length || root.documenting())
-    root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
-  else if (root.given("Contact"))
-    throw UserError("Contact needs Particles or Domain, because a single particle has no gaps to other particles.");
   volume_given = root.given("Volume");
   constexpr const char* cell = "periodic cell of fluid and particles, whose lattice the flow convects; nothing is periodic without this section";
   domain.present = root.optional_section("Domain", domain, cell) && !domain.medium;
@@ -216,6 +134,10 @@ void Scene::declare(deck::Section& root) {
     refuse(domain.present, "Tube/periodic length", "Domain", "both give the period along x1");
     domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
   }
+  if (several || domain.present || root.documenting())
+    root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
+  else if (root.given("Contact"))
+    throw UserError("Contact needs Particles or a periodic Domain, because a single particle has no gaps to other particles.");
   wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
   if (!only.particle.rigid() || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
   root.section("Quadrature", quadrature, "numerical integration of the boundary integrals of the flow");
@@ -242,46 +164,7 @@ void Scene::declare(deck::Section& root) {
   complete_derived(*this);
   walls = std::make_shared<coupling::SharedWalls>();
   take_posts(*this);
-  list_idle_gravity(*this);
-}
-
-void Scene::check() const {
-  if (solvers.rigid_bodies == coupling::BodyEquation::first_kind) check_first_kind(*this);
-  Rejections found;
-  reject_power(*this, first().load_is_strong(), found);
-  if (!named()) return first().check(std::move(found));
-  check_several(*this);
-  found.throw_if_any();
-}
-
-void ParticleScene::check(Rejections found) const {
-  flow.check();
-  check_motion(*this);
-  check_needs(*this);
-  check_times(*this);
-  if (tube.present) tube.check();
-  domain.check(flow, tube.present ? tube.list() : "");
-  if (wall.present) wall.check(flow, domain.cell());
-  check_posts(*this);
-  if (only_solids) {
-    found.pair(!runs_in_time(), sought(), "Particle/shape `cylinder`", "nothing deforms in a scene of posts only");
-    domain.reject(*this, found), wall.reject(*this, found);
-    return found.throw_if_any();
-  }
-  particle.shape.check();
-  surface.check();
-  check_viscosity_ratio(*this);
-  if (!particle.rigid()) membrane.check();
-  if (surfactant) surfactant->check(), surfactant->diffusivity_of(flow.rate(), radius());
-  if (snapshot_interval() < 1e-6 * time.final_time)
-    throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * time.final_time) + ", but is " +
-                    deck::number_text(snapshot_interval()) + ".");
-  reject(found);
-  found.throw_if_any();
-  modulus();  // throws UserError if the deck does not determine it
-  time_options().check();
-  check_adaptation(*this);
-  check_memory(*this);
+  list_idle_keys(*this);
 }
 
 motion::TimeOptions ParticleScene::time_options() const {

@@ -103,10 +103,11 @@ struct ParticleScene : SharedOptions, ParticleKind {
 
   std::optional<double> least_radius;  ///< smallest radius R_C of all particles, by which gaps are divided; set by make_members()
 
-  /// Throws UserError if options of this particle, or shared options, contradict each other or if the problem is too large. `found`: rejected
-  /// combinations of the whole scene.
+  /// Throws UserError if options of this particle contradict each other or shared options, or if the problem is too large. Scene::check() checks the
+  /// shared options before. `found`: rejected combinations of the whole scene.
   void check(Rejections found = Rejections()) const;
   void reject(Rejections& to) const;  ///< adds the combinations of choices that the program rejects
+  void reject_surroundings(Rejections& to) const;  ///< adds those about walls, ducts, posts and periodic cells only
   bool load_is_strong() const { return membrane.load == "strong"; }
 
   bool in_system() const { return !why_in_system(*this, *this).empty(); }  ///< see Scene
@@ -118,6 +119,7 @@ struct ParticleScene : SharedOptions, ParticleKind {
   double rate() const;               ///< speed/R_C; if the speed is 0, modulus/(viscosity x R_C), or 1 for a rigid body; units 1/time
   /// speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without gradient
   double speed() const;
+  double unit_speed() const { return speed() > 0 ? speed() : rate() * radius(); }  ///< unit of velocities: speed(), or rate() x R_C if speed() is 0
   double modulus() const;            ///< shear modulus G_s, or the surface tension of a drop; units force/length; 0 for a rigid body
   bool elastic() const { return !particle.rigid() && !membrane.fluid_interface(); }  ///< true for a membrane, false for a drop or rigid body
   bool viscous_membrane() const { return !particle.rigid() && membrane.viscosity.any(); }

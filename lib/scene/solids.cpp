@@ -12,6 +12,9 @@
 #include "quadrature/gauss.hpp"
 #include "scene/posts.hpp"
 #include "stokes/flow/ambient_flow.hpp"
+#include "surface/closest_points.hpp"
+#include "surface/patch.hpp"
+#include "surface/walls/solid_surface.hpp"
 #include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
@@ -48,6 +51,26 @@ std::function<bool(const Vec3& x)> outside_of(const Post& post, const stokes::Pe
   };
 }
 
+surface::SolidSurface surface_of(const Post& post, const stokes::PeriodicCell& cell) {
+  const Vec3 period = period_of(post, cell);
+  return surface::cylinder(center_in_cell(post, cell), period, post.radius, post.around, elements_along(post, period));
+}
+
+/// Returns true if the initial surface of the particle intersects the surface of the post or of one of its images.
+bool intersects(const Body& body, const Post& post, const stokes::PeriodicCell& cell) {
+  const surface::SolidSurface cylinder = surface_of(post, cell);
+  const surface::Patches round(surface::BezierMap(cylinder.space), cylinder.net);
+  const surface::ElementBoxes its(round);
+  const surface::BezierMap map(body.space);
+  const Vec3 back = cell.shift(body.initial.colwise().mean().transpose());
+  const double reach = 1e-6 * body.radius;  // distance below which surfaces count as touching
+  return std::ranges::any_of(cell.around({2, 2, 2}), [&](const Vec3& image) {
+    const surface::Patches patches(map, body.initial.rowwise() + (image - back).transpose());
+    const surface::ElementBoxes boxes(patches);
+    return surface::distance(boxes.boxes()[0], its.boxes()[0]) < reach && surface::closest_points(boxes, its, 0.1 * reach, reach).gap < reach;
+  });
+}
+
 /// Returns the free directions of (2.46), in which the walls do not determine the mean velocity.
 std::vector<Vec3> free_directions(const SharedOptions& shared, const stokes::PeriodicCell& cell) {
   std::vector<Vec3> free;
@@ -68,11 +91,7 @@ std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phas
   // Between plates, the pressure gradient is part of the ambient flow: it is mu times the Laplacian of the ambient velocity (2.20).
   const Vec3 pressure_gradient = scene.wall.solid ? Vec3(2 * scene.flow.viscosity * flow.curvature().trace() * flow.quadratic_direction())
                                                   : scene.flow.pressure_gradient.value_or(Vec3::Zero());
-  for (const Post& post : scene.posts) {
-    const Vec3 period = period_of(post, cell);
-    all.push_back({surface::cylinder(center_in_cell(post, cell), period, post.radius, post.around, elements_along(post, period)), Vec3::Zero(),
-                   outside_of(post, cell)});
-  }
+  for (const Post& post : scene.posts) all.push_back({surface_of(post, cell), Vec3::Zero(), outside_of(post, cell)});
   const Solids::Parameters parameters{cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature};
   return coupling::SolidScene{
       scene.walls->solids.of([&](const Solids& one) { return one.is_for(all, parameters); }, [&] { return new Solids(all, parameters, phases); }),
@@ -81,10 +100,11 @@ std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phas
 
 void check_outside_of_posts(const Scene& scene, const std::vector<Member>& members) {
   for (const Post& post : scene.posts) {
-    const auto outside = outside_of(post, *scene.domain.cell());
+    const stokes::PeriodicCell cell = *scene.domain.cell();
+    const auto outside = outside_of(post, cell);
     for (const Member& member : members)
-      for (const auto row : member.body->initial.rowwise())
-        if (!outside(row.transpose())) throw UserError(member.scene.path() + " crosses a post at the start: give it another center.");
+      if (!outside(surface::value(member.body->space, member.body->initial, {0, 0.5, 0.5})) || intersects(*member.body, post, cell))
+        throw UserError(member.scene.path() + " crosses a post at the start: give it another center.");
   }
 }
 

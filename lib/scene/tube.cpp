@@ -109,7 +109,7 @@ void check_fit(const ParticleScene& particle_scene, const Body& body) {
 
 std::shared_ptr<const stokes::DuctFlow> make_duct(const ParticleScene& particle_scene) {
   if (!particle_scene.tube.present) return {};
-  const double speed = particle_scene.flow.mean_velocity ? *particle_scene.flow.mean_velocity : particle_scene.rate() * particle_scene.radius();
+  const double speed = particle_scene.unit_speed();
   if (particle_scene.tube.channel)
     return std::make_shared<const coupling::ChannelFlow>(particle_scene.tube, particle_scene.flow.viscosity, speed, particle_scene.quadrature,
                                                          coupling::WallSolver{particle_scene.solvers.wall, particle_scene.solvers.tolerance},

@@ -243,8 +243,9 @@ Adapted adapted(const ParticleScene& particle_scene, const Body& body, const spl
   return coarser;
 }
 
-void refine_isolated_body(const ParticleScene& particle_scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
-  if (!particle_scene.adaptation.enabled) return;
+std::vector<Warning> refine_isolated_body(const ParticleScene& particle_scene, Body& body, const std::function<Net(const Body& on)>& force_density) {
+  if (!particle_scene.adaptation.enabled) return {};
+  std::vector<Warning> remarks;
   constexpr int most = 10;
   for (int k = 0; k < most; ++k) {
     Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
@@ -261,12 +262,14 @@ void refine_isolated_body(const ParticleScene& particle_scene, Body& body, const
     state.x = only[0].body->rest;
     Adapted change = adapted(particle_scene, *only[0].body, only[0].block, state, load, false, widths);
     body = std::move(*only[0].body);
-    if (!change.body || !change.finer) return;
+    remarks = adaptation_remarks(only[0], change, 0);
+    if (!change.body || !change.finer) break;
     body = std::move(*change.body);
     body.rest = surface::fitted_again(body.space, body.rest, particle_scene.particle.shape);
     body.initial = body.unstressed = body.rest;
     body.symmetry = surface::Symmetry(body.space.n_points);
   }
+  return remarks;
 }
 
 std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time) {

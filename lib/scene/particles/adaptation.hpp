@@ -42,7 +42,7 @@ std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& cha
 /// Refines the mesh of an isolated rigid body in its initial position, according to the section Adaptation. The criteria are the shape of the body,
 /// the film between body and wall, and the traction. After each refinement, fits the known shape on the new mesh. The mesh does not change afterwards
 /// because the body does not deform. `force_density` returns the force per area on the mesh of its argument, as control values of shape (N, 3). It is
-/// called only if Adaptation limits the error or the variation of the load. Collective.
-void refine_isolated_body(const ParticleScene& particle_scene, Body& body, const std::function<Net(const Body& on)>& force_density);
+/// called only if Adaptation limits the error or the variation of the load. Returns the warnings of the last refinement. Collective.
+std::vector<Warning> refine_isolated_body(const ParticleScene& particle_scene, Body& body, const std::function<Net(const Body& on)>& force_density);
 
 }  // namespace tanktread

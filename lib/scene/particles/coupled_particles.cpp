@@ -10,9 +10,9 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "scene/searches/searches.hpp"
 #include "scene/member.hpp"
 #include "scene/particles/adaptation.hpp"
+#include "scene/particles/drift.hpp"
 #include "scene/particles/gaps.hpp"
 #include "scene/particles/limiter.hpp"
 #include "scene/particles/particle_system.hpp"

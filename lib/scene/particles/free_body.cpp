@@ -1,5 +1,7 @@
 // Free rigid body in the time loop.
 
+#include <utility>
+
 #include "scene/member.hpp"
 #include "scene/particles/adaptation.hpp"
 #include "scene/particles/particle_system.hpp"
@@ -15,7 +17,7 @@ namespace {
 class Free : public ParticleSystem {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), particle_scene_(scene.first()), ranks_(ranks), body_(make_refined_body(particle_scene_, ranks, phases)),
+      : scene_(scene), particle_scene_(scene.first()), ranks_(ranks), body_(make_refined_body(particle_scene_, ranks, phases, remarks_)),
         geometry_(body_.space), tube_(make_tube(particle_scene_, body_, phases)),
         tractions_(make_tractions(particle_scene_, body_, ranks, tube_.get())), free_(make_driven_body(particle_scene_, body_, tractions_)) {}
 
@@ -54,6 +56,7 @@ class Free : public ParticleSystem {
   }
 
   std::vector<PhaseAngle> phase_angle() const override { return {phase_angle_}; }
+  std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
 
   Columns next_row(const motion::State& state, const ProgressRow& progress) override {
     const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
@@ -85,9 +88,9 @@ class Free : public ParticleSystem {
   }
 
  private:
-  static Body make_refined_body(const ParticleScene& particle_scene, coupling::Ranks& ranks, Phases& phases) {
+  static Body make_refined_body(const ParticleScene& particle_scene, coupling::Ranks& ranks, Phases& phases, std::vector<Warning>& remarks) {
     Body body = make_body(particle_scene);
-    refine_isolated_body(particle_scene, body, [&](const Body& on) {
+    remarks = refine_isolated_body(particle_scene, body, [&](const Body& on) {
       const std::unique_ptr<coupling::Tube> wall = make_tube(particle_scene, on, phases);
       coupling::RigidTractions tractions = make_tractions(particle_scene, on, ranks, wall.get());
       const auto free = make_driven_body(particle_scene, on, tractions);
@@ -123,6 +126,7 @@ class Free : public ParticleSystem {
   const Scene& scene_;
   const ParticleScene particle_scene_;
   const coupling::Ranks& ranks_;
+  std::vector<Warning> remarks_;
   Body body_;
   surface::Geometry geometry_;
   std::unique_ptr<coupling::Tube> tube_;

@@ -58,8 +58,6 @@ void reject_searches(const ParticleScene& particle_scene, Rejections& to) {
           "Flow/history", "no shape is steady in a flow that changes in time");
   to.pair(particle_scene.time.steady_tolerance && particle_scene.flow.history && particle_scene.flow.history->type == "sine", "Time/steady tolerance",
           "Flow/history/type `sine`", "no shape is steady in a flow that oscillates");
-  to.pair(search && !particle_scene.posts.empty(), particle_scene.sought(), "Particle/shape `cylinder`",
-          "a particle among posts drifts past them, so that no shape is steady");
   to.pair(search && particle_scene.volume.constraint != coupling::VolumeConservation::exact, particle_scene.sought(),
           {"Volume/constraint `" + deck::word(coupling::volume_constraints, particle_scene.volume.constraint) + "`",
            "Volume/constraint other than `exact`"},
@@ -121,27 +119,6 @@ double steady_step(const Scene& scene) {
   for (const ParticleScene& one : scene.particle_scenes())
     if (!one.particle.rigid()) step = std::min(step, most_relaxation_times * one.flow.viscosity * one.radius() / one.modulus());
   return step;
-}
-
-bool holds_centre(const ParticleScene& particle_scene) {
-  if (particle_scene.particle.drift) return *particle_scene.particle.drift == "held";
-  if (particle_scene.tube.present || particle_scene.wall.present || particle_scene.medium() || particle_scene.particle.rigid()) return false;
-  if (!particle_scene.body_force().isZero(0) || !particle_scene.membrane.forces.total().isZero(0) || !particle_scene.loads.empty()) return false;
-  const stokes::AmbientFlow flow(particle_scene.flow);
-  if (!flow.affine()) return false;
-  const Vec3& center = particle_scene.particle.shape.center;
-  if (!flow.velocity(center).isZero(0)) return false;
-  return largest_growth_rate(flow.gradient(center)) > 1e-4 * flow.rate();  // in a rotated simple shear it is 0 exactly, and up to 1e-5 by rounding
-}
-
-void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state) {
-  const Mat3 gradient = flow.gradient(place);
-  const Vec3 off = geometry.measures(state.x).centroid - place, slope_off = gradient * off;
-  state.x.rowwise() -= off.transpose();
-  for (Net& slope : state.history) slope.rowwise() -= slope_off.transpose();
-  for (motion::PastPosition& earlier : state.places) {
-    earlier.x.rowwise() -= (exponential(gradient * (earlier.time - state.time)) * off).transpose();
-  }
 }
 
 std::vector<motion::Conserved> conserved_quantities(const coupling::Capsule& capsule, const coupling::CoupledMotion* fields, const Net& x) {

@@ -1,6 +1,6 @@
 #pragma once
-// Data that searches for steady shapes, periodic motions and branches need from a scene: the rigid motions that leave the problem invariant, whether
-// a particle's centroid is held in place, the implicit step of the search, the conserved quantities, and the parameters of a branch.
+// Data that searches for steady shapes, periodic motions and branches need from a scene: the rigid motions that leave the problem invariant, the
+// implicit step of the search, the conserved quantities, and the parameters of a branch.
 
 #include <array>
 #include <span>
@@ -31,17 +31,6 @@ void reject_searches(const ParticleScene& particle_scene, Rejections& to);
 /// times of each membrane. The bound is needed because the iteration amplifies velocity errors, in motions that no membrane opposes, by the ratio of
 /// the step to the relaxation time.
 double steady_step(const Scene& scene);
-
-/// Returns true if the particle is moved after every step so that its centroid is at the centre given in the deck. The key `Particle/drift` decides
-/// this. If this key is not set, returns true if the particle is deformable, there are no walls, weights, net forces on the membrane or registered
-/// loads, and the given centre is a stagnation point of an affine flow with a growing direction (planar hyperbolic, four-roll, extension). In such a
-/// flow, a displacement of the particle by round-off grows like e^(rate t), so that a particle of steady shape would drift away.
-bool holds_centre(const ParticleScene& particle_scene);
-
-/// Displaces the shape of the state by the vector c that moves the centroid to `place`, and changes the slopes and earlier positions of the time
-/// scheme accordingly. In an affine flow with gradient L, v(x + c) = v(x) + L c for any shape x. If x(t) is a motion, x(t) + c(t) with dc/dt = L c is
-/// therefore also a motion. So slopes change by L c, and the position at the time s before the current time is displaced by exp(-L s) c.
-void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state);
 
 /// Returns the gradients, at the shape x, of the quantities that the motion conserves: the volume of each deformable particle, and the total of each
 /// field that is conserved (mass of surfactant). `fields`: motion of the fields on the surfaces; null if there are none.

@@ -67,12 +67,6 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
   return site;
 }
 
-/// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. If the flow has neither, the rate is the
-/// relaxation rate (ParticleScene::rate).
-double unit_speed(const ParticleScene& particle_scene, const Body& body) {
-  return particle_scene.speed() > 0 ? particle_scene.speed() : particle_scene.rate() * body.radius;
-}
-
 /// Returns an array with one number per rank: `mine` for this rank and 0 for all others, so that a sum over ranks collects the numbers.
 std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
   std::vector<double> all(static_cast<size_t>(ranks.size()), 0);
@@ -290,7 +284,7 @@ RigidRow rigid_row(const ParticleScene& particle_scene, const Body& body, const 
   const std::vector<int> elements = indices(geometry.bezier().n_elements());
   const Net v = coupling::rigid_velocity(x, motion, now.centre);
   const std::vector<double> sums = surface::shape_velocity_sums(geometry.bezier(), x, v, body.radius, elements);
-  now.shape_velocity = surface::shape_velocity(sums, particle_scene.tube.present) / unit_speed(particle_scene, body);
+  now.shape_velocity = surface::shape_velocity(sums, particle_scene.tube.present) / particle_scene.unit_speed();
   return now;
 }
 
@@ -340,7 +334,7 @@ DeformingRow deforming_row(const ParticleScene& particle_scene, const Body& body
   now.energy = sum(energy);
   now.tension = {least(smallest, ranks, geometry.n_blocks()), sum(compressed) / sum(area), std::ranges::max(change)};
   now.normal_velocity = std::ranges::max(fastest);
-  now.shape_velocity = surface::shape_velocity(shape, particle_scene.tube.present) / unit_speed(particle_scene, body);
+  now.shape_velocity = surface::shape_velocity(shape, particle_scene.tube.present) / particle_scene.unit_speed();
   now.centre = now.measures.centroid;
   return now;
 }
@@ -369,7 +363,7 @@ double normal_velocity(const ParticleScene& particle_scene, const Body& body, co
     const Vec3 v = surface::position({map.degree(element), velocities}, s, t) - frame;
     largest = std::max(largest, std::abs(v.dot(at.s.cross(at.t).normalized())));
   }
-  return largest / unit_speed(particle_scene, body);
+  return largest / particle_scene.unit_speed();
 }
 
 }  // namespace tanktread

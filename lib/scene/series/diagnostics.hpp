@@ -100,8 +100,8 @@ double angle_in(const FlowPlane& plane, const Vec3& y);
 /// Returns the parametric point at which the ray from `from` along the first in-plane direction (a in FlowPlane) meets the surface.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
-/// Returns the largest normal velocity |v.n| at the collocation sites `sites`, with v = `slope`, divided by ParticleScene::speed(), or by
-/// R_C times ParticleScene::rate() if this speed is 0. v is relative to the velocity of the centroid. The result is zero if the shape is steady.
+/// Returns the largest normal velocity |v.n| at the collocation sites `sites`, with v = `slope`, divided by
+/// ParticleScene::unit_speed(). v is relative to the velocity of the centroid. The result is zero if the shape is steady.
 double normal_velocity(const ParticleScene& particle_scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 

@@ -49,12 +49,6 @@ coupling::Contacts stored_contacts(const output::Checkpoint& checkpoint) {
 
 }  // namespace
 
-void PhaseAngle::advance(double step, double now, std::optional<double> angle) {
-  const double expected = degrees + (rate + now) / 2 * step * 180 / std::numbers::pi;
-  degrees = angle ? *angle + 360 * std::round((expected - *angle) / 360) : expected;
-  rate = now;
-}
-
 output::Entries<long> counts(const RunTotals& totals) {
   output::Entries<long> all;
   each_count(totals, [&](const char* name, auto, auto, const auto& count) { all.emplace_back(name, static_cast<long>(count)); });

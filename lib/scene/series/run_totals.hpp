@@ -1,27 +1,17 @@
 #pragma once
 // Counts, times and other data of a run in addition to its state, and their storage in checkpoints.
 
-#include <optional>
 #include <vector>
 
 #include "record/files/checkpoint.hpp"
 #include "record/files/summary.hpp"
 #include "scene/particles/warnings.hpp"
+#include "scene/series/phase_angle.hpp"
 #include "stokes/kernels/kernels.hpp"
 #include "system/capsule.hpp"
 #include "system/contact.hpp"
 
 namespace tanktread {
-
-/// Phase of a material point: its angle, which grows beyond 360 degrees after a whole turn, and the mean angular velocity of the surface at the last
-/// step (`rate`, in radians per time).
-struct PhaseAngle {
-  double degrees = 0, rate = 0;
-
-  /// Advances the phase by a step. `now`: mean angular velocity of the surface at the end of the step. `angle`: angle of the followed point, if
-  /// known; the phase then becomes this angle plus whole turns. Otherwise the phase is integrated from the mean angular velocity.
-  void advance(double step, double now, std::optional<double> angle);
-};
 
 /// Totals of a run since its beginning, including earlier parts of a resumed run.
 struct RunTotals {

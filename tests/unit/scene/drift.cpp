@@ -1,5 +1,5 @@
 #include "scene/body.hpp"
-#include "scene/searches/searches.hpp"
+#include "scene/particles/drift.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>

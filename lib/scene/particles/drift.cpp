@@ -1,0 +1,28 @@
+#include "scene/particles/drift.hpp"
+
+#include "base/small_matrices.hpp"
+
+namespace tanktread {
+
+bool holds_centre(const ParticleScene& particle_scene) {
+  if (particle_scene.particle.drift) return *particle_scene.particle.drift == "held";
+  if (particle_scene.tube.present || particle_scene.wall.present || particle_scene.medium() || particle_scene.particle.rigid()) return false;
+  if (!particle_scene.body_force().isZero(0) || !particle_scene.membrane.forces.total().isZero(0) || !particle_scene.loads.empty()) return false;
+  const stokes::AmbientFlow flow(particle_scene.flow);
+  if (!flow.affine()) return false;
+  const Vec3& center = particle_scene.particle.shape.center;
+  if (!flow.velocity(center).isZero(0)) return false;
+  return largest_growth_rate(flow.gradient(center)) > 1e-4 * flow.rate();  // in a rotated simple shear it is 0 exactly, and up to 1e-5 by rounding
+}
+
+void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state) {
+  const Mat3 gradient = flow.gradient(place);
+  const Vec3 off = geometry.measures(state.x).centroid - place, slope_off = gradient * off;
+  state.x.rowwise() -= off.transpose();
+  for (Net& slope : state.history) slope.rowwise() -= slope_off.transpose();
+  for (motion::PastPosition& earlier : state.places) {
+    earlier.x.rowwise() -= (exponential(gradient * (earlier.time - state.time)) * off).transpose();
+  }
+}
+
+}  // namespace tanktread
