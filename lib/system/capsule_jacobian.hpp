@@ -36,8 +36,8 @@ class CapsuleJacobian {
   /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.
   Net velocity_product(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
   RateChange velocity_change(const Net& dx, const Net& added_work);  ///< returns J dx as `rate`
-  /// Returns the left-hand side of an implicit step as `rate`: B (dx - shift J dx), or dx - shift J dx if control points slide. `slip` of the result
-  /// is the same as of velocity_change(dx, added_work). If no control points slide, applies each layer only once.
+  /// Returns the left-hand side of an implicit step as `rate`: B (dx - shift J dx), or dx - shift J dx if control points slide. `slip` equals
+  /// velocity_change(dx, added_work).slip. If no control points slide, applies each layer only once.
   RateChange step_change(const Net& dx, double shift, const Net& added_work);
 
   /// Applies an approximate inverse of the matrix of `solve`, for the shift of the latest call of solve_step().

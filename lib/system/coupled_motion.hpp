@@ -78,7 +78,8 @@ class CoupledMotion : public Dynamics {
   Net turned(const Net& y, const Mat3& rotation) const override { return with_shape(y, shape(y) * rotation.transpose()); }
   Net symmetric(Net rate) const override;
   double distance(const Net& from, const Net& to) const override { return capsule_.distance(shape(from), shape(to)); }
-  /// Returns the maximum of the capsule's norm of the displacement and, for each field, the root mean square change of its coefficients.
+  /// Returns the largest of these values: Capsule::norm of the displacement of the shape and, for each field, the root mean square change of its
+  /// coefficients.
   double norm(const Net& displacement) const override;
 
  private:

@@ -91,10 +91,10 @@ class Dynamics {
   /// contains asymmetric round-off. Extrapolated from such differences, the round-off would grow from step to step.
   virtual Net symmetric(Net rate) const { return rate; }
 
-  // Searches for steady shapes and periodic motions, and spectra.
+  // The functions below are used by searches for steady shapes and periodic motions, and by the computation of spectra.
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
-  /// there are any, and otherwise a finite difference of velocities, which takes one evaluation. The Jacobian may then be that at x.
+  /// there are any, and otherwise a finite difference of velocities, which takes one evaluation. May call linearise(x).
   virtual Net derivative(const Net& x, const Net& v, const Net& delta) { return difference(x, v, delta); }
 
   /// Returns the change of the mesh relaxation velocity along interfaces due to the displacement delta, at the last linearisation. Returns no rows if

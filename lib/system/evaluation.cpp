@@ -49,7 +49,8 @@ const std::vector<Net>& Evaluation::load_sums() { return system_->solver().membr
 const Net& Evaluation::load() {
   if (known_.load.size() == 0) {
     VelocitySolver& solver = system_->solver();
-    // The viscous load from the velocity of a step would be up to 20 times less accurate.
+    // Viscous membranes require a solve: a viscous load computed from the velocity passed to the constructor (the velocity of an implicit step)
+    // would have an up to 20 times larger error.
     if (!solver.rigid().empty() || solver.viscous()) require_solution();
     else known_.load = solver.membrane_load(x_, known_.loads);
   }
@@ -62,7 +63,8 @@ const RigidParticles& Evaluation::rigid() {
   return known_.rigid ? *known_.rigid : system_->solver().rigid();
 }
 
-/// Computes the load and the unknowns from the velocity if it is known; otherwise solves for them.
+/// Computes the load and the unknowns from the velocity passed to the constructor, if there is one and the unknowns are velocities. Otherwise solves
+/// the linear system.
 void Evaluation::find_unknowns() {
   if (known_.unknowns.size() > 0) return;
   if (given_.size() == 0 || !system_->solver().unknowns_are_velocities()) require_solution();

@@ -38,7 +38,7 @@ class Evaluation {
   const Net& load();
 
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
-  const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
+  const Tube::Response& response();                      ///< returns the tube's response to load and velocity; also sets the tube to this shape
 
   /// `flow`: force density of the solids, and the uniform velocity U (2.46) that is added to the flow. `velocity_integral`: integral over the cell of
   /// the velocity that solids and particles add to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_integral`: the parts of
@@ -47,8 +47,8 @@ class Evaluation {
     Solids::Flow flow, caused;
     Vec3 velocity_integral = Vec3::Zero(), caused_integral = Vec3::Zero();
   };
-  SolidFlow solid_flow();  ///< returns the flow caused by the solids, which are then set to this shape
-  FluidWalls::Response wall_response();  ///< returns the responses of all walls, which are then set to this shape
+  SolidFlow solid_flow();  ///< returns the flow caused by the solids; also sets the solids to this shape
+  FluidWalls::Response wall_response();  ///< returns the responses of the tube and the solids; also sets them to this shape
 
   Tube::Checks checks();                                 ///< returns the errors of the tube's response in the conditions (2.14)
 
@@ -68,7 +68,7 @@ class Evaluation {
   double load_energy(std::size_t p = 0);
 
  private:
-  void require_solution();  // solves for the unknowns if they are not known; a solution with any allowed error is kept
+  void require_solution();  // solves the linear system, unless it is solved already with any allowed error
   void find_unknowns();
   const Net& solved_fluid_velocity();  // fluid velocity from a solve at this shape. It is never a copy of the velocity of `near_`
   const Net& viscous_work();
@@ -78,7 +78,7 @@ class Evaluation {
   Net x_, given_;  // given_: velocity passed to the constructor
   std::shared_ptr<Evaluation> near_;
   bool solved_ = false;  // true if the system is solved, so that known_ contains its solution
-  SolvedShape known_;    // if solved_ is false, those quantities that were used so far
+  SolvedShape known_;    // if solved_ is false, contains only the quantities that were used so far
   Net viscous_work_;     // no rows until first used
 };
 

@@ -72,10 +72,10 @@ class InterfaceMotion {
   struct Drop {
     spline::Block block;
     bool relaxed;
-    SharedMotion shared;  // of the mesh with the shape of the drop
+    SharedMotion shared;  // motion W (4.14) that the mesh shares with the shape of the drop
     double speed;
     std::vector<int> points;      // rank-owned control points
-    std::vector<int> targets;     // of the points at which u is evaluated (Targets), those on this drop. With collocation, only rank-owned points
+    std::vector<int> targets;     // points on this drop at which u is evaluated (Targets). With collocation, only rank-owned points
     stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`, in double precision so that units and axes do not matter
   };
   struct Displaced {  // shape, dV/dx and normals of a displaced shape

@@ -24,10 +24,10 @@ struct SolvedShape {
   Net velocity;      ///< velocity of the control points
   Net fluid;         ///< velocity of the fluids; no rows if no control point slides
   Slip slip;         ///< slip of the fluids along the meshes of interfaces; empty if no control point slides
-  Net unknowns;      ///< unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies, or their velocity if the
-                     ///< unknown is the traction. On a lattice, velocities of the particles' images in the cell,
-                     ///< unlike `velocity` and `fluid`, if the system was solved. Evaluation::find_unknowns stores those of the particles, which
-                     ///< only walls use, where both are equal
+  /// unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies, or their velocity if the unknown is the traction.
+  /// On a lattice, a solve stores the velocities of the particles' images in the cell, unlike in `velocity` and `fluid`. Evaluation::find_unknowns
+  /// stores the velocities of the particles themselves. Only walls use these, and with walls the velocities of particles and images are equal
+  Net unknowns;
   WorkOfLoads loads;
   Net load;                                ///< see Evaluation::load
   std::optional<Tube::Response> response;  ///< response of the tube; not set if a velocity system was solved, because the solution changes it

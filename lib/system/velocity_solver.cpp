@@ -158,7 +158,7 @@ void VelocitySolver::forget_recycled() const {
 
 stokes::Evaluations VelocitySolver::kernel_evaluations() const {
   const RigidTractions* const bodies = bodies_.tractions.get();
-  return layers_.evaluations() + (bodies ? bodies->kernel_evaluations() : walls_.evaluations());  // those of the bodies include the walls
+  return layers_.evaluations() + (bodies ? bodies->kernel_evaluations() : walls_.evaluations());  // bodies->kernel_evaluations() includes the walls
 }
 
 }  // namespace tanktread::coupling

@@ -75,7 +75,8 @@ class VelocitySolver {
   struct Forces {
     Net contacts, fields;
 
-    std::array<const Net*, 2> all() const { return {&contacts, &fields}; }  // a kind that acts on rigid bodies is also used in push_bodies()
+    // returns all kinds of forces; a kind that acts on rigid bodies must also be added in push_bodies()
+    std::array<const Net*, 2> all() const { return {&contacts, &fields}; }
   };
   bool set_forces(Net Forces::* of, Net work);  ///< sets one kind of additional forces for all later calls. Returns whether it has changed
   const Forces& forces() const { return forces_; }
@@ -107,7 +108,7 @@ class VelocitySolver {
   bool viscous() const { return membranes_.viscous(); }        ///< whether a membrane or interface is viscous: then the load depends on the velocity
   bool has_system() const { return layers_.has_double() || viscous(); }  ///< whether velocities are the solution of a linear system
 
-  /// Returns whether all control points move with the fluid.
+  /// Returns whether all unknowns are velocities of control points: no control point slides along an interface, and no particle is a rigid body.
   bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }
 
   /// Returns whether the wall traction is eliminated from the velocity system, so that only the particles have unknowns in the system.
@@ -129,7 +130,7 @@ class VelocitySolver {
   /// Moves x and v into the cell, as move_into_cell(), and sets the walls to the shape x in the cell.
   void place(Net& x, Net* v = nullptr);
 
-  /// Returns the rigid bodies. Their motions are those of the shape solved last, their positions those of the latest call of solve() or of
+  /// Returns the rigid bodies. Their motions belong to the shape solved last. Their positions were set by the latest call of solve() or
   /// Capsule::restore_constraints().
   RigidParticles& rigid() { return bodies_.rigid; }
   const RigidParticles& rigid() const { return bodies_.rigid; }
@@ -149,7 +150,7 @@ class VelocitySolver {
   InterfaceMotion* interface() { return interface_.get(); }  ///< null if no control points slide
 
   Net symmetric(Net field) const { return parameters_.symmetry.completed(std::move(field)); }
-  stokes::Evaluations kernel_evaluations() const;  ///< of all layers at the targets, of the walls, and of the tractions on bodies
+  stokes::Evaluations kernel_evaluations() const;  ///< number for all layers at the targets, the walls and the tractions on bodies
   void forget_recycled() const;                    ///< discards the data of earlier solves that the preconditioner `recycled` keeps
   OperationCounts& counts() { return counts_; }
   const OperationCounts& counts() const { return counts_; }
@@ -187,8 +188,8 @@ class VelocitySolver {
   Net solve_tractions(const Net& x, const VolumeProjection& volume, const Net& flow, SolvedShape& found);
   void record_solve(const SolveReport& report, bool finite, double tolerance);
 
-  // Order of initialisation: a member may use those before it. The constructor's body sets up tractions and the cell.
-  // Members that depend on the latest shape, and what sets them:
+  // Order of initialisation: the initialiser of a member may use the members declared before it. The constructor's body sets up tractions and the
+  // cell. Members that depend on the latest shape, and the functions that set them:
   //   cell_               set_time()
   //   walls_              place() and solve()
   //   membranes_          viscous loads: each call with its shape; changes of work: CapsuleJacobian::linearise()

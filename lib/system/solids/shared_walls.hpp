@@ -28,7 +28,7 @@ class Shared {
     return latest_;
   }
 
-  /// Returns the kernel evaluations of all objects on this rank, including those no longer used.
+  /// Returns the number of kernel evaluations on this rank by all objects, including objects that have been deleted.
   stokes::Evaluations evaluations() const {
     stokes::Evaluations all = *of_deleted_;
     for (const std::weak_ptr<Object>& one : known_)

@@ -45,7 +45,8 @@ struct SolveReport {
   std::vector<std::pair<std::string, double>> residuals;
 };
 
-/// Throws RunFailure with the residuals if `report` says that the solve did not reach `tolerance`. `system`: name of the system in the message.
+/// Throws RunFailure with the residuals if the solve did not converge (`report.converged` is false). `tolerance`: tolerance that was not reached.
+/// `system`: name of the system in the message.
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
 /// A Belos solver with its parameter list, called through Thyra (thyra_blocks.hpp).

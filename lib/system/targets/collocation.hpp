@@ -25,7 +25,7 @@ struct BetweenSites {
   Eigen::SparseMatrix<double> weights;  ///< N_A at point q times the quadrature weight and area element of q, shape (N, points)
 };
 BetweenSites between_sites(const spline::Space& space, const Net& surface);
-BetweenSites between_sites(const spline::Space& space, const Net& surface, std::span<const spline::Block> blocks);  ///< points only on these surfaces
+BetweenSites between_sites(const spline::Space& space, const Net& surface, std::span<const spline::Block> blocks);  ///< points on `blocks` only
 
 /// Returns R_iA = N_A(xi_i) at the collocation sites, shape (N, N): maps control values to values at the sites (4.2).
 Eigen::SparseMatrix<double> collocation_matrix(const spline::Space& space);

@@ -9,8 +9,8 @@
 
 namespace tanktread::coupling {
 
-/// The single layer and the double layer of (2.22) of all particles at given points, in a medium or on a lattice. A medium that
-/// changes the kernels is set here for the velocity of the particles, the residual of rigid bodies and the power balance alike.
+/// The single layer and the double layer of (2.22) of all particles at given points, in a medium or on a lattice. The velocity of the particles, the
+/// residual of rigid bodies and the power balance use this class, so that all of them use the kernels of the same medium.
 class LayerPair {
  public:
   /// `points`: points on the particles. `unstressed`: control net of the unstressed surfaces, to which the loads of membranes refer. `medium`:

@@ -73,7 +73,7 @@ class FilmInverses {
   using RowsOf = std::function<stokes::Rows<double>(std::span<const int> targets)>;
 
   /// `x`: net of all particles. Films (thin layers of fluid between two bodies) are set up only for pairs of bodies that both have an inverse in
-  /// `alone`.
+  /// `alone`, the inverses for isolated bodies.
   FilmInverses(std::span<const Particle> particles, const OneBodyInverses& alone, const RigidParticles& placed, const Net& x, const RowsOf& rows_of);
 
   /// Adds ((1 + C)^-1 - 1) y to the values y at the sites of each film, where C is the coupling of the two bodies by their double layers (see above).

@@ -81,7 +81,7 @@ class RigidParticles {
   void set_motion(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
   /// On a lattice, the solve for the velocities uses the image of each body in the cell. move_into_cell() must be called before the solve, so that
   /// prescribed velocities become the velocities of the images. move_out_of_cell() must be called after the solve. It moves the centres and
-  /// velocities of the images back to those of the bodies. `shifts`: one per particle.
+  /// velocities of the images back to the centres and velocities of the bodies. `shifts`: one per particle.
   void move_into_cell(std::span<const CellShift> shifts);
   void move_out_of_cell(std::span<const CellShift> shifts);
 
@@ -94,7 +94,7 @@ class RigidParticles {
   const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< centre of its volume
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
-  RigidDrive given(std::size_t p) const { return body(p).given(); }    ///< prescribed motion, or prescribed force and torque plus push()
+  RigidDrive given(std::size_t p) const { return body(p).given(); }    ///< prescribed motion, or prescribed force and torque plus forces of push()
 
   // The members below throw std::logic_error if the unknown of the body is the traction.
   Mat3 load_moment(std::size_t p) const;  ///< int df r dGamma

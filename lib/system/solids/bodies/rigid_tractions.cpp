@@ -170,7 +170,7 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   set_shape(x, centres, std::move(around));
   const bool has_pressure = walls_.tube && all_rigid(), driven_by_pressure = flow.duct() && flow.amplitude() != 0;
   const bool apart = has_pressure && !driven_by_pressure;  // true if the density due to the flow of the duct (2.41) needs a separate solve
-  // Columns after those of the unit motions: the ambient flow, and the flow of the duct, which is the ambient flow unless `apart`.
+  // Indices of the columns that follow the columns of the unit motions: ambient flow, and flow of the duct (the same column unless `apart`).
   const Eigen::Index with_flow = m, with_duct = apart ? m + 1 : m;
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, with_duct + 1), fields = Eigen::MatrixXd::Zero(n, m);
   const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);

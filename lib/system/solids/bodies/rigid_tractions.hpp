@@ -76,7 +76,7 @@ class RigidTractions {
   };
 
   /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, call Tube::set_shape(x) before. `around`:
-  /// interactions with all other boundaries and particles; not set for a body alone in unbounded fluid, in a medium or in a tube. Collective.
+  /// interactions with all other boundaries and particles; not set for an isolated body in unbounded fluid, in a medium or in a tube. Collective.
   void set_shape(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
 
   /// Solution of (2.40) for all bodies at the net `shape`.
@@ -129,7 +129,7 @@ class RigidTractions {
   int solve_iteratively(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
   void forget_recycled() const;  ///< discards the data of earlier solves that the iterative solvers of this equation and of the tube's wall keep
   Tube* tube() const { return walls_.tube; }
-  stokes::Evaluations kernel_evaluations() const;  ///< of the layers of the bodies and of the walls
+  stokes::Evaluations kernel_evaluations() const;  ///< number for the layers of the bodies, the residual and the walls
 
  private:
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);

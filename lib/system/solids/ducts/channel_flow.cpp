@@ -14,7 +14,7 @@ namespace tanktread::coupling {
 
 namespace {
 constexpr Eigen::Index few = 64;    // number of points from which on the ranks share the points; with fewer points, each rank evaluates all of them
-constexpr double sharpness = 1e-2;  // tolerance of EmptyChannel::layer divided by that of all other layers
+constexpr double sharpness = 1e-2;  // tolerance of EmptyChannel::layer divided by the tolerance of all other layers
 
 /// Returns the fully developed flow in the cross-section at the arc length s of the centre line, or at the start of the channel if s is not given.
 stokes::DuctFlow developed_flow(const surface::Channel& channel, double viscosity, double mean_velocity, std::optional<double> s = {}) {

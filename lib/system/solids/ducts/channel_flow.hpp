@@ -48,7 +48,7 @@ struct EmptyChannel {
 /// is the traction of the fluid inside minus the traction of a fictitious fluid outside, whose velocity also vanishes on the wall.
 class ChannelFlow : public stokes::DuctFlow {
  public:
-  /// `walls`: walls of the run, of which the channel takes its own; null: the channel makes its own wall.
+  /// `walls`: walls of the run; the channel uses a wall of this set, or builds its wall if the pointer is null.
   ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
               const WallSolver& solver = {}, std::shared_ptr<SharedWalls> walls = {});
 
@@ -62,7 +62,7 @@ class ChannelFlow : public stokes::DuctFlow {
 
   double pressure_drop() const;  ///< pressure drop between the ends
   double pressure_drop(double /*length*/) const override { return pressure_drop(); }
-  double extra_pressure_drop() const override;  ///< refers to a straight duct with the length of the centre line
+  double extra_pressure_drop() const override;  ///< extra_pressure_drop of DuctFlow; the straight duct is as long as the centre line
   const Net& wall_traction() const;    ///< control values of f
 
   /// Returns the flow rates through the cross-sections at the arc lengths s of the centre line. All velocities for them are evaluated in one call.

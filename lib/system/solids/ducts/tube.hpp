@@ -33,7 +33,7 @@ struct TubeParameters {
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
-  std::shared_ptr<SharedWalls> walls;  ///< walls of the run, of which a straight tube takes its own; null: the tube makes its own wall
+  std::shared_ptr<SharedWalls> walls;  ///< walls of the run; a straight tube uses a wall of this set. Null: the tube builds its wall
 };
 
 /// Response of the wall and the pressure drop to a load f and a velocity v on the particle, both given by control values. The response is linear in
@@ -91,9 +91,9 @@ class Tube {
   /// Returns the particles as sources of flow. Their unstressed net, and their contrasts if they are not 0, must be set before set_shape().
   ParticleSources& particles();
 
-  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. Does nothing if the arguments are those of the latest
-  /// call. `origin`: x1 coordinate of the origin of the frame of wall() if the wall is straight; by default the x1 coordinate of the particle's
-  /// centroid. In a periodic channel, by default the x1 coordinate of the period that contains the particles.
+  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. Does nothing if the arguments equal the arguments of the
+  /// latest call. `origin`: x1 coordinate of the origin of the frame of wall() if the wall is straight; by default the x1 coordinate of the
+  /// particle's centroid. In a periodic channel, by default the x1 coordinate of the period that contains the particles.
   void set_shape(const Net& x, std::optional<double> origin = {});
 
   /// Returns the lattice of a periodic duct; not set for other ducts.
@@ -191,7 +191,8 @@ class Tube {
  private:
   struct ParticleData;
   struct BetweenSitesOfWall;
-  /// Flow rates through the inlet and the axial force as functions of what causes them. They do not depend on the particle.
+  /// Weights with which wall traction, wall velocity and pressure drop contribute to the flow rate through the inlet and to the axial force. They do
+  /// not depend on the particle.
   struct FlowWeights {
     Net of_traction;       ///< weights of the wall traction in mu times the flow rate
     Net force;             ///< weights of the wall traction in the axial force
@@ -219,7 +220,7 @@ class Tube {
   std::shared_ptr<Wall> wall_;
   double inner_radius_ = 0;  // straight tubes: radius of the largest circle about the centroid that fits in the cross-section
   std::unique_ptr<ParticleData> particle_;
-  Net latest_shape_;                      // arguments of the latest call of set_shape(); no rows if it threw
+  Net latest_shape_;                      // arguments of the latest call of set_shape(); no rows if this call threw an exception
   std::optional<double> latest_origin_;
   std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which wall_residual() evaluates the velocity; set up at its first call
   std::optional<FlowWeights> flow_weights_;  // set at the first call of flow_weights()

@@ -34,7 +34,7 @@ struct WallSolver {
 
   bool operator==(const WallSolver&) const = default;
 
-  /// may_iterate: returns whether a system of any size can be solved iteratively. iterates: returns whether a system whose factors take `bytes` is.
+  /// Return whether the linear system is solved iteratively: may_iterate(), for some size of the system; iterates(), if its LU factors take `bytes`.
   /// The operator of a periodic wall is always factored.
   bool may_iterate(bool periodic) const { return !periodic && method != "factored"; }
   bool iterates(double bytes, bool periodic) const { return may_iterate(periodic) && (method == "iterative" || bytes > most_bytes); }
@@ -117,12 +117,12 @@ class Wall {
   /// the strength through this surface must be 0.
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
-  std::shared_ptr<EmptyChannel> empty_channel;  ///< what ChannelFlow keeps for all systems that share this wall; null until it is needed
+  std::shared_ptr<EmptyChannel> empty_channel;  ///< cache of ChannelFlow for all systems that share this wall; null until first used
 
   /// Returns the bounding boxes of the elements of a channel wall, used to compute distances from the wall.
   const surface::ElementBoxes& boxes() const { return assert(boxes_), *boxes_; }
 
-  stokes::Evaluations evaluations() const;  ///< kernel evaluations, including those of the empty channel
+  stokes::Evaluations evaluations() const;  ///< number of kernel evaluations, including `empty_channel`
 
  private:
   Eigen::Index n_sites() const { return points_.sites().rows(); }

@@ -10,13 +10,14 @@
 namespace tanktread::coupling {
 namespace {
 
-/// Points of a wall, and the images of which they are permutations.
+/// Points of a wall, and reflections that map these points onto each other.
 class Images {
  public:
   Images(const Net& points, const Vec3& centre, double close, double period)
       : centre_(centre), period_(period), search_(std::vector<Vec3>(points.rowwise().begin(), points.rowwise().end()), close) {}
 
-  /// Returns, for each point, the index of the point that is its image; nothing if an image is not one of the points.
+  /// Returns, for each point, the index of its image under the reflection with these signs, up to a shift by one period. Returns nothing if the image
+  /// of any point is not one of the points.
   std::optional<std::vector<int>> under(const Vec3& signs) const {
     std::vector<int> images;
     for (const Vec3& x : search_.all()) {
