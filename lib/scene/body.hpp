@@ -120,7 +120,7 @@ struct ParticleLoads {
 /// loads.
 ParticleLoads make_loads(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall* wall);
 
-/// Name in checkpoints of the net Body::rest. The name is that of the first versions. Body::initial is not stored.
+/// Name of the net Body::rest in checkpoints. The net Body::initial is not stored in checkpoints, despite this name.
 constexpr const char* stored_rest = "initial";
 
 /// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and if the

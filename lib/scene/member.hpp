@@ -23,7 +23,8 @@ struct Member {
   std::unique_ptr<Body> body;
   spline::Block block;
   /// Geometry and membrane. Members with equal spaces share the geometry; if also their materials and unstressed shapes are equal, they share the
-  /// membrane. A single member has those of the coupled system and shares the ownership of the whole system. It has none before the system is built.
+  /// membrane. A single member uses the geometry and membrane of the coupled system and shares the ownership of this system; both pointers are null
+  /// before the system is built.
   std::shared_ptr<const surface::Geometry> geometry;
   std::shared_ptr<const membrane::Membrane> membrane;
   ParticleLoads loads;  ///< loads that the coupled system includes; set when the system is built
@@ -58,12 +59,12 @@ void arrange(std::vector<Member>& members);
 
 /// Returns one body that represents all members: its nets are the stacked nets of the members, its radius is the largest R_C, and its volume is the
 /// total volume. Returns null if there is only one member. Its mesh and `plain` are not set, the wall of a tube is added later, and quantities
-/// of the membrane are those of the first member.
+/// of the membrane are copied from the first member.
 std::unique_ptr<Body> make_stacked_body(const std::vector<Member>& members);
 
 /// Builds the coupled system of all members, with the given tube or solids (plates and posts) if there are any. Only the operators that the members
-/// need are built. `all`: body of all members (see make_stacked_body). Sets the loads of the members. A single member shares the system from now on:
-/// its geometry and membrane are those of the system.
+/// need are built. `all`: body of all members (see make_stacked_body). Sets the loads of the members. If there is a single member, its geometry
+/// and membrane become the geometry and membrane of the system.
 std::shared_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, const Body& all, Phases& phases, std::unique_ptr<coupling::Tube> tube,
                                                 const std::optional<coupling::SolidScene>& solids);
 

@@ -136,24 +136,24 @@ void reject_power(const SharedOptions& shared, bool strong, Rejections& to);
 
 /// Options of all modules: the shared options and the options of each particle.
 struct Scene : SharedOptions {
-  /// Particles in the order of the deck, at least one after declare(). A deck with the section Particle has one, without a name. In a scene of posts
-  /// only, the one particle stands for their size.
+  /// Particles in the order of the deck, at least one after declare(). A deck with the section Particle has one particle without a name. In a scene
+  /// of posts only, a single particle represents the size of the posts.
   std::vector<ParticleKind> particles;
   std::vector<std::string> idle_keys;  ///< sentences about keys that the deck gives although they have no effect
 
   Scene() = default;
   explicit Scene(const Registry& parts) { registry = &parts; }
 
-  /// Reads the deck. Sections are declared in an order in which each may use those before it: Flow, Tube and Channel before Surface, whose default
-  /// mesh depends on the width of the duct; Domain before Solvers. Options that follow from several sections are set at the end (complete_derived).
-  /// Then files are read and copies expanded, see prepare() in app/program.cpp; check() comes last.
+  /// Reads the deck. Sections are declared in an order in which each may use the sections before it: Flow, Tube and Channel before Surface, because
+  /// the default mesh depends on the width of the duct; Domain before Solvers. Options that follow from several sections are set at the end
+  /// (complete_derived). Then files are read and copies expanded, see prepare() in app/program.cpp; check() comes last.
   void declare(deck::Section& root);
 
   /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
   void check() const;
 
-  /// Returns true if the deck has the section Particles, even with one particle. Names of series and arrays depend on it; so do
-  /// whether a rigid body is solved for alone, and the defaults of Adaptation/film resolution and Output/between steps.
+  /// Returns true if the deck has the section Particles, even with only one particle. The result affects the names of series and arrays, whether a
+  /// single rigid body is solved without the coupled system, and the defaults of Adaptation/film resolution and Output/between steps.
   bool named() const { return !particles.front().name.empty(); }
 
   /// Return the scenes of all particles, and of the first one. In them, Solvers/rigid bodies is not `auto`.

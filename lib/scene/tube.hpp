@@ -24,7 +24,7 @@ void check_fit(const ParticleScene& particle_scene, const Body& body);
 /// particles or its period is too long.
 std::shared_ptr<const surface::TubeWall> make_wall(const SharedOptions& shared, const Body& body);
 
-/// Returns the tube around `body`, which stands for all particles of the scene; null if there is no tube.
+/// Returns the tube around `body`, which represents all particles of the scene; null if there is no tube.
 std::unique_ptr<coupling::Tube> make_tube(const SharedOptions& shared, const Body& body, Phases& phases);
 
 /// Data of the tube for one row of the results. For a periodic train, pressure drops refer to one period.

@@ -161,8 +161,9 @@ class CoupledParticles : public ParticleSystem {
   Columns next_row(const motion::State& whole_state, const ProgressRow& progress) override {
     const motion::State state = fields_->of_shape(whole_state);
     const auto here = fields_->evaluate(whole_state.x, state.history.front(), scene_.time.tolerance);
-    // Solves the linear system for the velocity again in two cases: if the series of tractions on walls need a more accurate velocity than the step,
-    // and if deformable particles and rigid bodies occur together, because the loads of the deformable particles then follow from this solution.
+    // Solves the linear system for the velocity again in two cases: if the velocity of the step is not accurate enough for the series of tractions
+    // on walls, and if deformable particles and rigid bodies occur together, because the loads of the deformable particles then follow from this
+    // solution.
     const auto rigid = [](const Member& member) { return member.scene.particle.rigid(); };
     const bool mixed = std::ranges::any_of(members_, rigid) && !std::ranges::all_of(members_, rigid);
     if (mixed || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
@@ -247,8 +248,8 @@ class CoupledParticles : public ParticleSystem {
     return force.dot(apart) / 3 * Mat3::Identity() - (force * apart.transpose() + apart * force.transpose()) / 2;
   }
 
-  /// Builds the coupled system and all other data for the current meshes. The wall of a straight tube is kept. The tube of a channel is made again;
-  /// its wall is that of SharedOptions::walls.
+  /// Builds the coupled system and all other data for the current meshes. Keeps the wall of a straight tube. Builds
+  /// the tube of a channel again with the wall in SharedOptions::walls.
   void set_up() {
     const std::unique_ptr<Body> before = std::exchange(stacked_, nullptr);
     arrange(members_);

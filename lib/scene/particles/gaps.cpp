@@ -111,7 +111,7 @@ class Pairs {
 /// Search for the smallest gap among the pairs of particles that are assigned to this rank.
 class NearestPair {
  public:
-  /// Searches the pairs k for which mine(k) is true.
+  /// Computes the gaps of the pairs k for which mine(k) is true. Omits pairs whose lower bound shows that another gap is smaller.
   template <class Mine>
   NearestPair(const Pairs& pairs, const Mine& mine) : pairs_(pairs) {
     const double tolerance = pairs.tolerance();
@@ -136,7 +136,7 @@ class NearestPair {
     return first;
   }
 
-  /// Returns true if pair a is reported and not pair b, when both have the smallest gap.
+  /// Returns true if pair a is reported instead of pair b if both have the smallest gap.
   bool precedes(std::size_t a, std::size_t b) const {
     const std::size_t n = pairs_.all().size();
     if (a == n || b == n) return a < b;

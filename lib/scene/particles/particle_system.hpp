@@ -46,7 +46,7 @@ class ParticleSystem {
   /// Resumes a run; returns true if this has changed the mesh of body().
   virtual bool resume(Resumed& resumed) = 0;
   /// Changes to the mesh of another system of the same particles. `mesh`: data that store() of the other system has added. `x`: state on this mesh
-  /// (State::x). Operations so far are no longer counted. Does nothing for a free rigid body, whose mesh never changes.
+  /// (State::x). Operations before this call are no longer counted. Does nothing for a free rigid body, whose mesh never changes.
   virtual void move_to(const output::Checkpoint& /*mesh*/, const Net& /*x*/) {}
   virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
   /// Discards data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
@@ -64,7 +64,8 @@ class ParticleSystem {
   virtual coupling::OperationCounts counts() const = 0;
   /// Returns the phase angle of each particle when the series were last computed.
   virtual std::vector<PhaseAngle> phase_angle() const = 0;
-  virtual stokes::Evaluations kernel_evaluations() const = 0;  ///< on this rank, without those of walls, which SharedOptions::walls counts
+  /// Returns the number of kernel evaluations on this rank, without the evaluations that SharedOptions::walls counts.
+  virtual stokes::Evaluations kernel_evaluations() const = 0;
   /// Advances the phase angles by the step that led to the state (`progress.step`). Returns a row of results: the data of the particles and of
   /// `progress`, with the time and the work of the run. To be called once per row, in the order of times.
   virtual Columns next_row(const motion::State& state, const ProgressRow& progress) = 0;

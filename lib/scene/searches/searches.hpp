@@ -27,9 +27,9 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
 /// Adds to `to` the combinations of keys that are not allowed in a search for steady shapes, periodic motions or spectra.
 void reject_searches(const ParticleScene& particle_scene, Rejections& to);
 
-/// Returns Steady/step, the implicit step of the search in units of time. By default, it is half the inverse of the rate, but at most 10 relaxation
-/// times of each membrane. The bound is needed because the iteration amplifies velocity errors, in motions that no membrane opposes, by the ratio of
-/// the step to the relaxation time.
+/// Returns Steady/step, the implicit step of the search in units of time. If this key is not set, the step is 0.5/Scene::rate(), but at most 10
+/// relaxation times of each membrane. The bound is needed because the iteration multiplies errors of the velocity by the ratio of the step to the
+/// relaxation time if no membrane opposes the motion.
 double steady_step(const Scene& scene);
 
 /// Returns the gradients, at the shape x, of the quantities that the motion conserves: the volume of each deformable particle, and the total of each
@@ -39,8 +39,8 @@ std::vector<motion::Conserved> conserved_quantities(const coupling::Capsule& cap
 /// Values of the parameters Continuation/parameter and Continuation/second parameter; the second is 0 if there is none.
 using Parameters = std::array<double, 2>;
 
-/// Returns the parameter values at the start of the branch, which are those in the deck. Throws UserError if the deck does not give a number for a
-/// parameter, or if the first one already equals Continuation/to.
+/// Returns the parameter values at the start of the branch, which are the values in the deck. Throws UserError if the deck does not give a number for
+/// a parameter, or if the first parameter already equals Continuation/to.
 Parameters first_parameters(const Scene& scene, const std::string& deck);
 
 }  // namespace tanktread

@@ -45,7 +45,7 @@ struct SteadySystem {
     begin(x);
   }
 
-  /// Returns false if there are surface fields whose images under the symmetry of the shape are not known.
+  /// Returns false if the symmetry of the shape cannot be applied to all surface fields, because their symmetric images are not known.
   bool knows_images() const { return !particles->fields() || particles->fields()->knows_images(particles->body().symmetry); }
 
   /// Returns the coordinates of changes of the state x. `symmetry`: symmetry of the shape, which must outlive the result. `parity`: parity of the

@@ -26,8 +26,8 @@ struct RunTotals {
   output::Entries<double> seconds;  ///< wall time of the first rank in each phase of the program
 };
 
-/// Calls act(name, kinds of particles, description, value) for every counter of a run, for example the number of accepted steps. The kinds of
-/// particles are those for which the counter is reported. Checkpoints and the summary store each counter under its name.
+/// Calls act(name, kinds of particles, description, value) for every counter of a run, for example the number of accepted steps. The counter is
+/// reported only for these kinds of particles. Checkpoints and the summary store each counter under its name.
 template <class Some, class Act>
 void each_count(Some& totals, const Act& act) {
   constexpr const char *moving = "capsule, drop, free body", *all = "all";
