@@ -30,7 +30,7 @@ struct Batch {
 /// All given elements of one degree and material, in ascending order, with the Gauss rule of the degree.
 struct Group {
   int degree = 3, order = 4;
-  int material = 0;                        ///< material of its elements
+  int material = 0;                        ///< material index of the elements of this group
   std::vector<double> value, slope, bend;  ///< values, first and second derivatives of the 1-D Bernstein polynomials i at the Gauss nodes q, at index
                                            ///< q * (p + 1) + i with the degree p
   std::vector<double> weight;              ///< tensor-product weights, at index q_t * order + q_s

@@ -29,7 +29,7 @@ class Surfactant : public Field {
   /// `clean_tension`: tension sigma(0) of the clean interface. `space` must outlive this object.
   Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity);
 
-  Eigen::Index size() const override { return share_.size(); }  ///< one per control point
+  Eigen::Index size() const override { return share_.size(); }  ///< number of coefficients: one per control point
   Eigen::VectorXd start(const Net& shape) const override { return contents(shape, Eigen::VectorXd::Ones(size())); }  ///< c = 1
 
   /// Throws RunFailure if the tension is not positive everywhere.
@@ -62,7 +62,7 @@ class Surfactant : public Field {
   void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
   Eigen::VectorXd conserved() const override { return share_; }
-  surface::FieldsAt values_at() const override;  ///< c divided by its mean
+  surface::FieldsAt values_at() const override;  ///< returns a function for c divided by its mean
   std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
 
   /// Computes the concentration at the Gauss points from the field `from`, and scales it so that the total mass does not change.
@@ -72,7 +72,7 @@ class Surfactant : public Field {
   Eigen::VectorXd contents(const Net& x, const Eigen::VectorXd& c) const;
 
  private:
-  static constexpr int gauss_points = 4;  // per direction up to degree 3, as for the membrane
+  static constexpr int gauss_points = 4;  // number per direction for elements up to degree 3; equal to the number for the membrane
   /// Basis functions of an element at its n Gauss points, with the surface and the concentration there. Arrays have the layout of
   /// surfactant_kernel.hpp.
   struct ElementPoints {

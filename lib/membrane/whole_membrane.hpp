@@ -54,7 +54,7 @@ class WholeMembrane : public Load {
     int degree;                                      // m: Q(x) is homogeneous of degree m = 2 (total area) or m = 1 (area difference)
     std::vector<std::pair<double, Membrane>> parts;  // pairs of a factor and a membrane: Q is the sum of factor times energy of the membrane
     double stiffness = 0, relaxed = 0;               // k, Q0
-    std::vector<Tangent> tangents = {};              // tangents of the parts
+    std::vector<Tangent> tangents = {};              // tangent of each membrane in `parts`
     double tension = 0;                              // derivative k (Q - Q0) of the energy (3.26) or (3.27) with respect to Q, at the shape of
                                                      // linearise()
     Net q = {};                                      // q at the linearisation

@@ -34,7 +34,7 @@ class ImageSum {
   bool want(std::vector<Vec3> targets, std::vector<int> wanted);
 
   /// Returns the sums at the targets selected by want(), one row per target, in the order of `wanted`. `strengths`: source strengths of the nodes,
-  /// with 3 components (forces) or the 6 components of S in the order 11, 22, 33, 12, 13, 23.
+  /// with 3 components (forces f_k) or 6 components (symmetric tensors S_k) in the order 11, 22, 33, 12, 13, 23.
   Net sum(std::span<const std::vector<double>> strengths);
 
   /// Returns the contribution of the nodes first, first + 1, ... to the sum at one target. `strengths`: source strengths of these nodes. The caller

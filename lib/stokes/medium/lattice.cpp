@@ -51,7 +51,8 @@ void Lattice::subtract_surfaces(LayerSources& sources, const LayerTargets& targe
   for (std::size_t k = 0; k < rows.size(); ++k) u.row(rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
 }
 
-/// Adds the contribution of the images that are not near (PeriodicSum), and for a double layer with three periods the pressure of (2.28).
+/// Adds the contribution of the images that are not near (see PeriodicSum). If there are three periods, also adds the pressure of (2.28) to a double
+/// layer.
 void Lattice::add_remainder(LayerSources& sources, const LayerTargets& targets, Net& u) {
   const auto clock = sources.phases.time("rest of the lattice");
   std::vector<Vec3> at = rows_of(targets.at, targets.rows);
@@ -109,8 +110,8 @@ Vec3 Lattice::pressure_along(const LayerSources& sources, const Moments& moments
   return -1 / (over_8_pi * cell_.volume()) * sum;
 }
 
-/// Adds the interpolated sum over the images that are not near: with the Lagrange polynomials L_a of the interpolation nodes x_a, and the integrals
-/// of L_a N_B over the surface.
+/// Adds the sum over the images that are not near to the rows `a` of the matrix. The kernel is interpolated: its values between the interpolation
+/// nodes are multiplied by the Lagrange polynomials L_a at the sites and by the integrals of L_a N_B over the surface.
 void Lattice::add_remainder(const LayerSources& sources, std::span<const int> sites, Rows<double>& a) const {
   std::vector<Vec3> at, nodes;
   for (const int i : sites) at.push_back(wrapped(sources.surface.site(i)));

@@ -45,7 +45,7 @@ struct LayerTargets {
 ///   other terms        anything that the derived class sums or integrates itself: add(), add_row()
 ///   smooth remainder   of assembled rows that contain displaced images: add_remainder()
 ///
-/// Order of calls: set_sources() for each shape, then any of the others. One object belongs to one layer.
+/// Order of calls: first set_sources() for each shape, then any other functions. One object belongs to one layer.
 class LayerMedium {
  public:
   virtual ~LayerMedium() = default;
@@ -72,11 +72,11 @@ class LayerMedium {
   /// Returns whether assembled rows include the displaced images.
   virtual bool rows_include_images() const { return false; }
 
-  /// Adds to rows of u, which are later divided by 8 pi, all terms other than those of the displaced images.
+  /// Adds to rows of u, which are later divided by 8 pi, all terms except the terms of displaced images with the kernel of free space.
   virtual void add(LayerSources& sources, const LayerTargets& targets, Net& u);
 
-  /// Adds the same terms to assembled rows of the target x0: block[B] is the 3 x 3 block of control point B, before the division by 8 pi. Returns
-  /// false if there are none.
+  /// Adds the terms of add() to assembled rows of the target x0: block[B] is the 3 x 3 block of control point B, before the division by 8 pi. Returns
+  /// false if there are no such terms.
   virtual bool add_row(LayerSources& sources, const Vec3& x0, std::vector<Mat3>& block);
 
   /// Adds to assembled rows `a` of a single layer at `sites` the part of the kernel that rows_include_images() does not cover.

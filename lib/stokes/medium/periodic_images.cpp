@@ -49,8 +49,8 @@ struct Smooth {
       for (int m = 0; m < 16; ++m) {
         phi += power / (2 * m + 1);
         first += power * 2 / (2 * m + 3);
-        second -= power * 4 / (2 * m + 5);  // `first` and `second` are derivatives of the power series phi, divided by x^2. Their constant term is
-                                            // 0, so that term m + 1 is added here; its factor (m + 1)/(m + 1)! is 1/m!
+        second -= power * 4 / (2 * m + 5);  // first = -phi'/x and second = first'/x. The derivative of the constant term of a series is 0, so that
+                                            // term m + 1 is differentiated here; its factor (m + 1)/(m + 1)! is 1/m!
         power *= -square / (m + 1);
       }
       const double scale = 2 * xi / std::sqrt(pi);

@@ -281,8 +281,9 @@ std::vector<double> Channel::kinks() const {
 }
 
 /// Returns the desired element length at each longitudinal parameter u: three quarters of the width of the elements at u, and less where the wall
-/// bends. More than 2.5 R_T (tube radius) away from the part of the channel that changes, the length is multiplied by 2.5. Where the curvature jumps,
-/// the length is multiplied by 0.25. The length changes by at most 0.3 per unit distance, so that elements grow gradually away from short ones.
+/// bends. At distances above 2.5 R_T (tube radius) from the part in which the cross-section or the direction of the channel changes, the length is
+/// multiplied by 2.5. Where the curvature jumps, the length is multiplied by 0.25. The length changes by at most 0.3 per unit distance, so that short
+/// elements are followed by gradually longer elements.
 std::vector<double> Channel::sizes(const std::vector<double>& u) const {
   const double finer = 24. / options_.azimuthal_elements, radius = outline_.radius(), step = u[1] - u[0];
   const bool changes = last_ > first_;
@@ -336,8 +337,8 @@ std::vector<double> Channel::knots(int elements) const {
     begin = end, done = whole;
   };
   std::vector<double> joints = kinks();
-  // No triple knots on the transverse wall of a step, where they would fold the sides of the elements. With simple knots, the control points stay
-  // apart.
+  // Uses no triple knots at the corners of a `step`, because triple knots would fold the sides of the elements on its transverse wall. Simple knots
+  // keep the control points apart.
   if (own_.profile == "step")
     std::erase_if(joints, [&](double joint) { return std::abs(place(joint).s) < *own_.half_length + 1.001 * *own_.corner_radius; });
   std::ranges::sort(joints);
