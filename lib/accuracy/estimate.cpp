@@ -97,7 +97,8 @@ Average average(const Curve& curve) {
     of_half += std::abs(all - half), of_quarter += std::abs(half - integral(piece, 4));
   }
   if (!(length > 0)) return {unknown, unknown};
-  constexpr double jump = 2, smooth = 8;  // limits of the ratio of the errors of half the points and of all points; 16 is reached on fine curves
+  // limits of the ratio of_quarter/of_half of the errors: about 2 if the curve jumps, and 16 if it is smooth and well resolved; 8 is on the safe side
+  constexpr double jump = 2, smooth = 8;
   const double ratio = of_half > 0 ? std::clamp(of_quarter / of_half, jump, smooth) : smooth;
   return {sum / length, of_half / (ratio - 1) / length};
 }

@@ -60,7 +60,7 @@ std::vector<std::string> settings(const Values& deck, const Level& level);
 /// plates and `Wall/elements per period`, from which the levels compute the meshes of the plates, is missing.
 void check_levels(const Values& deck);
 
-/// Returns the effective deck without this section.
+/// Returns the text `deck` of an effective deck (a deck with the values of all keys) without the section `section`.
 std::string without_section(const std::string& deck, const std::string& section);
 
 }  // namespace tanktread::accuracy

@@ -100,7 +100,7 @@ void print_warnings(const std::string& summary) {
     if (std::istringstream(line.substr(4)) >> std::quoted(sentence)) print_warning(sentence);
 }
 
-/// Returns the text of the summary with the section `expect` replaced.
+/// Returns the text of the summary in which the empty section `expect` is replaced by `section`. If there is none, appends `section`.
 std::string with_expect(const std::string& summary, const std::string& section) {
   const std::size_t at = summary.find("\nexpect: []\n");
   if (at == std::string::npos) return summary + section;

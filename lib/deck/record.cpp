@@ -61,7 +61,7 @@ void add_inner(const Record& section, const Sentences& sentences, std::vector<st
     }
 }
 
-/// Returns the sentences of one kind about a section, followed by those about its inner sections.
+/// Returns the sentences of one kind about a section, followed by the sentences about its inner sections.
 std::vector<std::string> all_of(const Record& section, std::vector<std::string> Record::* sentences) {
   std::vector<std::string> all = section.*sentences;
   add_inner(section, [sentences](const Record& inner) { return all_of(inner, sentences); }, all);

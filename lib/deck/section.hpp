@@ -81,8 +81,8 @@ class Section {
   /// States that the keys `names`, which are declared before, have no effect `because` of another choice ("with Time/scheme `bs3`"). A key to which
   /// the deck gives another value than the default is then listed by idle_keys().
   void without_effect(const std::vector<std::string>& names, const std::string& because);
-  void without_effect_except(const std::string& name, const std::string& because);  ///< states this for all keys declared before except `name`
-  std::vector<std::string> idle_keys() const;  ///< returns one sentence for each such key of this section and its inner sections
+  void without_effect_except(const std::string& name, const std::string& because);  ///< without_effect() for all declared keys but `name`
+  std::vector<std::string> idle_keys() const;  ///< one sentence per key without effect that the deck sets, also in inner sections
 
   /// Declares a section inside this one by calling `options.declare(Section&)`.
   template <class Options>

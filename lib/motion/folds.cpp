@@ -40,7 +40,7 @@ struct Parabola {
 /// point of the branch at the vertex is computed. New points keep a distance from the others, because errors of points that are close together move
 /// the vertex. The search also ends when the distance of the outer points has shrunk by the factor `narrow`, because errors of the quadrature then
 /// dominate. Solved::rest of the fold is the estimated error of the parameter, divided by the larger of the parameter and a twentieth of the
-/// interval.
+/// interval from the start value of the parameter to `Continuation/to`.
 std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   constexpr int most = 10;
   // assumed relative error of the parameter at the vertex of the first parabola; it falls with the third power of the distance between the points

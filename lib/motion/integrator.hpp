@@ -44,9 +44,10 @@ void forget(State& state);
 void begin(coupling::Dynamics& dynamics, State& state);
 
 /// Assembles the layer operators of the Jacobian at the shape and the time of the state, and stores both in State::frozen and State::frozen_time. If
-/// the lattice moves, finally sets the time of the motion to `time`, in a step that begins at the time of the state.
+/// the lattice changes in time, then sets the time of `dynamics` to `time`, which belongs to the step that begins at the time of the state.
 void freeze(coupling::Dynamics& dynamics, State& state, double time);
-/// Assembles the layer operators of the Jacobian at the shape State::frozen and its time, if the state has this shape. Sets the time like freeze().
+/// Assembles the layer operators of the Jacobian at the shape State::frozen and the time State::frozen_time. Does nothing if State::frozen is empty.
+/// Sets the time of `dynamics` as freeze() does.
 void refreeze(coupling::Dynamics& dynamics, const State& state, double time);
 
 /// Restarts the state and returns true if the motion is not smooth in time at the time of the state (a kink); otherwise returns false. The restart

@@ -12,19 +12,19 @@ namespace tanktread::motion {
 /// Options of the time integration, `Time/*` of the deck.
 struct TimeOptions {
   std::string scheme = "tr-bdf2";          ///< see motion/integrator.cpp
-  double final_time = 1.0;                 ///< the run ends here
+  double final_time = 1.0;                 ///< time at which the run ends
   /// allowed error of a step: root mean square displacement of the control points divided by the particle radius R_C
   double tolerance = 1e-4;
-  std::optional<double> initial_step;      ///< empty: the scheme finds one
+  std::optional<double> initial_step;      ///< first step; empty: the scheme estimates one
   std::optional<double> fixed_step;        ///< size of all steps; if set, there is no error control, and only the last step is shortened
-  std::optional<double> maximum_step;      ///< empty: no limit
+  std::optional<double> maximum_step;      ///< largest step; empty: no limit
   std::optional<double> minimum_step;      ///< smallest step of the step control; the run fails if a smaller step is needed; empty: 1e-9 times `unit`
   double unit = 1;                         ///< unit of time of the scene, the inverse rate of its flow; not a key of the deck
   /// the run ends if the shape velocity (6.8), divided by the rate of the flow times R_C, is below this value; empty: never
   std::optional<double> steady_tolerance;
   std::optional<double> end_when_past;     ///< the run ends if x1 of the centroids of all particles is larger than this; empty: never
   double iteration_tolerance = 1e-7;       ///< tolerance of the sub-iteration of crank-nicolson (4.1)
-  std::string nonlinear_solver = "plain";   ///< for crank-nicolson: plain, anderson, newton-krylov
+  std::string nonlinear_solver = "plain";   ///< nonlinear solver of crank-nicolson: plain, anderson, newton-krylov
   /// step control of crank-nicolson: iterations (4.1) or error (4.10). If not set: iterations if `nonlinear_solver` is plain, otherwise error
   std::optional<std::string> step_control;
   bool count_euler_step = true;             ///< true if the Euler step counts as a sub-iteration of crank-nicolson
