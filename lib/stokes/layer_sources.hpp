@@ -29,7 +29,7 @@ using NodeVectors = std::vector<double>[3];
 /// adds the panels up; a LayerMedium adds what the boundaries of the fluid change.
 class LayerSources {
  public:
-  /// Arguments as for Layer.
+  /// The arguments are explained at the constructor of Layer.
   LayerSources(LayerKernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options,
                std::vector<double> factor);
 

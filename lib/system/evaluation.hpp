@@ -70,7 +70,7 @@ class Evaluation {
  private:
   void require_solution();  // solves the linear system, unless it is solved already with any allowed error
   void find_unknowns();
-  const Net& solved_fluid_velocity();  // fluid velocity from a solve at this shape. It is never a copy of the velocity of `near_`
+  const Net& solved_fluid_velocity();  // fluid velocity from a solve at this shape, never from `near_`
   const Net& viscous_work();
   Mat3 moment_by_traction(std::size_t p);  // first moment of the load on a body whose unknown is its traction
 

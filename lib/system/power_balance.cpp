@@ -97,7 +97,7 @@ double PowerBalance::flow_power(Evaluation& e, const Net& work, const Net& insid
   const std::vector<Mat3> gradients = flow.gradients(at);
   Net stressed = targets.at_sites() * inside;  // `inside` at the sites; multiplied by the stress of the flow below
   for (Eigen::Index i = 0; i < at.rows(); ++i) {
-    const double pressure = 2 * flow.curvature().trace() * flow.quadratic_direction().dot(at.row(i));  // divided by the viscosity
+    const double pressure = 2 * flow.curvature().trace() * flow.quadratic_direction().dot(at.row(i));  // pressure of the flow, divided by viscosity
     const Mat3& gradient = gradients[static_cast<std::size_t>(i)];
     stressed.row(i) = capsule_.parameters().viscosity * stressed.row(i) * (gradient + gradient.transpose() - pressure * Mat3::Identity());
   }

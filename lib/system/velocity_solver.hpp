@@ -127,7 +127,7 @@ class VelocitySolver {
   /// given, to the velocity of the image. Without a lattice, does nothing. The cell is centred on the origin; in a channel, on the middle of the
   /// channel; and in a straight tube, whose wall moves with the particles, on the mean of the particles.
   CellMove move_into_cell(Net& x, Net* v = nullptr) const;
-  /// Moves x and v into the cell, as move_into_cell(), and sets the walls to the shape x in the cell.
+  /// Moves x and v into the cell, as move_into_cell() does, and sets the walls to the shape x in the cell.
   void place(Net& x, Net* v = nullptr);
 
   /// Returns the rigid bodies. Their motions belong to the shape solved last. Their positions were set by the latest call of solve() or

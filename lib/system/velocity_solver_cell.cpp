@@ -42,7 +42,8 @@ VelocitySolver::CellMove VelocitySolver::move_into_cell(Net& x, Net* v) const {
 
 void VelocitySolver::place(Net& x, Net* v) {
   const std::optional<double> origin = move_into_cell(x, v).origin;
-  if (!bodies_.rigid.empty()) RigidParticles(bodies_.rigid).fit_to(x);  // as in solve(), so that the walls are already set to this shape
+  // Fits a copy of the bodies to x, which changes x as in solve(). If solve() has set the walls to this shape, set_shape() then has nothing to do.
+  if (!bodies_.rigid.empty()) RigidParticles(bodies_.rigid).fit_to(x);
   walls_.set_shape(x, targets_, origin);
 }
 

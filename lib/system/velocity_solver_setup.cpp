@@ -42,7 +42,7 @@ VelocitySolver::VelocitySolver(const spline::Space& space, const Net& unstressed
       bodies_{RigidParticles(particles(), resting, parameters_.viscosity, parameters_.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
       krylov_(parameters_.solvers.of(parameters_.solvers.velocity)) {
-  assert(!tube_ || !targets_.projection());  // the tube responds at the collocation sites
+  assert(!tube_ || !targets_.projection());  // Tube computes its response only at collocation sites, not at the sites of a projection
   walls_.set_particles(membranes_.unstressed(), particles());
   if (std::ranges::any_of(particles(), &Particle::by_traction))
     bodies_.tractions = std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, walls_, layout_.points(),

@@ -50,8 +50,8 @@ struct SolverOptions {
   /// Returns the options of all kinds of systems.
   std::array<const IterativeOptions*, 5> systems() const { return {&velocity, &traction, &implicit_step, &spectrum, &steady}; }
 
-  /// Returns whether the layers of the system for the velocity are assembled, except on lattices, where they never are. `by_clusters`: true if the
-  /// far-field sums are evaluated by a treecode (sums by clusters), false if directly.
+  /// Returns whether the layers of the system for the velocity are assembled if there is no lattice. On lattices, layers are never assembled.
+  /// `by_clusters`: true if the far-field sums are evaluated by a treecode (sums by clusters), false if they are evaluated directly.
   bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
 
   /// Returns the options `system` of one kind of system, with missing options filled in. If `system` does not set a solver, the solver is `krylov`.

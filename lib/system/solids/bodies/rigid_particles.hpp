@@ -138,7 +138,7 @@ class RigidParticles {
     const DoubleLayer& dual() const;  // throws std::logic_error if double_layer is not set
     RigidDrive given() const;
     RigidMotion mean(const Net& w) const;      // rigid motion <w> of (2.23): least-squares fit over the body. `w`: net of all particles
-    RigidMotion with_integrals(const Vec3& force, const Vec3& torque) const;  // a + b x r with these integrals
+    RigidMotion with_integrals(const Vec3& force, const Vec3& torque) const;  // field a + b x r with this force and torque as its integrals
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
     Net single_layer_correction(const RigidMotion& load) const;         // SelfCorrection of the single layer R^-1 A f of the load f = a + b x r
     Net double_layer_correction(const Net& w) const;                    // SelfCorrection of the double layer R^-1 H w with density w; `w`: net of

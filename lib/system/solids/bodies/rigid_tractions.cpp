@@ -174,7 +174,7 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   const Eigen::Index with_flow = m, with_duct = apart ? m + 1 : m;
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, with_duct + 1), fields = Eigen::MatrixXd::Zero(n, m);
   const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);
-  Net empty = around_ ? Net(-around_->flow) : at_sites;  // its solution is subtracted: v_inf on bodies, minus the known velocity on other particles
+  Net empty = around_ ? Net(-around_->flow) : at_sites;  // v_inf on bodies, minus the known velocity on other particles; its density is subtracted
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
     const spline::Block& block = particles_[p].block;

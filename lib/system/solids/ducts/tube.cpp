@@ -158,7 +158,7 @@ Net Tube::pressure_driven_velocity(const Net& at) const {
 
 void Tube::velocity_at(const Eigen::SparseMatrix<double>& points, const Net& x, const Response& response, std::span<const int> rows, Net& u) {
   Net shape = x;
-  shape.col(0).array() -= particle_->origin;  // before the product, so that a point at a far node coincides with it up to round-off (node_sum)
+  shape.col(0).array() -= particle_->origin;  // before the product, so that a point at a far node equals this node up to round-off (node_sum)
   const Net at = points * shape;
   wall_->layer().apply(wall_->on_space(response.wall_traction), at, rows, u);
   const Net by_pressure = cell() ? Net(pressure_driven_velocity(at)(rows, Eigen::all)) : pressure_driven_velocity(at(rows, Eigen::all));

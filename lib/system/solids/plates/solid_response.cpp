@@ -38,7 +38,7 @@ SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space
 
 void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> own) {
   Solids& solids = *scene_.solids;
-  solids.reach(x);  // always, because another system may share the solids
+  solids.reach(x);  // also for an unchanged x, because another system that shares the solids may have changed their range
   if (same(shape_, x) && same(at_, at) && std::ranges::equal(own, own_)) return;
   shape_ = {}, at_ = at;  // no shape is set if one of the next calls throws
   own_.assign(own.begin(), own.end());
