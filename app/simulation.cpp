@@ -208,7 +208,7 @@ class Run {
       Net frozen = std::move(state_.frozen);
       const double frozen_time = state_.frozen_time;
       state_ = before;
-      if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // the secants belong to the old operator
+      if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // they belong to the old operator
       state_.frozen = std::move(frozen), state_.frozen_time = frozen_time;
       state_.step = report_.step / 2;
     }

@@ -134,8 +134,8 @@ void set_time(Setter& to, const Level& level) {
     to.set("Time/tolerance", std::max(most, 1e-13));
   to.lower("Time/iteration tolerance", most / 10);
   if (to.has_section("Continuation"))
-    to.lower("Steady/tolerance", most / 100);  // not raised, because on a branch corrections of thirty times the tolerance count as converged
-  else if (to.has("Steady/tolerance"))  // not smaller, because quadrature errors prevent smaller corrections
+    to.lower("Steady/tolerance", most / 100);  // never raised: branches accept corrections of up to 30 times the tolerance as converged
+  else if (to.has("Steady/tolerance"))  // no smaller value is kept, because quadrature errors prevent smaller corrections
     to.set("Steady/tolerance", std::max(most, quadrature_tolerance(level.quadrature)) / 100);
   to.lower("Periodic/tolerance", std::clamp(10 * most, 1e-10, 1e-2));
   to.lower("Continuation/fold tolerance", std::clamp(most / 100, 1e-12, 1e-2));

@@ -88,7 +88,7 @@ void Options::declare(deck::Section& section) {
 }
 
 std::string setting_of(const std::vector<std::string>& texts) {
-  for (const std::string& text : texts) requests_of(text);  // throws if one is malformed
+  for (const std::string& text : texts) requests_of(text);  // throws UserError if a text is not a request
   std::string all;
   for (const std::string& text : texts) all += (all.empty() ? "" : ", ") + trimmed(text);
   return "Accuracy/requests=" + deck::in_quotes(all);

@@ -24,7 +24,7 @@ void solve_triangles(int n, const double* factors, int columns, double* x) {
     lu.triangularView<Eigen::UnitLower>().solveInPlace(all);
     lu.triangularView<Eigen::Upper>().solveInPlace(all);
   };
-  columns == 1 ? solve(Eigen::Map<Eigen::VectorXd>(x, n)) : solve(Matrix(x, n, columns));  // a vector needs no packing
+  columns == 1 ? solve(Eigen::Map<Eigen::VectorXd>(x, n)) : solve(Matrix(x, n, columns));  // a single column is solved as a vector, without packing
 }
 
 }  // namespace INSTRUCTIONS

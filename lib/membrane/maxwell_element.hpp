@@ -26,7 +26,8 @@ namespace tanktread::membrane {
 /// sqrt(g^11 g^22), g^22 of the shape `initial`. Uses no MPI.
 class MaxwellElement : public Field {
  public:
-  /// `order`: Gauss points per direction, as for a Membrane. `space` must outlive this object. `time`: relaxation time T.
+  /// `order`: number of Gauss points per direction, with the same meaning as in Membrane. `space` must outlive this object. `time`: relaxation time
+  /// T.
   MaxwellElement(const spline::Space& space, const Net& initial, int order, const SurfaceViscosity& viscosity, double time);
 
   Eigen::Index size() const override { return 3 * unit_.rows(); }  ///< number of coefficients: the components C^11, C^12, C^22 at every Gauss point

@@ -216,7 +216,7 @@ namespace {
 /// Stresses in the surface that are linear in a displacement or a velocity u, at the Gauss points of a set of elements.
 struct LinearStresses {
   std::shared_ptr<const Part> part;
-  std::vector<std::vector<TangentPoint>> of_group;  // empty for groups without these stresses
+  std::vector<std::vector<TangentPoint>> of_group;  // one list per group of elements; empty if the group has no such stresses
 
   /// Sets `sum` to the virtual work of the stresses due to u, one row per control point of the n_points points of the surface.
   void apply(int n_points, const Net& u, Net& sum) const {

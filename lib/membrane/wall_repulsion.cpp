@@ -13,7 +13,7 @@ WallRepulsion::WallRepulsion(const spline::Space& space, const Net& unstressed, 
     : space_(space), repulsion_(std::move(repulsion)) {
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
     const spline::Element& element = space.elements[static_cast<std::size_t>(e)];
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(quadrature::gauss_order(4, element.degree));  // the rule of Membrane
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(quadrature::gauss_order(4, element.degree));  // rule used by Membrane
     auto& value = value_.emplace_back(rule.size(), static_cast<Eigen::Index>(element.points.size()));
     Eigen::VectorXd& area = area_.emplace_back(rule.size());
     for (int q = 0; q < rule.size(); ++q) {

@@ -26,7 +26,7 @@ struct Automatic::Choice {
   double points = 0;      ///< number of control points when the stiffness was measured; 0: not measured yet
   double work = 0;        ///< work of TR-BDF2 per unit of time, in velocity evaluations; 0: TR-BDF2 was not tried yet
   double since = 0;       ///< steps since the last change of scheme
-  double then = 0;        ///< stiffness at the time of the last change of scheme
+  double then = 0;        ///< stiffness when the scheme was last changed
 };
 
 Scheme& Automatic::chosen(const Choice& choice) {

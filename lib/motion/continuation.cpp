@@ -127,7 +127,7 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     if (!report.converged && !(least < noise * tolerance)) return {};
     solved.iterations = std::max(solved.iterations, report.converged ? report.iterations : 0);
     solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
-    if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // another branch, or no branch
+    if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // not on this branch
     const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
     // estimated error, because dG/dp is evaluated at `from` and not at the solution: distance from `from`, times the change of the scaled parameter
     solved.rest = moved * turned;
@@ -252,7 +252,7 @@ void Branch::begin() {
   const double way = options_.to - start_;
   double step = last_.empty() ? 0 : std::min(options_.step.value_or(std::abs(way) / 20), std::abs(way)), parameter = start_;
   std::optional<Solved> solved;
-  for (int halvings = 0; !solved; ++halvings, step /= 2) {  // a shorter step is needed if a fold is near
+  for (int halvings = 0; !solved; ++halvings, step /= 2) {  // halves the step, because there may be a fold before the end of the step
     parameter = start_ + std::copysign(step, way);
     solved = at_parameter(parameter, x_);
     if (!solved && (last_.empty() || halvings == most_halvings))

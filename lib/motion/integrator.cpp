@@ -89,7 +89,7 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   const double speed = dynamics.norm(slope);
   if (speed == 0) return std::min(1e-3 * options.final_time, options.maximum_step.value_or(1e300));
   const double longest = std::min(options.final_time, options.maximum_step.value_or(1e300));
-  const double trial = std::min(1e-3 / speed, longest);  // `speed` is round-off if the shape does not change
+  const double trial = std::min(1e-3 / speed, longest);  // `longest` limits it if `speed` is only round-off, as for a steady shape
   dynamics.set_time(state.time + trial, state.time);
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
   const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // std::max ignores `change` if NaN

@@ -20,7 +20,7 @@ struct Stage {
   Net slope;            ///< slope (y - rhs)/shift of the result
   double rate = 0;      ///< contraction rate observed in this step, by this stage or an earlier stage; 0 if none was observed yet
   double error = 0;     ///< upper bound of the distance of the result from the exact solution of the stage, in the norm of `Time/tolerance`
-  int iterations = 0;   ///< evaluations of the defect
+  int iterations = 0;   ///< number of evaluations of the defect
   bool solved = false;
 
   double rate_or_assumed() const { return rate > 0 ? rate : 0.5; }

@@ -123,8 +123,8 @@ void Scene::declare(deck::Section& root) {
   refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one duct; give one of them");
   if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;
-  ParticleKind only;  // the particle of the section Particle
-  if (tube.present) only.duct_half_width = tube.half_width();  // read by the declaration of Surface
+  ParticleKind only;  // options of the particle in the section Particle
+  if (tube.present) only.duct_half_width = tube.half_width();  // used when the section Surface is declared
   const bool several = root.given("Particles");
   particles = declare_particles(root, only, *registry);
   volume_given = root.given("Volume");
@@ -155,7 +155,7 @@ void Scene::declare(deck::Section& root) {
       "Spectrum", spectrum,
       "growth rates of small perturbations of a steady shape, instead of a run in time. The shape is the result of Steady, or, without Steady, the "
       "initial shape, which should be steady");
-  solvers.in_lattice = domain.present && !tube.present, solvers.in_duct = tube.present;  // read by the declaration of Solvers
+  solvers.in_lattice = domain.present && !tube.present, solvers.in_duct = tube.present;  // used when the section Solvers is declared
   root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);

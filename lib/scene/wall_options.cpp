@@ -36,7 +36,7 @@ void WallOptions::declare(deck::Section& section) {
 
 void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const {
   if (!(normal.norm() > 0)) throw UserError("Wall/normal must have a direction, but is [0, 0, 0].");
-  if (flow.type == "duct") return;  // rejected with the other combinations
+  if (flow.type == "duct") return;  // reject() rejects this combination
   if (!solid) {
     if (distance)
       throw UserError("Wall/distance needs a Domain that is periodic along both directions in the plates: give Domain/periodic and "
@@ -72,8 +72,8 @@ void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<sto
 
 void WallOptions::reject(const ParticleScene& particle_scene, Rejections& to) const {
   if (!present && !to.every()) return;
-  // This row is only for the table of rejected combinations in the documentation. For a given deck, check() throws UserError if the flow is not along
-  // the wall or not uniform on it.
+  // This entry appears only in the documentation's table of rejected combinations. For a given deck, check() throws UserError if the flow is not
+  // along the wall or not uniform on it.
   if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(stokes::along_the_wall));
   to.pair(particle_scene.flow.type == "duct" && !particle_scene.tube.present, "Wall", "Flow/type `duct`",
           "the wall of a duct is given in a section Tube or Channel");

@@ -137,7 +137,7 @@ CellPoint greville(const TMesh& mesh, int v, const Knots& k) {
   // 0, o1: along direction 1.
   const int o0 = l.length(v, 0, k.reach[0][0]) - l.length(v, 2, k.reach[2][0]);
   const int o1 = l.length(v, 1, k.reach[1][0]) - l.length(v, 3, k.reach[3][0]);
-  if (l.pad > 0) {  // one face without turns
+  if (l.pad > 0) {  // polar mesh: a single face, so that directions do not turn between faces
     const int x = (3 * (v % l.units) + o0 + 3 * l.units) % (3 * l.units), y = 3 * l.height(v / l.units) + o1;
     const int row = std::min(y / 3, l.rows - 2 * l.pad - 1);
     return {l.cell_at(0, x / 3, row + l.pad), x % 3, y - 3 * row};

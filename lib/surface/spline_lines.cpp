@@ -79,7 +79,7 @@ RepeatingLine repeating(const std::vector<double>& knots, const std::array<doubl
   add(open, all, false, false);
   add(closed, cycle, true, false);
   open.sites.clear();
-  for (int i = 0; i < closed.n; ++i) {  // Greville points, as in add()
+  for (int i = 0; i < closed.n; ++i) {  // computes the Greville points as add() does
     const auto knot = [&](int k) { return cycle[static_cast<std::size_t>((k + closed.n) % closed.n)] + period * std::floor(1. * k / closed.n); };
     const double u = (knot(i - 1) + knot(i) + knot(i + 1)) / 3;
     open.add_site(u < ends[0] ? u + period : u >= ends[1] ? u - period : u, all, 0, false);

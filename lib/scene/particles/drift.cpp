@@ -12,7 +12,7 @@ bool holds_centre(const ParticleScene& particle_scene) {
   if (!flow.affine()) return false;
   const Vec3& center = particle_scene.particle.shape.center;
   if (!flow.velocity(center).isZero(0)) return false;
-  return largest_growth_rate(flow.gradient(center)) > 1e-4 * flow.rate();  // in a rotated simple shear it is 0 exactly, and up to 1e-5 by rounding
+  return largest_growth_rate(flow.gradient(center)) > 1e-4 * flow.rate();  // 0 for simple shear; up to 1e-5 if a rotated gradient is rounded
 }
 
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state) {

@@ -1,5 +1,6 @@
 #pragma once
-// Gaps between the particles of a run. On a lattice, given as `cell`, gaps to periodic images count too, also between a particle and its own images.
+// Gaps between the particles of a run. On a lattice, given as `cell`, gaps to periodic images are included, also between a particle and images of
+// itself.
 
 #include <limits>
 #include <optional>
@@ -45,7 +46,7 @@ Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const cou
 
 /// Returns the film width at each element (of Body::nested()) of particle p at x. The width is infinite if the film is so wide that every element of
 /// the current mesh resolves it (AdaptationOptions::film_resolution). `cell`: cell of the lattice; films between the particle and periodic images of
-/// particles and of the wall count, too. `wall`: wall of the tube around the particle, or null; x is given in the coordinates of the wall.
+/// particles and of the wall are included. `wall`: wall of the tube around the particle, or null; x is given in the coordinates of the wall.
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
                           const surface::TubeWall* wall = nullptr);
 

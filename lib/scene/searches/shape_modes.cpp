@@ -55,7 +55,7 @@ std::vector<motion::Mode> shape_modes(SystemPool& pool, const std::shared_ptr<St
   if (returns) {
     std::optional<motion::ReturnMap> of_all;
     if (all != system) of_all.emplace(returns->with(*all->motion, x));
-    std::erase_if(kept, [](const motion::Conserved& one) { return one.kind == motion::ModeKind::volume; });  // time steps restore the volume
+    std::erase_if(kept, [](const motion::Conserved& one) { return one.kind == motion::ModeKind::volume; });  // because time steps restore the volume
     modes = motion::recognised(changes, floquet_exponents(of_all ? *of_all : *returns, returns->period(), changes, options.number, warn));
   } else {
     shapes.follow(*all->motion, x);
