@@ -93,7 +93,7 @@ class CapsuleJacobian {
   };
   std::vector<Pressure> pressures_;  // pressures p (4.35) of all particles whose control points slide
   Net x_;                            // shape of the last linearisation; set if there are pressures
-  std::vector<Mat3> gradients_;  // velocity gradients of the ambient flow at the collocation sites; set if `flow_at_sites`
+  std::vector<Mat3> gradients_;  // velocity gradients of the ambient flow at the collocation sites; set if flow_at_sites_ is true
 };
 
 }  // namespace tanktread::coupling
