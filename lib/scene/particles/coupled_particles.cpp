@@ -32,12 +32,18 @@ namespace tanktread {
 
 namespace {
 
+/// Returns the particles of the scene. Throws UserError if they overlap or cross a post at the start.
+std::vector<Member> checked_members(const Scene& scene) {
+  std::vector<Member> members = make_members(scene);
+  check_apart(members, scene.domain.cell());
+  check_outside_of_posts(scene, members);
+  return members;
+}
+
 class CoupledParticles : public ParticleSystem {
  public:
   CoupledParticles(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), ranks_(ranks), phases_(phases), members_(make_members(scene)), solids_(make_solids(scene, phases)) {
-    check_apart(members_, scene.domain.cell());
-    check_outside_of_posts(scene_, members_);
+      : scene_(scene), ranks_(ranks), phases_(phases), members_(checked_members(scene)), solids_(make_solids(scene, phases)) {
     set_up();
     for (std::size_t p = 0; p < members_.size(); ++p) {
       Member& member = members_[p];
