@@ -248,6 +248,7 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
     prepare(level, arguments, of_level);
     return level.effective();
   };
+  program.check_start = [&](const std::string& text) { check_start(scene_of(text, {}, arguments, registry)); };
   program.run = [&, start = Phases::Clock::now()](const std::string& text, const auto& directory, bool resume, std::optional<double> limit) {
     Scene of_level = scene_of(text, {}, arguments, registry);
     of_level.output.limit(start, limit);

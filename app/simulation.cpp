@@ -376,7 +376,7 @@ class Run {
   std::optional<WithinStep> within_step_;  // state of the snapshot that is due at a time within the last step, if any
   surface::Quality quality_;
   ParticleScene first_ = scene_.first_deforming();
-  Warnings warnings_{first_};  // warnings of the run; they use the parameters of the first deformable particle
+  Warnings warnings_{scene_};
 };
 
 }  // namespace

@@ -32,21 +32,36 @@ Estimate estimated(const std::vector<double>& differences, double scale, const s
   return {error, ratio, formatted("from level to level its error falls by the factor %.2g, not by 1.5 to 10", ratio)};
 }
 
-Curve difference(const Curve& a, const Curve& b) {
+namespace {
+
+/// Returns the largest minus the smallest of the values that are not NaN; -1 if there are none.
+double range_of(const std::vector<double>& values) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double value : values)
+    if (!std::isnan(value)) low = std::min(low, value), high = std::max(high, value);
+  return high >= low ? high - low : -1;
+}
+
+double distance(double a, double b, double period) { return std::abs(period > 0 ? std::remainder(a - b, period) : a - b); }
+
+}  // namespace
+
+Curve difference(const Curve& a, const Curve& b, double period) {
   Curve found;
   if (a.at.empty() || b.at.empty()) return found;
   const double slack = 1e-9 * std::max({std::abs(a.at.front()), std::abs(a.at.back()), std::abs(b.at.back()), 1e-300});
+  std::vector<double> common;  // values of a at the common abscissas
   for (std::size_t i = 0, j = 0; i < a.at.size() && j < b.at.size();) {
     if (std::abs(a.at[i] - b.at[j]) <= slack)
-      found.at.push_back(a.at[i]), found.values.push_back(std::abs(a.values[i] - b.values[j])), ++i, ++j;
+      found.at.push_back(a.at[i]), found.values.push_back(distance(a.values[i], b.values[j], period)), common.push_back(a.values[i]), ++i, ++j;
     else
       a.at[i] < b.at[j] ? ++i : ++j;
   }
-  if (found.at.size() >= std::min<std::size_t>(5, std::min(a.at.size(), b.at.size()))) return found;
+  if (found.at.size() >= std::min<std::size_t>(5, std::min(a.at.size(), b.at.size())) && range_of(common) >= range_of(a.values) / 2) return found;
   found = {};
   for (std::size_t i = 0; i < a.at.size(); ++i)
     if (a.at[i] >= b.at.front() && a.at[i] <= b.at.back())
-      found.at.push_back(a.at[i]), found.values.push_back(std::abs(a.values[i] - deck::interpolated(b.at, b.values, a.at[i])));
+      found.at.push_back(a.at[i]), found.values.push_back(distance(a.values[i], deck::interpolated(b.at, b.values, a.at[i]), period));
   return found;
 }
 

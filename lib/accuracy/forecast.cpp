@@ -33,11 +33,11 @@ class Temporary {
   fs::path path;
 };
 
-/// Returns the lowest level from 2 to `levels` - 1 at which the predicted error times `margin` is at most answer.allowed, or `levels` if there is
-/// none. `difference`: difference of the result between levels 0 and 1, from which the error is extrapolated.
-int needed(const RequestResult& answer, double difference, int levels) {
-  const double factor = difference / (expected_error({}) - expected_error({1, 1, 1}));
-  int level = 2;
+/// Returns the lowest level after the levels `pilots` and below `levels` at which the predicted error times `margin` is at most answer.allowed, or
+/// `levels` if there is none. The error is extrapolated from the difference between the two pilots, answer.estimate.error.
+int needed(const RequestResult& answer, const std::vector<Outcome>& pilots, int levels) {
+  const double factor = answer.estimate.error / (expected_error(pilots[0].level) - expected_error(pilots[1].level));
+  int level = std::min(pilots[1].level.mesh + 1, levels);
   while (level < levels && margin * factor * expected_error({level, level, level}) > answer.allowed) ++level;
   return level;
 }
@@ -45,30 +45,42 @@ int needed(const RequestResult& answer, double difference, int levels) {
 }  // namespace
 
 std::vector<std::string> forecast(const LadderRequest& task, const Program& program) {
+  constexpr std::size_t enough = 2;
+  constexpr int last_pilot = 3;
   const Temporary directory;
   std::vector<std::string> lines;
-  std::vector<Outcome> outcomes;
-  for (int k = 0; k < 2; ++k) {
+  std::vector<Outcome> outcomes;  // on the first rank
+  std::string failure;
+  std::size_t n = 0;
+  for (int k = 0; k <= last_pilot && n < enough; ++k) {
     const Level level{k, k, k};
     const std::string text = program.deck(settings(task.values, level));
     const fs::path place = directory.path / ("level_" + std::to_string(k));
-    if (program.run(text, place, false, task.options.wall_clock_limit) == stopped) throw motion::Stopped();
+    try {
+      if (program.run(text, place, false, task.options.wall_clock_limit) == stopped) throw motion::Stopped();
+    } catch (const RunFailure& error) {  // climb() goes on, too
+      failure = formatted("level %d failed: ", k) + error.what();
+      continue;
+    }
     coupling::decided([&] {
       std::optional<Outcome> outcome = finished(place, level, text);
       if (!outcome) throw RunFailure("the pilot run failed before its final time");
       outcomes.push_back(std::move(*outcome));
       return std::vector<double>{0};
     });
+    ++n;
   }
+  if (n < enough) return {"  accuracy    no level can be predicted, because " + failure};
   coupling::decided([&] {
-    int most = 2;
+    const std::string why = obstacle(outcomes);
+    int most = outcomes[1].level.mesh;
     for (const Request& request : task.options.requests) {
       const RequestResult one = answer(request, outcomes);
-      if (std::isnan(one.estimate.error)) {
+      if (!why.empty() || std::isnan(one.estimate.error)) {
         lines.push_back("  accuracy    " + request.text() + ": no level can be predicted, because " + one.estimate.untrusted);
         continue;
       }
-      const int level = needed(one, one.estimate.error, task.options.levels);
+      const int level = needed(one, outcomes, task.options.levels);
       most = std::max(most, level);
       lines.push_back("  accuracy    " + request.text() +
                       (level < task.options.levels ? formatted(": level %d is predicted to meet it", level)
@@ -76,8 +88,10 @@ std::vector<std::string> forecast(const LadderRequest& task, const Program& prog
     }
     double seconds = std::max(outcomes[1].seconds, 1e-3), whole = outcomes[0].seconds + seconds;
     const double growth = std::clamp(seconds / std::max(outcomes[0].seconds, 1e-3), 2., 3.5);
-    for (int k = 2; k <= std::min(most, task.options.levels - 1); ++k) seconds *= growth, whole += seconds;
-    lines.push_back(formatted("              about %.2g s in all, from a pilot run of the levels 0 and 1", whole));
+    for (int k = outcomes[1].level.mesh + 1; k <= std::min(most, task.options.levels - 1); ++k) seconds *= growth, whole += seconds;
+    const bool over = task.options.wall_clock_limit && whole > *task.options.wall_clock_limit;
+    lines.push_back(formatted("              about %.2g s in all, from a pilot run of the levels %d and %d%s", whole, outcomes[0].level.mesh,
+                              outcomes[1].level.mesh, over ? "; more than Accuracy/wall-clock limit allows" : ""));
     return std::vector<double>{0};
   });
   return lines;

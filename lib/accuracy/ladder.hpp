@@ -18,6 +18,9 @@ struct Program {
   /// Returns the effective deck with the keys in `settings` (`Section/key=value`) changed, and without the sections Accuracy and Expect.
   std::function<std::string(const std::vector<std::string>& settings)> deck;
 
+  /// Sets up the run of this deck, without writing anything. Throws UserError if the scene cannot start, for example because particles overlap.
+  std::function<void(const std::string& deck)> check_start;
+
   /// Runs this deck with results in `directory`, or resumes the run there if `resume`. The run stops after `limit` seconds if given. Returns the exit
   /// code: 0, or `stopped` if the run can be resumed. Throws RunFailure if the run fails, and motion::Stopped if it is stopped before it can be
   /// resumed.
@@ -51,12 +54,14 @@ std::optional<std::string> ladder_deck(const std::filesystem::path& directory);
 /// Runs a deck on finer and finer levels until all requests are met (lib/README.md, Accuracy on request). Level k runs in the folder `level_<k>` of
 /// the directory. The results of the finest finished level become the results in the directory itself, with `/error/<series>` in `run.h5` and a
 /// section `accuracy` in `summary.yaml`. If the task resumes, finished levels are kept and an unfinished level is resumed. Returns a Code. Throws
-/// UserError if the directory already contains results and the task neither resumes nor overwrites them. Throws RunFailure if no level is completed.
+/// UserError if the directory already contains results and the task neither resumes nor overwrites them, and, before any results are deleted, if level
+/// 0 cannot start. Throws RunFailure if no level is completed.
 /// Collective.
 int climb(const LadderRequest& task, const Program& program);
 
-/// Runs the levels 0 and 1 in a temporary directory. Returns lines of text: for each request, the lowest level that is predicted to meet it, and in
-/// the last line the predicted seconds of all levels. All ranks return the lines of the first rank. Collective.
+/// Runs the two coarsest levels that do not fail, of the levels 0 to 3, in a temporary directory. Returns lines of text: for each request, the lowest
+/// level that is predicted to meet it, and in the last line the predicted seconds of all levels. All ranks return the lines of the first rank.
+/// Collective.
 std::vector<std::string> forecast(const LadderRequest& task, const Program& program);
 
 /// Returns the predicted wall seconds of the next level. `seconds`: wall seconds of all previous levels, coarse to fine. The last value is multiplied

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <sstream>
 
 #include "base/errors.hpp"
@@ -42,9 +43,15 @@ class Setter {
   void scale(const std::string& path, double factor) {
     if (has(path)) set(path, number(path, 0) * factor);
   }
-  /// Multiplies the value of a key by `factor` if the deck has the key, and rounds and limits it to `least` ... `most`.
-  void scale_whole(const std::string& path, double factor, double least, double most) {
-    if (has(path)) set_whole(path, number(path, 0) * factor, least, most);
+  /// Sets the whole number `value` x n/6 at a level with n elements per side, limited to `least` ... `most`. If level 0 would have less than `least`,
+  /// every level has proportionally more, so that all levels differ.
+  void refine(const std::string& path, double value, int level, double least, double most) {
+    const double at_first = value * elements_per_side(0) / 6;
+    set_whole(path, value * std::max(1., least / at_first) * elements_per_side(level) / 6, least, most);
+  }
+  /// Refines the value of a key if the deck has the key.
+  void refine(const std::string& path, int level, double least, double most) {
+    if (has(path)) refine(path, number(path, 0), level, least, most);
   }
   /// Sets a tolerance to `most` if the deck has a larger value.
   void lower(const std::string& path, double most) {
@@ -111,17 +118,15 @@ void set_mesh(Setter& to, const std::string& prefix, double ratio, int level) {
 
 /// Sets the mesh of a post (a particle of the shape `cylinder`).
 void set_post(Setter& to, const std::string& surface, int level) {
-  const double finer = elements_per_side(level) / 6.;
-  to.set_whole(surface + "azimuthal elements", to.number(surface + "azimuthal elements", 24) * finer, 8, 400);
-  to.scale_whole(surface + "axial elements", finer, 4, 400);
+  to.refine(surface + "azimuthal elements", to.number(surface + "azimuthal elements", 24), level, 8, 400);
+  to.refine(surface + "axial elements", level, 4, 400);
 }
 
 void set_wall(Setter& to, const std::string& list, int level) {
   if (!to.has(list + "/azimuthal elements")) return;
-  const double n = elements_per_side(level), around = to.number(list + "/azimuthal elements", 24) / 24;
-  to.set_whole(list + "/azimuthal elements", 4 * n * around, 8, 400);
-  to.scale_whole(list + "/axial elements", n / 6, 8, 400);
-  to.set_whole(list + "/flow elements", 16 * n, 8, 4000);
+  to.refine(list + "/azimuthal elements", level, 8, 400);
+  to.refine(list + "/axial elements", level, 8, 400);
+  to.set_whole(list + "/flow elements", 16 * elements_per_side(level), 8, 4000);
 }
 
 double quadrature_tolerance(int level) { return std::max(tolerance(level), least_quadrature); }
@@ -176,11 +181,11 @@ std::vector<std::string> settings(const Values& deck, const Level& level) {
   const auto posts = std::ranges::partition(all, [&](const std::string& prefix) { return !is_post(to, prefix); });
   for (const std::string& prefix : posts) set_post(to, prefix + "Surface/", level.mesh);
   all.erase(posts.begin(), posts.end());
-  double finest = 0;
-  for (const std::string& prefix : all) finest = std::max(finest, side_of(to, prefix));
-  for (const std::string& prefix : all) set_mesh(to, prefix, side_of(to, prefix) / finest, level.mesh);
+  double coarsest = std::numeric_limits<double>::infinity();
+  for (const std::string& prefix : all) coarsest = std::min(coarsest, side_of(to, prefix));
+  for (const std::string& prefix : all) set_mesh(to, prefix, side_of(to, prefix) / coarsest, level.mesh);
   for (const char* list : {"Tube", "Channel"}) set_wall(to, list, level.mesh);
-  to.scale_whole("Wall/elements per period", elements_per_side(level.mesh) / 6., 4, 200);
+  to.refine("Wall/elements per period", level.mesh, 4, 200);
   set_time(to, level);
   set_quadrature(to, level.quadrature);
   return to.all;

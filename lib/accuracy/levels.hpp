@@ -45,10 +45,10 @@ Level balanced(int k, double time, double quadrature);
 
 /// Returns the settings `Section/key=value` of a level. They depend only on the deck and the level (n: elements per side of the level):
 /// - `elements per side` is n. A polar mesh has 2n elements from pole to pole; the number of elements around the pole axis keeps its ratio to 2n. If
-///   there are several particles, the finest mesh has n, and the ratios between the meshes are kept.
+///   there are several particles, the coarsest mesh has n, and the ratios between the meshes are kept.
 /// - In the section Adaptation, tolerances are multiplied by r^4 and lengths by r, where r is the deck's number of elements per side divided by n.
 /// - Walls have 4n azimuthal elements if the deck has the default number, 24, and otherwise proportionally more or fewer. The number of elements
-///   along them is multiplied by the same factor.
+///   along them is multiplied by the same factor. If a number were below its smallest value at level 0, it is larger at all levels.
 /// - `Time/tolerance` is 2e-3/4^level; a fixed step is halved per level, so that an error of second order also falls by a factor of 4.
 /// - `Quadrature/tolerance` equals `Time/tolerance`, but is at least 1e-6; rules with a fixed number of points have 2 more points per level.
 /// - `Steady/tolerance` is a hundredth of the larger of these two tolerances, even if the deck has a smaller value. On branches it is not raised: it

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 
 #include <Eigen/LU>
 
+#include "accuracy/estimate.hpp"
 #include "record/files/nodes.hpp"
 #include "spline/limits.hpp"
 
@@ -137,13 +139,21 @@ std::vector<double> distances(const StoredSurface& fine, const StoredSurface& co
   return found;
 }
 
-void write_position_errors(const std::filesystem::path& fine, const std::filesystem::path& coarse, const std::filesystem::path& to, double factor) {
-  const auto others = output::snapshot_times(coarse);
+void write_position_errors(const std::array<std::filesystem::path, 3>& levels, const std::vector<double>& expected, const std::filesystem::path& to) {
+  const auto& [coarsest, coarse, fine] = levels;
+  const auto surface_at = [](const std::filesystem::path& level, double time) -> std::optional<StoredSurface> {
+    for (const auto& [name, other] : output::snapshot_times(level))
+      if (std::abs(other - time) <= 1e-9 * std::max(1., time)) return output::read_surface(level / name);
+    return {};
+  };
   for (const auto& [name, time] : output::snapshot_times(fine)) {
-    const auto other = std::ranges::find_if(others, [&](const auto& one) { return std::abs(one.second - time) <= 1e-9 * std::max(1., time); });
-    if (other == others.end()) continue;
-    std::vector<double> errors = distances(output::read_surface(fine / name), output::read_surface(coarse / other->first));
-    for (double& error : errors) error *= factor;
+    const auto before = surface_at(coarse, time), first = surface_at(coarsest, time);
+    if (!before || !first) continue;
+    const StoredSurface surface = output::read_surface(fine / name);
+    std::vector<double> errors = distances(surface, *before);
+    const double size = (surface.points.colwise().maxCoeff() - surface.points.colwise().minCoeff()).norm();
+    if (!estimated({largest(distances(*before, *first)), largest(errors)}, size, expected).trusted()) continue;
+    for (double& error : errors) error *= expected[2] / (expected[1] - expected[2]);
     output::add_field(fine / name, to / name, "position error", errors);
   }
 }

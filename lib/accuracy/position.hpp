@@ -1,6 +1,7 @@
 #pragma once
 // Distances between surfaces computed on two levels of refinement.
 
+#include <array>
 #include <filesystem>
 #include <vector>
 
@@ -12,8 +13,10 @@ namespace tanktread::accuracy {
 /// nearest node of `coarse`. The meshes may differ. The distance is NaN if `coarse` has no node within about the largest diameter of its cells.
 std::vector<double> distances(const output::StoredSurface& fine, const output::StoredSurface& coarse);
 
-/// Writes the snapshots of `fine` into the directory `to` with the field `position error`: the distance of the surface from the snapshot of `coarse`
-/// at the same time, times `factor`. If `coarse` has no snapshot at this time, the snapshot in `to` is not changed.
-void write_position_errors(const std::filesystem::path& fine, const std::filesystem::path& coarse, const std::filesystem::path& to, double factor);
+/// Writes the snapshots of the finest level into the directory `to` with the field `position error`: the distance of the surface from that of the
+/// level before at the same time, times E_n/(E_(n-1) - E_n) as in (9.1). A snapshot in `to` is not changed if one of the two levels before has no
+/// snapshot at this time, or if the largest distances between the three levels do not fall as an estimate requires. `levels`: directories of the last
+/// three levels, coarse to fine. `expected`: their expected errors E.
+void write_position_errors(const std::array<std::filesystem::path, 3>& levels, const std::vector<double>& expected, const std::filesystem::path& to);
 
 }  // namespace tanktread::accuracy

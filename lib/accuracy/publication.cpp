@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iomanip>
+#include <span>
 #include <sstream>
 
 #include "accuracy/position.hpp"
@@ -123,9 +124,10 @@ std::string publish(const LadderRequest& task, const std::vector<Outcome>& level
   output::start_results(task.directory);
   link_files(finest.directory, task.directory);
   if (levels.size() > 2 && !is_branch(finest.record) && obstacle(levels).empty()) {
-    const Outcome& before = levels[levels.size() - 2];
-    const double fine = expected_error(finest.level), coarse = expected_error(before.level);
-    write_position_errors(finest.directory, before.directory, task.directory, fine / (coarse - fine));
+    const std::span<const Outcome> last = std::span(levels).last(3);
+    std::vector<double> expected;
+    for (const Outcome& one : last) expected.push_back(expected_error(one.level));
+    write_position_errors({last[0].directory, last[1].directory, last[2].directory}, expected, task.directory);
   }
   output::RunRecord record = finest.record;
   deck::SeriesTable table;

@@ -103,7 +103,10 @@ bool has_error(const std::string& series) {
 void check_series(const std::vector<Request>& requests, const std::vector<std::string>& names) {
   std::vector<std::string> allowed;
   std::ranges::copy_if(names, std::back_inserter(allowed), has_error);
+  const bool branch = std::ranges::find(names, "fold") != names.end();
   for (const Request& request : requests) {
+    if (branch && request.of == Of::mean)
+      throw UserError("Accuracy/requests: " + request.text() + " is an average over time, which a branch of steady shapes does not have.");
     if (std::ranges::find(allowed, request.series) != allowed.end()) continue;
     if (std::ranges::find(names, request.series) != names.end())
       throw UserError("Accuracy/requests: the series " + request.series +

@@ -76,6 +76,9 @@ class ParticleSystem {
 /// Builds the system for the particles of the scene: a coupled system, or a free rigid body.
 std::unique_ptr<ParticleSystem> make_particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
+/// Builds the particles of the scene at their start, and discards them. Throws UserError if they cannot start there. Collective.
+void check_start(const Scene& scene);
+
 /// Builds a coupled system of particles.
 std::unique_ptr<ParticleSystem> make_coupled_particles(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 /// Builds a system that consists of one free rigid body.

@@ -57,8 +57,8 @@ double stiffness(const ParticleScene& particle_scene, double h) {
 StepFindings::StepFindings(const ParticleScene& particle_scene, const Columns& row, const surface::Quality& quality, int n_elements)
     : time(row.value("time")),
       step(row.value("time_step")),
-      smallest_tension(row.smallest("smallest_tension")),
-      compressed_area(row.largest("compressed_area")),
+      smallest_tension(row.of_particles("smallest_tension")),
+      compressed_area(row.of_particles("compressed_area")),
       volume_error(std::max(row.largest("volume_error"), -row.smallest("volume_error"))),
       jacobian_ratio(quality.jacobian_ratio),
       aspect_ratio(quality.aspect_ratio) {
@@ -81,6 +81,10 @@ std::vector<Warning> first_warnings(const Scene& scene) {
     found.push_back(
         {"snapshots", formatted("Time/fixed step %g is longer than Output/interval %g: each step has at most one snapshot", step, interval)});
   return found;
+}
+
+Warnings::Warnings(const Scene& scene) : deforming_(scene.particle_scenes()), scene_(scene.first_deforming()) {
+  std::erase_if(deforming_, [](const ParticleScene& one) { return one.particle.rigid(); });
 }
 
 bool Warnings::fresh(const Warning& warning) {
@@ -121,20 +125,28 @@ std::string Warnings::choice() const {
 
 /// Returns a warning when waves on a compressed membrane have grown. On a flat membrane under the tension -T with bending modulus B, waves of wave
 /// number k grow at the rate (T k - B k^3)/(4 mu), fastest at k = sqrt(T/(3 B)). On capsules they grow at six tenths of this rate. The rate of the
-/// flow is subtracted from the growth rate, because the flow carries waves out of the compressed region.
+/// flow is subtracted from the growth rate, because the flow carries waves out of the compressed region. Of several membranes, the one with the
+/// fastest growth counts.
 std::string Warnings::compression(const StepFindings& signs) {
-  if (!scene_.elastic()) return {};
-  const double tension = std::max(0.0, -signs.smallest_tension) * scene_.modulus(), mesh = wave_number(signs.element);
-  const double bending = scene_.bending_modulus();
-  const double fastest = bending > 0 ? std::sqrt(tension / (3 * bending)) : mesh, k = std::min(fastest, mesh);
-  const bool resolved = fastest < mesh / 2;  // the warning is about waves that the mesh does not resolve; resolved waves are physical
-  const double growth = resolved ? 0 : 0.6 * (tension * k - bending * k * k * k) / (4 * mean_viscosity(scene_));
-  memory_.waves = std::max(0.0, memory_.waves + (growth - scene_.rate()) * signs.step);
+  const double mesh = wave_number(signs.element);
+  double fastest_growth = 0;
+  std::optional<std::size_t> worst;  // index of the particle with the fastest growth
+  for (std::size_t p = 0; p < std::min(deforming_.size(), signs.smallest_tension.size()); ++p) {
+    const ParticleScene& one = deforming_[p];
+    if (!one.elastic()) continue;
+    const double tension = std::max(0.0, -signs.smallest_tension[p]) * one.modulus(), bending = one.bending_modulus();
+    const double fastest = bending > 0 ? std::sqrt(tension / (3 * bending)) : mesh, k = std::min(fastest, mesh);
+    const bool resolved = fastest < mesh / 2;  // the warning is about waves that the mesh does not resolve; resolved waves are physical
+    const double growth = (resolved ? 0 : 0.6 * (tension * k - bending * k * k * k) / (4 * mean_viscosity(one))) - one.rate();
+    if (!worst || growth > fastest_growth) fastest_growth = growth, worst = p;
+  }
+  if (!worst) return {};
+  memory_.waves = std::max(0.0, memory_.waves + fastest_growth * signs.step);
   if (memory_.waves < grown) return {};
-  const char* resistance = bending > 0 ? "too little resistance to bending for its mesh" : "no resistance to bending";
-  return formatted(
-      "%.0f %% of the membrane is compressed (to %.2g G_s) with %s: %s; set Membrane/bending modulus%s or Membrane/pre-inflation",
-      100 * signs.compressed_area, signs.smallest_tension, resistance, accuracy::wrinkles, bending > 0 ? " higher" : "");
+  const bool bends = deforming_[*worst].bending_modulus() > 0;
+  return formatted("%.0f %% of the membrane is compressed (to %.2g G_s) with %s: %s; set Membrane/bending modulus%s or Membrane/pre-inflation",
+                   100 * signs.compressed_area.at(*worst), signs.smallest_tension[*worst],
+                   bends ? "too little resistance to bending for its mesh" : "no resistance to bending", accuracy::wrinkles, bends ? " higher" : "");
 }
 
 std::string Warnings::stiffness(const StepFindings& signs) {

@@ -17,7 +17,7 @@ namespace tanktread {
 /// Data of a finished step from which warnings are derived. Lengths and times are in the deck's units.
 struct StepFindings {
   double time = 0, step = 0;
-  double smallest_tension = 0, compressed_area = 0;  ///< values of the columns `smallest_tension` and `compressed_area`
+  std::vector<double> smallest_tension, compressed_area;  ///< columns of the same names, one value per deforming particle, in the order of the deck
   double volume_error = 0;
   double jacobian_ratio = 1, aspect_ratio = 1;  ///< surface::Quality
   double element = 1;                           ///< mean element size: the square root of (area divided by number of elements)
@@ -41,12 +41,14 @@ class Warnings {
  public:
   /// Data with which a resumed run continues.
   struct Memory {
-    double waves = 0;            ///< estimated growth of unresolved waves on the compressed membrane so far: logarithm of their amplitude ratio
+    /// estimated growth of unresolved waves on compressed membranes so far: logarithm of their amplitude ratio, summed over the steps for the membrane
+    /// on which they grow fastest in each step
+    double waves = 0;
     int limited = 0;             ///< number of consecutive steps, up to the latest, whose size was limited by stability
     std::vector<Warning> shown;  ///< warnings shown so far
   };
 
-  explicit Warnings(const ParticleScene& particle_scene) : scene_(particle_scene) {}
+  explicit Warnings(const Scene& scene);
 
   /// Returns true if no warning of this kind was shown before, and records it as shown.
   bool fresh(const Warning& warning);
@@ -66,7 +68,8 @@ class Warnings {
   std::string gap(const StepFindings& signs) const;
   std::string volume(const StepFindings& signs) const;
 
-  const ParticleScene& scene_;
+  std::vector<ParticleScene> deforming_;  // the particles that deform, in the order of the deck
+  ParticleScene scene_;                   // the first of them; the first particle if all are rigid
   Memory memory_;
 };
 

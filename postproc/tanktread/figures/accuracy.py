@@ -16,7 +16,7 @@ from ..runs import Study, deck_at, settings_of
 from . import style
 from .register import figure
 
-PARTS = {"mesh": ("Surface/", "Particles/", "Adaptation/", "Tube/", "Channel/"),
+PARTS = {"mesh": ("Surface/", "Particles/", "Adaptation/", "Tube/", "Channel/", "Wall/"),
          "time": ("Time/", "Steady/", "Periodic/"), "quadrature": ("Quadrature/", "Solvers/")}
 COSTS = {"n_control_points": "control points", "wall_seconds": "wall time / s", "evaluations": "velocity evaluations"}
 SAMPLES = 400  # number of centroid positions at which extents are drawn
@@ -52,9 +52,12 @@ def values(run, request):
 
 def largest(one, other):
     """Returns the largest difference of two series (times, values) at their common times. If these are fewer than five
-    and fewer than the rows of the shorter series, interpolates one series at the times of the other."""
+    and fewer than the rows of the shorter series, or if the values there cover less than half of the range of the
+    first series, interpolates one series at the times of the other."""
     _, mine, theirs = numpy.intersect1d(one[0].round(9), other[0].round(9), return_indices=True)
-    if len(mine) >= min(5, len(one[0]), len(other[0])):
+    known = [values[~numpy.isnan(values)] for values in (one[1][mine], one[1])]
+    covers = len(known[0]) > 0 and numpy.ptp(known[0]) >= numpy.ptp(known[1]) / 2
+    if len(mine) >= min(5, len(one[0]), len(other[0])) and covers:
         return float(numpy.nanmax(abs(one[1][mine] - other[1][theirs])))
     return difference(*one, *other)
 

@@ -4,7 +4,7 @@ import numpy
 
 from ..files import table
 from ..interpolation import interpolated
-from ..mistakes import expect
+from ..mistakes import expect, log
 from . import silhouette
 from .common import keys_of, number, only, optional, positive
 
@@ -165,6 +165,10 @@ class SeriesData(Datum):
                f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
         # the largest estimated error; for a ratio, the errors of both series combined; 0 if it is unknown
         if self.discretisation is None:
+            for name in self.series:
+                if name in run.untrusted:
+                    log.info(f"{self.name}: the standard errors do not contain the discretisation error of {name}, "
+                             f"which is unknown: {run.untrusted[name]}")
             sizes = [numpy.nanmax(abs(run.series[name])) for name in self.series]
             errors = [numpy.nanmax(run.errors[name]) if run.band(name) is not None else 0 for name in self.series]
             self.discretisation = (errors[0] if len(self.series) == 1 else

@@ -102,10 +102,11 @@ def columns_of(text, path):
 
 
 def recorded(outcome, columns):
-    """Returns {column: value} for a run; {} if the run was not completed. For whole series (`take: all`), the value is
-    an array, and `time` is added. A column with one value has a second column `<column> error` if an accuracy was
-    requested. If a series has no value at the time `at`, the value is NaN and a `message` is added."""
-    if not outcome.done:
+    """Returns {column: value} for a run; {} if neither the run nor a level of its accuracy was completed. For whole
+    series (`take: all`), the value is an array, and `time` is added. A column with one value has a second column
+    `<column> error` if an accuracy was requested. If a series has no value at the time `at`, the value is NaN and a
+    `message` is added."""
+    if not outcome.done and not outcome.accurate:
         return {}
     row, time = {}, outcome.series["time"]
     for name, (series, take, at) in columns.items():

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -90,6 +91,18 @@ TEST(Difference, InterpolatesIfThereAreTooFewSuchTimes) {
   const Curve found = difference(a, b);
   ASSERT_EQ(found.at.size(), 11u);
   for (const double value : found.values) EXPECT_NEAR(value, 0.1, 1e-12);  // cubics are exact
+}
+
+TEST(Difference, InterpolatesIfTheCommonTimesMissTheValues) {
+  Curve a, b;  // the common times are those at which the oscillation passes through zero
+  for (int k = 0; k <= 200; ++k) a.at.push_back(k / 20.), a.values.push_back(std::sin(std::numbers::pi * k / 20.));
+  for (int k = 0; k <= 300; ++k) b.at.push_back(k / 30. + (k % 30 == 0 ? 0 : 1e-3)), b.values.push_back(1.1 * std::sin(std::numbers::pi * b.at.back()));
+  EXPECT_NEAR(largest(difference(a, b).values), 0.1, 1e-3);  // error of the interpolation: (pi/30)^4/60
+}
+
+TEST(Difference, OfAnglesIsAtMostHalfAPeriod) {
+  const Curve a{{0, 1, 2}, {80, 89.9, -80}}, b{{0, 1, 2}, {80.1, -89.9, -79.8}};
+  EXPECT_NEAR(largest(difference(a, b, 180).values), 0.2, 1e-12);
 }
 
 TEST(Difference, IsNanIfACurveIsNan) {

@@ -56,9 +56,28 @@ TEST(Levels, KeepTheRatiosOfSeveralMeshes) {
   const Values deck{{"Particles/a/Surface/mesh", "cube"},       {"Particles/a/Surface/elements per side", "12"},
                     {"Particles/b/Surface/mesh", "cube"},       {"Particles/b/Surface/elements per side", "6"},
                     {"Quadrature/rule", "adaptive"}};
-  EXPECT_TRUE(sets(deck, {4, 4, 4}, "Particles/a/Surface/elements per side=9"));
-  EXPECT_TRUE(sets(deck, {4, 4, 4}, "Particles/b/Surface/elements per side=5"));
+  EXPECT_TRUE(sets(deck, {4, 4, 4}, "Particles/a/Surface/elements per side=18"));
+  EXPECT_TRUE(sets(deck, {4, 4, 4}, "Particles/b/Surface/elements per side=9"));
   EXPECT_TRUE(sets(deck, {0, 0, 0}, "Particles/b/Surface/elements per side=3"));
+}
+
+TEST(Levels, RefineEveryMeshFromEachLevelToTheNext) {
+  Values deck{{"Quadrature/rule", "adaptive"}};
+  const std::vector<std::string> keys{"Particles/a/Surface/elements per side", "Particles/b/Surface/elements per side", "Tube/azimuthal elements",
+                                      "Tube/axial elements", "Wall/elements per period", "Particles/post/Surface/axial elements"};
+  for (const std::string& key : keys) deck[key] = "4";
+  deck["Particles/a/Surface/elements per side"] = "12", deck["Tube/azimuthal elements"] = deck["Tube/axial elements"] = "8";
+  deck["Particles/post/shape"] = "cylinder";
+  std::map<std::string, double> before;
+  for (int k = 0; k < 6; ++k)
+    for (const std::string& one : settings(deck, {k, k, k}))
+      for (const std::string& key : keys)
+        if (one.starts_with(key + "=")) {
+          const double value = std::stod(one.substr(key.size() + 1));
+          EXPECT_GT(value, before[key]) << one << " at level " << k;
+          before[key] = value;
+        }
+  EXPECT_EQ(before.size(), keys.size());
 }
 
 TEST(Levels, RefinePolarMeshes) {

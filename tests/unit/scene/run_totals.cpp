@@ -45,7 +45,7 @@ TEST(RunTotals, OfAnotherVersionIsMissing) {
 std::vector<std::string> look(Warnings& warnings) {
   StepFindings signs;
   signs.step = 0.1;
-  signs.smallest_tension = -0.2;
+  signs.smallest_tension = {-0.2}, signs.compressed_area = {0.5};
   signs.element = 0.1;
   return warnings.sentences(signs);
 }
@@ -54,16 +54,15 @@ TEST(RunTotals, WarningsContinueAfterResumption) {
   Scene scene;
   deck::Document deck = deck::read({}, {"Membrane/capillary number=0.1"});
   deck.declare(scene);
-  const ParticleScene only = scene.first();
-  Warnings whole(only);
+  Warnings whole(scene);
   int steps = 0;
   while (whole.memory().shown.empty() && steps < 100) look(whole), ++steps;
   ASSERT_GT(steps, 3);
-  Warnings first(only), second(only);
+  Warnings first(scene), second(scene);
   for (int k = 1; k < steps; ++k) EXPECT_TRUE(look(first).empty());
   second.remember(first.memory());
   EXPECT_EQ(look(second).size(), 1u);
-  Warnings third(only);
+  Warnings third(scene);
   third.remember(second.memory());
   for (int k = 0; k < steps; ++k) EXPECT_TRUE(look(third).empty());  // the warning was shown already
 }

@@ -1,5 +1,7 @@
 #include "scene/particles/warnings.hpp"
 
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
@@ -10,16 +12,15 @@ namespace {
 
 struct Told {
   Scene whole;
-  ParticleScene scene;
-  Warnings warnings{scene};
+  std::optional<Warnings> of_run;
   explicit Told(const std::vector<std::string>& settings) {
     deck::Document deck = deck::read({}, settings, "Tanktread: {Time: {final time: 1}}\n");
     deck.declare(whole);
     whole.check();
-    scene = whole.first();
+    of_run.emplace(whole);
   }
   std::string first(const StepFindings& signs) {
-    const auto sentences = warnings.sentences(signs);
+    const auto sentences = of_run->sentences(signs);
     return sentences.empty() ? std::string() : sentences.front();
   }
 };
@@ -30,8 +31,8 @@ StepFindings at(double step, double tension, double element = 0.13) {
   StepFindings signs;
   signs.time = 1;
   signs.step = step;
-  signs.smallest_tension = tension;
-  signs.compressed_area = tension < 0 ? 0.5 : 0;
+  signs.smallest_tension = {tension};
+  signs.compressed_area = {tension < 0 ? 0.5 : 0};
   signs.element = element;
   return signs;
 }
@@ -61,11 +62,11 @@ TEST(Warnings, ReportCompressionWithoutBendingOnce) {
   Told run({"Membrane/capillary number=0.1"});
   for (int k = 0; k < 10; ++k) EXPECT_EQ(run.first(at(0.1, -0.13)), "");  // the waves need time to grow
   for (int k = 0; k < 10; ++k) run.first(at(0.1, -0.13));
-  ASSERT_EQ(run.warnings.memory().shown.size(), 1u);
-  const std::string sentence = run.warnings.memory().shown.front().sentence;
+  ASSERT_EQ(run.of_run->memory().shown.size(), 1u);
+  const std::string sentence = run.of_run->memory().shown.front().sentence;
   EXPECT_TRUE(names(sentence, "Membrane/bending modulus") && names(sentence, "at time 1 ")) << sentence;
   for (int k = 0; k < 50; ++k) EXPECT_EQ(run.first(at(0.1, -0.14)), "");
-  EXPECT_EQ(run.warnings.memory().shown.size(), 1u);
+  EXPECT_EQ(run.of_run->memory().shown.size(), 1u);
 }
 
 TEST(Warnings, ReportCompressionOnlyIfTheMeshAndNotBendingDeterminesTheWavelength) {
@@ -73,7 +74,17 @@ TEST(Warnings, ReportCompressionOnlyIfTheMeshAndNotBendingDeterminesTheWavelengt
   for (int k = 0; k < 50; ++k) EXPECT_EQ(stiff.first(at(0.1, -0.13)), "");  // the fastest wave has k = 4.7, and the mesh resolves k = 24
   Told soft({"Membrane/capillary number=0.1", "Membrane/bending modulus=1e-5"});
   for (int k = 0; k < 50; ++k) soft.first(at(0.1, -0.13));
-  EXPECT_TRUE(names(soft.warnings.memory().shown.at(0).sentence, "too little resistance"));
+  EXPECT_TRUE(names(soft.of_run->memory().shown.at(0).sentence, "too little resistance"));
+}
+
+TEST(Warnings, ReportCompressionOfAnyOfSeveralParticles) {
+  Told run({"Particles/drop/Membrane/law=surface tension", "Particles/stiff/Membrane/bending modulus=0.02", "Particles/stiff/center=[4, 0, 0]",
+            "Particles/soft/Membrane/capillary number=0.1", "Particles/soft/center=[-4, 0, 0]"});
+  StepFindings signs = at(0.1, 0);
+  signs.smallest_tension = {0.9, -0.001, -0.13}, signs.compressed_area = {0, 0.1, 0.4};
+  for (int k = 0; k < 20; ++k) run.first(signs);
+  ASSERT_EQ(run.of_run->memory().shown.size(), 1u);
+  EXPECT_TRUE(names(run.of_run->memory().shown.front().sentence, "40 % of the membrane"));
 }
 
 TEST(Warnings, ReportAFixedStepBeyondTheStabilityLimit) {
