@@ -54,8 +54,8 @@ std::optional<std::string> ladder_deck(const std::filesystem::path& directory);
 /// Runs a deck on finer and finer levels until all requests are met (lib/README.md, Accuracy on request). Level k runs in the folder `level_<k>` of
 /// the directory. The results of the finest finished level become the results in the directory itself, with `/error/<series>` in `run.h5` and a
 /// section `accuracy` in `summary.yaml`. If the task resumes, finished levels are kept and an unfinished level is resumed. Returns a Code. Throws
-/// UserError if the directory already contains results and the task neither resumes nor overwrites them, and, before any results are deleted, if level
-/// 0 cannot start. Throws RunFailure if no level is completed.
+/// UserError if the directory already contains results and the task neither resumes nor overwrites them, and if level 0 cannot start (then before any
+/// results are deleted). Throws RunFailure if no level is completed.
 /// Collective.
 int climb(const LadderRequest& task, const Program& program);
 

@@ -32,8 +32,8 @@ Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell);
 /// Moves the cylinders from the particles of a scene to its posts. Throws UserError if a cylinder has keys that only particles have.
 void take_posts(Scene& scene);
 
-/// Throws UserError if a post does not fit into the cell, touches a wall or touches another post. If there are no posts, throws UserError if the scene
-/// has a pressure gradient but neither posts nor two walls, so that nothing resists the flow.
+/// Throws UserError if a post does not fit into the cell, or if it touches a wall or another post. If there are no posts, throws UserError if the
+/// scene has a pressure gradient but neither posts nor two walls, so that nothing resists the flow.
 void check_posts(const SharedOptions& shared);
 
 /// Adds to `to` the combinations of choices that are not allowed with posts.

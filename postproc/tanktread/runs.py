@@ -155,7 +155,7 @@ class Outcome:
         self.limit = note.get("limit", 0) if self.code is None else math.inf
 
     done = property(lambda self: self.code in (0, 1) and (self.directory / "summary.yaml").exists())
-    # true for a run with a requested accuracy that has stopped before it is reached, but has results of a finished level
+    # true for a run with a requested accuracy that has stopped before, but has results of a finished level
     accurate = property(lambda self: self.code == 4 and (self.directory / "summary.yaml").exists()
                         and "accuracy" in self.run.summary)
     failed = property(lambda self: self.status == "failed")

@@ -41,8 +41,8 @@ class Warnings {
  public:
   /// Data with which a resumed run continues.
   struct Memory {
-    /// estimated growth of unresolved waves on compressed membranes so far: logarithm of their amplitude ratio, summed over the steps for the membrane
-    /// on which they grow fastest in each step
+    /// estimated growth of unresolved waves on compressed membranes so far: logarithm of their amplitude ratio. In each step, the membrane on which
+    /// they grow fastest counts
     double waves = 0;
     int limited = 0;             ///< number of consecutive steps, up to the latest, whose size was limited by stability
     std::vector<Warning> shown;  ///< warnings shown so far

@@ -96,7 +96,8 @@ TEST(Difference, InterpolatesIfThereAreTooFewSuchTimes) {
 TEST(Difference, InterpolatesIfTheCommonTimesMissTheValues) {
   Curve a, b;  // the common times are those at which the oscillation passes through zero
   for (int k = 0; k <= 200; ++k) a.at.push_back(k / 20.), a.values.push_back(std::sin(std::numbers::pi * k / 20.));
-  for (int k = 0; k <= 300; ++k) b.at.push_back(k / 30. + (k % 30 == 0 ? 0 : 1e-3)), b.values.push_back(1.1 * std::sin(std::numbers::pi * b.at.back()));
+  for (int k = 0; k <= 300; ++k) b.at.push_back(k / 30. + (k % 30 == 0 ? 0 : 1e-3));
+  for (const double at : b.at) b.values.push_back(1.1 * std::sin(std::numbers::pi * at));
   EXPECT_NEAR(largest(difference(a, b).values), 0.1, 1e-3);  // error of the interpolation: (pi/30)^4/60
 }
 
