@@ -11,10 +11,10 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   StationaryRun run(scene, request, "Particle/shape `cylinder`");
   run.show(plan(scene, run.ranks.size()));
   const coupling::SolidScene around = *make_solids(scene, run.phases);
-  coupling::Solids& all = *around.solids;
+  coupling::PlatesAndPosts& all = *around.solids;
   run.end_set_up();
   const stokes::AmbientFlow ambient(scene.flow);
-  const coupling::Solids::Flow flow = coupling::without_particles(around, ambient);
+  const coupling::PlatesAndPosts::Flow flow = coupling::without_particles(around, ambient);
   const Vec3 velocity_integral = coupling::solids_flow_integral(around, flow);
   RunRow row{.progress = {.wall_seconds = run.seconds()}};
   row.solids = solids_row(scene, around, ambient, flow, Vec3::Zero(), velocity_integral);

@@ -21,7 +21,7 @@ namespace tanktread {
 
 namespace {
 
-using coupling::Solids;
+using coupling::PlatesAndPosts;
 
 int elements_along(const Post& post, const Vec3& period) {
   return post.along.value_or(std::max(4, static_cast<int>(std::ceil(period.norm() * post.around / (2 * std::numbers::pi * post.radius)))));
@@ -30,8 +30,8 @@ int elements_along(const Post& post, const Vec3& period) {
 Vec3 lattice_vector(const stokes::PeriodicCell& cell, int d) { return cell.vectors().col(d); }
 
 /// Returns the plates. Each plate moves at the velocity of the ambient flow on it, because the ambient flow satisfies no-slip on the plates.
-std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell& cell, const stokes::AmbientFlow& flow) {
-  std::vector<Solids::Solid> all;
+std::vector<PlatesAndPosts::Solid> plates(const Scene& scene, const stokes::PeriodicCell& cell, const stokes::AmbientFlow& flow) {
+  std::vector<PlatesAndPosts::Solid> all;
   for (const stokes::PlaneWall& wall : scene.wall.planes()) {
     const Vec3 middle = wall.normal().dot(wall.point()) * wall.normal();
     const std::array<int, 2> elements = scene.wall.elements(cell, scene.least_radius());
@@ -87,14 +87,15 @@ std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phas
   if (!scene.wall.solid && scene.posts.empty()) return {};
   const stokes::PeriodicCell cell = *scene.domain.cell();
   const stokes::AmbientFlow flow(scene.flow);
-  std::vector<Solids::Solid> all = plates(scene, cell, flow);
+  std::vector<PlatesAndPosts::Solid> all = plates(scene, cell, flow);
   // Between plates, the pressure gradient is part of the ambient flow: it is mu times the Laplacian of the ambient velocity (2.20).
   const Vec3 pressure_gradient = scene.wall.solid ? Vec3(2 * scene.flow.viscosity * flow.curvature().trace() * flow.quadratic_direction())
                                                   : scene.flow.pressure_gradient.value_or(Vec3::Zero());
   for (const Post& post : scene.posts) all.push_back({surface_of(post, cell), Vec3::Zero(), outside_of(post, cell)});
-  const Solids::Parameters parameters{cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature};
+  const PlatesAndPosts::Parameters parameters{cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature};
   return coupling::SolidScene{
-      scene.walls->solids.of([&](const Solids& one) { return one.is_for(all, parameters); }, [&] { return new Solids(all, parameters, phases); }),
+      scene.walls->solids.of([&](const PlatesAndPosts& one) { return one.is_for(all, parameters); },
+                             [&] { return new PlatesAndPosts(all, parameters, phases); }),
       scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(), pressure_gradient, scene.quadrature};
 }
 
@@ -168,9 +169,9 @@ void SolidsRow::add_columns(const SharedOptions& shared, Columns& to) const {
          both});
 }
 
-SolidsRow solids_row(const SharedOptions& shared, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient, const Solids::Flow& flow,
-                     const Vec3& particle_force, const Vec3& velocity_integral) {
-  const Solids& solids = *of.solids;
+SolidsRow solids_row(const SharedOptions& shared, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient,
+                     const PlatesAndPosts::Flow& flow, const Vec3& particle_force, const Vec3& velocity_integral) {
+  const PlatesAndPosts& solids = *of.solids;
   const Vec3 gradient = ambient.change() * shared.flow.pressure_gradient.value_or(Vec3::Zero());
   std::vector<Vec3> forces = solids.forces(flow.force);
   SolidsRow row;

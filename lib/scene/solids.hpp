@@ -36,6 +36,6 @@ struct SolidsRow {
 /// the fluid. `velocity_integral`: see SolidResponse::flow_integral; used only
 /// if there are two plates.
 SolidsRow solids_row(const SharedOptions& shared, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient,
-                     const coupling::Solids::Flow& flow, const Vec3& particle_force, const Vec3& velocity_integral);
+                     const coupling::PlatesAndPosts::Flow& flow, const Vec3& particle_force, const Vec3& velocity_integral);
 
 }  // namespace tanktread

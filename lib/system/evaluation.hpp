@@ -44,7 +44,7 @@ class Evaluation {
   /// the velocity that solids and particles add to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_integral`: the parts of
   /// `flow` and `velocity_integral` that are due to the particles.
   struct SolidFlow {
-    Solids::Flow flow, caused;
+    PlatesAndPosts::Flow flow, caused;
     Vec3 velocity_integral = Vec3::Zero(), caused_integral = Vec3::Zero();
   };
   SolidFlow solid_flow();  ///< returns the flow caused by the solids; also sets the solids to this shape

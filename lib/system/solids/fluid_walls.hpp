@@ -34,7 +34,7 @@ struct FluidWalls {
   /// Responses of the boundaries that exist.
   struct Response {
     Tube::Response tube;
-    Solids::Flow solids;
+    PlatesAndPosts::Flow solids;
   };
 
   /// Returns the responses to the load f and the velocity v of the particles; an empty v counts as zero. `with_empty`: whether the flow that solids

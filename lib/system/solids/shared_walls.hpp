@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "system/solids/ducts/wall.hpp"
-#include "system/solids/plates/solids.hpp"
+#include "system/solids/plates/plates_and_posts.hpp"
 
 namespace tanktread::coupling {
 
@@ -46,7 +46,7 @@ class Shared {
 /// wall, which is then assembled and factored only once. Counts the kernel evaluations of each wall once.
 struct SharedWalls {
   Shared<Wall> ducts;
-  Shared<Solids> solids;
+  Shared<PlatesAndPosts> solids;
 
   stokes::Evaluations evaluations() const { return ducts.evaluations() + solids.evaluations(); }
 };

@@ -1,6 +1,6 @@
 // Tests of plates and posts in a lattice without particles: exact solutions, and the balance of forces.
 
-#include "system/solids/plates/solids.hpp"
+#include "system/solids/plates/plates_and_posts.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -17,7 +17,7 @@ const stokes::PeriodicCell& slab() {
   return cell;
 }
 
-std::vector<Solids::Solid> plates(double distance, const Vec3& lower, const Vec3& upper) {
+std::vector<PlatesAndPosts::Solid> plates(double distance, const Vec3& lower, const Vec3& upper) {
   const Vec3 first = slab().vectors().col(0), second = slab().vectors().col(1);
   return {{surface::plate(Vec3::Zero(), first, second, {4, 4}), lower}, {surface::plate(distance * Vec3::UnitZ(), first, second, {4, 4}), upper}};
 }
@@ -31,12 +31,12 @@ quadrature::Options fine() {
 }
 
 /// The sheets of force f1, f2 move the fluid by -(|z - z1| f1 + |z - z2| f2)/(2 mu), which is V1 and V2 on them.
-TEST(Solids, MovingPlatesHaveUniformForces) {
+TEST(PlatesAndPosts, MovingPlatesHaveUniformForces) {
   Phases phases;
   const double mu = 0.7, d = 1.3;
   const Vec3 lower(0.3, -0.2, 0), upper(-1, 0.5, 0);
-  Solids solids(plates(d, lower, upper), {slab(), {}, mu, fine()}, phases);
-  const Solids::Flow flow = solids.solve(solids.velocities(), Vec3::Zero());
+  PlatesAndPosts solids(plates(d, lower, upper), {slab(), {}, mu, fine()}, phases);
+  const PlatesAndPosts::Flow flow = solids.solve(solids.velocities(), Vec3::Zero());
   const std::vector<Vec3> forces = solids.forces(flow.force);
   EXPECT_LT((forces[1] + 2 * mu * 3 / d * lower).norm(), 1e-6);
   EXPECT_LT((forces[0] + 2 * mu * 3 / d * upper).norm(), 1e-6);
@@ -49,14 +49,14 @@ TEST(Solids, MovingPlatesHaveUniformForces) {
   for (int i = 0; i < 2; ++i) EXPECT_LT((u.row(i).transpose() - (lower + (upper - lower) * at(i, 2) / d)).norm(), 1e-6);
 }
 
-TEST(Solids, VelocitiesAtAPlateDoNotDependOnEarlierTargets) {
+TEST(PlatesAndPosts, VelocitiesAtAPlateDoNotDependOnEarlierTargets) {
   Phases phases;
-  const std::vector<Solids::Solid> plate{plates(1, Vec3::Zero(), Vec3::Zero()).front()};
+  const std::vector<PlatesAndPosts::Solid> plate{plates(1, Vec3::Zero(), Vec3::Zero()).front()};
   const std::vector<Vec3> along{Vec3::UnitX(), Vec3::UnitY()};
-  Solids fresh(plate, {slab(), along, 1, fine()}, phases), used(plate, {slab(), along, 1, fine()}, phases);
+  PlatesAndPosts fresh(plate, {slab(), along, 1, fine()}, phases), used(plate, {slab(), along, 1, fine()}, phases);
   Net u = Net::Zero(fresh.sites().rows(), 3);
   u.row(5) << 0.3, -0.1, 0.2;
-  const Solids::Flow flow = fresh.solve(u, Vec3(1, 0.5, 0));
+  const PlatesAndPosts::Flow flow = fresh.solve(u, Vec3(1, 0.5, 0));
   const int rows[] = {0};
   for (const double height : {0.5, 2.7}) {  // inside and outside of the initial range of targets; a period has the length 2
     const Net at = Vec3(0.4, 0.1, height).transpose(), far = Vec3(0.4, 0.1, 9).transpose();
@@ -67,11 +67,11 @@ TEST(Solids, VelocitiesAtAPlateDoNotDependOnEarlierTargets) {
   }
 }
 
-TEST(Solids, AreSharedOnlyIfTheyAndTheirVelocitiesAreEqual) {
+TEST(PlatesAndPosts, AreSharedOnlyIfTheyAndTheirVelocitiesAreEqual) {
   Phases phases;
   const Vec3 lower(0.3, -0.2, 0), upper(-1, 0.5, 0);
-  const Solids::Parameters parameters{slab(), {}, 0.7, fine()}, other{slab(), {}, 0.8, fine()};
-  const Solids solids(plates(1.3, lower, upper), parameters, phases);
+  const PlatesAndPosts::Parameters parameters{slab(), {}, 0.7, fine()}, other{slab(), {}, 0.8, fine()};
+  const PlatesAndPosts solids(plates(1.3, lower, upper), parameters, phases);
   EXPECT_TRUE(solids.is_for(plates(1.3, lower, upper), parameters));
   EXPECT_FALSE(solids.is_for(plates(1.3, lower, upper), other));
   EXPECT_FALSE(solids.is_for(plates(1.2, lower, upper), parameters));
@@ -79,29 +79,29 @@ TEST(Solids, AreSharedOnlyIfTheyAndTheirVelocitiesAreEqual) {
   EXPECT_FALSE(solids.is_for({plates(1.3, lower, upper).front()}, parameters));
 }
 
-TEST(Solids, ForcesBalanceThePressureGradient) {
+TEST(PlatesAndPosts, ForcesBalanceThePressureGradient) {
   Phases phases;
   const stokes::PeriodicCell cell(Mat3(Vec3(1, 1.2, 0.8).asDiagonal()), 3);
-  const std::vector<Solids::Solid> post{{surface::cylinder(Vec3(0.1, 0.2, 0), Vec3(0, 0, 0.8), 0.25, 12, 6), Vec3::Zero(), {}}};
-  const auto posts = std::make_shared<Solids>(post, Solids::Parameters{cell, directions(), 2, fine()}, phases);
+  const std::vector<PlatesAndPosts::Solid> post{{surface::cylinder(Vec3(0.1, 0.2, 0), Vec3(0, 0, 0.8), 0.25, 12, 6), Vec3::Zero(), {}}};
+  const auto posts = std::make_shared<PlatesAndPosts>(post, PlatesAndPosts::Parameters{cell, directions(), 2, fine()}, phases);
   const Vec3 gradient(-1, 0.5, 0.3);
   const SolidScene scene{posts, {}, gradient, fine()};
-  const Solids::Flow flow = without_particles(scene, stokes::AmbientFlow());
+  const PlatesAndPosts::Flow flow = without_particles(scene, stokes::AmbientFlow());
   EXPECT_LT((posts->forces(flow.force)[0] - cell.volume() * gradient).norm(), 1e-10);
   EXPECT_GT(flow.drift[0], 0);
   EXPECT_LT(flow.drift[1], 0);
 }
 
 /// Square array, F/(mu U) by the table of Sangani & Acrivos (1982). Their series to the third power of the area fraction errs by 1.5e-2 at 0.2.
-TEST(Solids, PostsInASquareArrayHaveTheKnownForce) {
+TEST(PlatesAndPosts, PostsInASquareArrayHaveTheKnownForce) {
   Phases phases;
   for (const auto& [c, expected] : {std::pair(0.05, 15.56), {0.2, 51.53}, {0.4, 217.89}}) {
     const stokes::PeriodicCell cell(Mat3(Vec3(1, 1, 0.5).asDiagonal()), 3);
     const double radius = std::sqrt(c / std::numbers::pi);
-    const std::vector<Solids::Solid> post{{surface::cylinder(Vec3::Zero(), Vec3(0, 0, 0.5), radius, 20, 4), Vec3::Zero(), {}}};
-    const auto posts = std::make_shared<Solids>(post, Solids::Parameters{cell, directions(), 1, fine()}, phases);
+    const std::vector<PlatesAndPosts::Solid> post{{surface::cylinder(Vec3::Zero(), Vec3(0, 0, 0.5), radius, 20, 4), Vec3::Zero(), {}}};
+    const auto posts = std::make_shared<PlatesAndPosts>(post, PlatesAndPosts::Parameters{cell, directions(), 1, fine()}, phases);
     const SolidScene scene{posts, {}, -Vec3::UnitX(), fine()};
-    const Solids::Flow flow = without_particles(scene, stokes::AmbientFlow());
+    const PlatesAndPosts::Flow flow = without_particles(scene, stokes::AmbientFlow());
     EXPECT_NEAR(1 / flow.drift[0] / expected, 1, 2e-4) << "area fraction " << c;
   }
 }

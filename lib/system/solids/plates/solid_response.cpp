@@ -16,14 +16,14 @@ Vec3 along(const stokes::PlaneWall& wall, const Vec3& v) { return v - wall.norma
 
 }  // namespace
 
-Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow) {
-  const Solids& solids = *scene.solids;
+PlatesAndPosts::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow) {
+  const PlatesAndPosts& solids = *scene.solids;
   Vec3 force = Vec3::Zero();
   if (scene.planes.empty()) force = solids.cell().volume() * flow.change() * scene.driving_gradient;
   return solids.solve(solids.velocities() * flow.change().transpose() - flow.velocities(solids.sites()), force);
 }
 
-Vec3 solids_flow_integral(const SolidScene& scene, const Solids::Flow& flow) {
+Vec3 solids_flow_integral(const SolidScene& scene, const PlatesAndPosts::Flow& flow) {
   if (scene.planes.empty()) return scene.solids->cell().volume() * flow.drift;
   if (scene.planes.size() == 1) return Vec3::Zero();
   const stokes::PlaneWall& wall = scene.planes.front();
@@ -37,7 +37,7 @@ SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space
       particles_(space, scene.solids->viscosity(), scene.quadrature, &scene.solids->cell(), {.target_range = scene.solids->range()}) {}
 
 void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> own) {
-  Solids& solids = *scene_.solids;
+  PlatesAndPosts& solids = *scene_.solids;
   solids.reach(x);  // also for an unchanged x, because another system that shares the solids may have changed their range
   if (same(shape_, x) && same(at_, at) && std::ranges::equal(own, own_)) return;
   shape_ = {}, at_ = at;  // no shape is set if one of the next calls throws
@@ -49,14 +49,14 @@ void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> 
   shape_ = x;
 }
 
-const Solids::Flow& SolidResponse::empty() {
+const PlatesAndPosts::Flow& SolidResponse::empty() {
   if (!empty_ || change_ != flow_.change()) empty_ = without_particles(scene_, flow_), change_ = flow_.change();
   return *empty_;
 }
 
-Solids::Flow SolidResponse::respond(const Net& f, const Net& v) {
+PlatesAndPosts::Flow SolidResponse::respond(const Net& f, const Net& v) {
   assert(shape_.rows() > 0);  // set_shape() has been called
-  const Solids& solids = *scene_.solids;
+  const PlatesAndPosts& solids = *scene_.solids;
   Vec3 force = Vec3::Zero();
   if (f.size() > 0) force = f.transpose() * areas_;
   const Net u = solids.ranks().filled(solids.sites().rows(), [&](Net& all) {
@@ -65,9 +65,9 @@ Solids::Flow SolidResponse::respond(const Net& f, const Net& v) {
   return solids.solve(-u, force);
 }
 
-void SolidResponse::velocities(const Solids::Flow& flow, Net& u) { scene_.solids->velocity_at(at_, own_, flow, u, &*solids_on_particles_); }
+void SolidResponse::velocities(const PlatesAndPosts::Flow& flow, Net& u) { scene_.solids->velocity_at(at_, own_, flow, u, &*solids_on_particles_); }
 
-Vec3 SolidResponse::flow_integral(const Solids::Flow& flow, const Net& f, const Net& v) {
+Vec3 SolidResponse::flow_integral(const PlatesAndPosts::Flow& flow, const Net& f, const Net& v) {
   if (scene_.planes.size() != 2) return coupling::solids_flow_integral(scene_, flow);
   const stokes::PlaneWall& wall = scene_.planes.front();
   const Vec3& n = wall.normal();

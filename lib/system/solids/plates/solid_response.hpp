@@ -9,13 +9,13 @@
 #include "stokes/flow/ambient_flow.hpp"
 #include "stokes/medium/plane_wall.hpp"
 #include "system/solids/particle_sources.hpp"
-#include "system/solids/plates/solids.hpp"
+#include "system/solids/plates/plates_and_posts.hpp"
 
 namespace tanktread::coupling {
 
 /// Surroundings of the particles in a lattice with solids.
 struct SolidScene {
-  std::shared_ptr<Solids> solids;
+  std::shared_ptr<PlatesAndPosts> solids;
   std::vector<stokes::PlaneWall> planes;  ///< the plates among the solids, with normals into the fluid
   Vec3 driving_gradient = Vec3::Zero();   ///< gradient of the mean pressure that drives the fluid, at the amplitude 1 of the flow, force/length^3.
                                           ///< Between plates, the ambient velocity v_inf already includes its effect
@@ -23,10 +23,10 @@ struct SolidScene {
 };
 
 /// Returns the solution of (2.46) without particles, in the ambient flow v_inf. Collective.
-Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow);
+PlatesAndPosts::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow);
 
 /// Returns the integral over the cell (2.49) of the velocity due to the solids only. `flow`: solution of (2.46).
-Vec3 solids_flow_integral(const SolidScene& scene, const Solids::Flow& flow);
+Vec3 solids_flow_integral(const SolidScene& scene, const PlatesAndPosts::Flow& flow);
 
 /// Velocity u that solids (with the surface S) add to the ambient flow v_inf and to the layers of the particles (with the surface C):
 ///
@@ -49,16 +49,18 @@ class SolidResponse {
   void set_shape(const Net& x, const Net& at, std::span<const int> own);
 
   /// Returns the solution without particles.
-  const Solids::Flow& empty();
+  const PlatesAndPosts::Flow& empty();
 
   /// Returns the part of the solution of (2.46) due to the load f and the velocity v of the particles. An empty net counts as zero.
-  Solids::Flow respond(const Net& f, const Net& v);
+  PlatesAndPosts::Flow respond(const Net& f, const Net& v);
 
   /// Computes the rows `own` of the velocity u at the points `at`; both were passed to `set_shape`. Not collective.
-  void velocities(const Solids::Flow& flow, Net& u);
+  void velocities(const PlatesAndPosts::Flow& flow, Net& u);
 
   /// Computes rows of the velocity u at any points in the fluid. Not collective.
-  void velocity_at(const Net& at, std::span<const int> rows, const Solids::Flow& flow, Net& u) { scene_.solids->velocity_at(at, rows, flow, u); }
+  void velocity_at(const Net& at, std::span<const int> rows, const PlatesAndPosts::Flow& flow, Net& u) {
+    scene_.solids->velocity_at(at, rows, flow, u);
+  }
 
   /// Returns the integral over the cell of the velocity u due to the flow `flow` of the solids, the load f and the velocity v of the particles. With
   /// three periods the integral is the volume times U (2.46). In front of a single plate it is not defined, and zero is returned. Between two plates
@@ -69,7 +71,7 @@ class SolidResponse {
   /// In this formula, f_i is the force density of the solids (`flow`) and df_i the load of the particles (the argument f). S are the surfaces of the
   /// solids, and C the surfaces of the particles. With z the distance from one plate and phi = z (D - z)/2, a pressure that decreases along e_i with
   /// unit gradient drives the flow phi e_i/mu, which has the stress sigma_i.
-  Vec3 flow_integral(const Solids::Flow& flow, const Net& f, const Net& v);
+  Vec3 flow_integral(const PlatesAndPosts::Flow& flow, const Net& f, const Net& v);
 
   const SolidScene& scene() const { return scene_; }
   stokes::Evaluations evaluations() const { return particles_.evaluations(); }
@@ -83,7 +85,7 @@ class SolidResponse {
   SourceTargets on_solids_;                                 // collocation points of the solids
   std::optional<stokes::Layer::Near> solids_on_particles_;  // corrections of the layer of the solids at the points `at`, by near-singular quadrature
   Eigen::VectorXd areas_;  // integral of each basis function N_A over the area to which loads refer (current or unstressed)
-  std::optional<Solids::Flow> empty_;
+  std::optional<PlatesAndPosts::Flow> empty_;
   Mat3 change_;  // value of AmbientFlow::change() for which empty_, the flow without particles, was computed
 };
 

@@ -30,7 +30,7 @@ namespace tanktread::coupling {
 ///
 /// f is a periodic spline, with one control value per collocation point. If all solids are plates, the operator is inverted by Fourier series
 /// (PlateFactors). Otherwise the matrix is dense. Nets are replicated on all ranks. All calls except queries are collective.
-class Solids {
+class PlatesAndPosts {
  public:
   /// A connected part of the solids, for example one plate. The density equal to the unit normal n on this part and 0 on all other parts is a null
   /// vector of the single layer. `velocity`: prescribed velocity of this part, tangential to its surface.
@@ -50,7 +50,7 @@ class Solids {
   };
 
   /// `solids` need not outlive this object.
-  Solids(const std::vector<Solid>& solids, const Parameters& parameters, Phases& phases);
+  PlatesAndPosts(const std::vector<Solid>& solids, const Parameters& parameters, Phases& phases);
 
   /// Returns whether the constructor would construct the same operator from these arguments.
   bool is_for(const std::vector<Solid>& solids, const Parameters& parameters) const;

@@ -1,4 +1,4 @@
-#include "system/solids/plates/solids.hpp"
+#include "system/solids/plates/plates_and_posts.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -11,15 +11,15 @@ namespace tanktread::coupling {
 
 namespace {
 
-surface::SolidSurface all_of(const std::vector<Solids::Solid>& solids) {
+surface::SolidSurface all_of(const std::vector<PlatesAndPosts::Solid>& solids) {
   std::vector<surface::SolidSurface> surfaces;
-  for (const Solids::Solid& one : solids) surfaces.push_back(one.surface);
+  for (const PlatesAndPosts::Solid& one : solids) surfaces.push_back(one.surface);
   return stacked(surfaces);
 }
 
 }  // namespace
 
-Solids::Solids(const std::vector<Solid>& solids, const Parameters& parameters, Phases& phases)
+PlatesAndPosts::PlatesAndPosts(const std::vector<Solid>& solids, const Parameters& parameters, Phases& phases)
     : surface_(all_of(solids)),
       parameters_(parameters),
       sites_(surface_.n_points(), 3),
@@ -56,7 +56,7 @@ Solids::Solids(const std::vector<Solid>& solids, const Parameters& parameters, P
   evaluations_ += on_itself.evaluations();
 }
 
-bool Solids::is_for(const std::vector<Solid>& solids, const Parameters& parameters) const {
+bool PlatesAndPosts::is_for(const std::vector<Solid>& solids, const Parameters& parameters) const {
   const surface::SolidSurface all = all_of(solids);
   if (!(parameters == parameters_) || !same(all.net, surface_.net) || solids.size() + 1 != first_.size()) return false;
   for (std::size_t s = 0; s < solids.size(); ++s)
@@ -65,7 +65,7 @@ bool Solids::is_for(const std::vector<Solid>& solids, const Parameters& paramete
 }
 
 /// Computes the inverse of the operator by Fourier series. All solids must be plates with the same grid of points.
-void Solids::factor_plates(stokes::Layer& on_itself, const std::array<int, 2>& grid) {
+void PlatesAndPosts::factor_plates(stokes::Layer& on_itself, const std::array<int, 2>& grid) {
   const auto [n1, n2] = grid;
   std::vector<int> middle;  // one point of each plate, far from the plate's edges
   for (std::size_t s = 0; s + 1 < first_.size(); ++s) middle.push_back(first_[s] + n1 / 2 * n2 + n2 / 2);
@@ -78,7 +78,7 @@ void Solids::factor_plates(stokes::Layer& on_itself, const std::array<int, 2>& g
   plates_.emplace(rows(on_itself, middle), grid, std::array{n1 / 2, n2 / 2}, regular);
 }
 
-void Solids::make_layer() {
+void PlatesAndPosts::make_layer() {
   if (layer_) evaluations_ += layer_->evaluations();
   layer_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, stokes::Sites(), parameters_.quadrature);
   layer_->repeat(cell(), {.target_range = reached_});
@@ -87,7 +87,7 @@ void Solids::make_layer() {
 
 /// Sets the range of coordinates for which the layer is accurate, so that it includes x. The range depends only on the current x, so that a resumed
 /// run computes the same velocities. The range grows in steps, so that a moving particle seldom needs a new layer.
-void Solids::reach(const Net& x) {
+void PlatesAndPosts::reach(const Net& x) {
   if (cell().n() == 3) return;
   const auto [low, high] = cell().range(x);
   const double step = (range_[1][2] - range_[0][2]) / 4;
@@ -99,14 +99,14 @@ void Solids::reach(const Net& x) {
   make_layer();
 }
 
-bool Solids::reaches(const Net& at) const {
+bool PlatesAndPosts::reaches(const Net& at) const {
   if (cell().n() == 3 || at.rows() == 0 || !at.allFinite()) return true;
   const auto [low, high] = cell().range(at);
   const double slack = 1e-6 * (reached_[1][2] - reached_[0][2]);  // points of a surface may be outside of the range of its control points
   return low[2] >= reached_[0][2] - slack && high[2] <= reached_[1][2] + slack;
 }
 
-bool Solids::outside(const Net& at) const {
+bool PlatesAndPosts::outside(const Net& at) const {
   for (const auto& outside : outside_)
     for (const auto row : at.rowwise())
       if (!outside(row.transpose())) return false;
@@ -114,7 +114,7 @@ bool Solids::outside(const Net& at) const {
 }
 
 /// Returns the rows of the single-layer matrix for control values of f (2.46) at `sites`, three rows per site.
-Eigen::MatrixXd Solids::rows(stokes::Layer& on_itself, std::span<const int> sites) const {
+Eigen::MatrixXd PlatesAndPosts::rows(stokes::Layer& on_itself, std::span<const int> sites) const {
   stokes::Rows<double> all;
   on_itself.assemble(sites, all);
   Eigen::MatrixXd found(all.rows(), sites_.size());
@@ -127,7 +127,7 @@ Eigen::MatrixXd Solids::rows(stokes::Layer& on_itself, std::span<const int> site
 
 /// Factors the matrix of the equations (2.46) for the force density and the uniform velocity, for unit viscosity, on every rank. If all solids are
 /// plates, factors only the block for densities that are uniform on each plate.
-void Solids::factor(stokes::Layer& on_itself) {
+void PlatesAndPosts::factor(stokes::Layer& on_itself) {
   constexpr std::size_t at_a_time = 240;
   const auto m = static_cast<Eigen::Index>(parameters_.free.size()), solids = static_cast<Eigen::Index>(first_.size()) - 1;
   const Eigen::Index n = plates_ ? 3 * solids : sites_.size();
@@ -157,7 +157,7 @@ void Solids::factor(stokes::Layer& on_itself) {
   factors_ = DenseFactors(all);
 }
 
-Solids::Flow Solids::solve(const Net& u, const Vec3& force) const {
+PlatesAndPosts::Flow PlatesAndPosts::solve(const Net& u, const Vec3& force) const {
   const auto m = static_cast<Eigen::Index>(parameters_.free.size());
   Net given = u, f;
   if (plates_) f = plates_->solve(u, given);
@@ -177,13 +177,13 @@ Solids::Flow Solids::solve(const Net& u, const Vec3& force) const {
   return flow;
 }
 
-void Solids::velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept) {
+void PlatesAndPosts::velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept) {
   assert(reaches(at(rows, Eigen::all)));
   layer_->apply(on_space(flow.force), at, rows, u, kept);
   for (const int i : rows) u.row(i) = u.row(i) / viscosity() + flow.drift.transpose();
 }
 
-Eigen::VectorXd Solids::moments(const std::function<double(const Vec3& x)>& function) const {
+Eigen::VectorXd PlatesAndPosts::moments(const std::function<double(const Vec3& x)>& function) const {
   const BetweenSites between = between_sites(surface_.space, surface_.net);
   const Net at = between.values * surface_.net;
   Eigen::VectorXd values(at.rows());
@@ -191,7 +191,7 @@ Eigen::VectorXd Solids::moments(const std::function<double(const Vec3& x)>& func
   return surface_.open_from_periodic.transpose() * (between.weights * values);
 }
 
-std::vector<Vec3> Solids::forces(const Net& f) const {
+std::vector<Vec3> PlatesAndPosts::forces(const Net& f) const {
   std::vector<Vec3> all;
   for (std::size_t s = 0; s + 1 < first_.size(); ++s) {
     const auto rows = [&](const auto& of) { return of.middleRows(first_[s], first_[s + 1] - first_[s]); };
