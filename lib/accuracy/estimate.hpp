@@ -42,8 +42,8 @@ struct Curve {
 
 /// Returns |a - b| at the abscissas that both curves have, up to 1e-9 of the largest abscissa. In two cases, returns |a - b| at all abscissas of `a`
 /// within the range of `b` instead, where b is interpolated by cubics: if the common abscissas are fewer than 5 although both curves have more
-/// points, or if the values of `a` there cover less than half of the range of all its values. The result is NaN where a or b is NaN. `period`: period of the
-/// values if they are angles, otherwise 0; the difference is then at most half a period.
+/// points, or if the values of `a` there cover less than half of the range of all its values. The result is NaN where a or b is NaN.
+/// `period`: period of the values if they are angles, otherwise 0; the difference is then at most half a period.
 Curve difference(const Curve& a, const Curve& b, double period = 0);
 
 /// Returns the largest value that is not NaN; NaN if there is none.
