@@ -170,6 +170,27 @@ def a_flow_that_varies_in_time_is_refused_for_posts_alone():
     refused(["Flow/history", "`cylinder`"], deck(POST), "--set", "Flow/history/times=[0, 1]", "--set", "Flow/history/amplitudes=[1, 2]")
 
 
+def a_thin_post_must_not_cross_a_particle():
+    text = """
+Tanktread:
+  Flow: {type: quiescent, pressure gradient: [-1.0, 0.0, 0.0]}
+  Domain: {side lengths: [6.0, 6.0, 6.0]}
+  Particles:
+    drop: {center: [6.3, 0.1, 0.0], Membrane: {law: surface tension, surface tension: 1.0}, Surface: {elements per side: 4}}
+    post: {shape: cylinder, axis: x3, radius: 0.05, Surface: {azimuthal elements: 8, axial elements: 8}}
+  Time: {final time: 0.1}
+"""
+    refused(["Particles/drop crosses a post"], deck(text), "--check")
+    run("deck.yaml", "--check", "--set", "Particles/drop/center=[7.06, 0, 0]")
+    refused(["Particles/drop crosses a post"], "deck.yaml", "--check", "--set", "Particles/drop/center=[7.04, 0, 0]")
+
+
+def keys_without_effect_on_posts_alone_are_named():
+    for setting, key in ("Output/power balance=true", "Output/power balance"), ("Solvers/rigid bodies=second kind", "Solvers/rigid bodies"):
+        said = run(deck(POST), "--check", "--set", setting).stderr
+        check(f"{key}" in said and "has no effect" in said, said)
+
+
 def posts_and_particles_balance_the_pressure_gradient():
     text = """
 Tanktread:

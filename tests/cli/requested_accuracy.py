@@ -184,6 +184,30 @@ def an_existing_run_cannot_be_resumed_with_a_request():
     check(sorted(pathlib.Path("plain").iterdir()) == before, "results were deleted")
 
 
+def results_are_kept_if_the_new_scene_cannot_start():
+    deck(DROP.replace("final time: 1.0", "final time: 0.1"))
+    run("deck.yaml", "--accuracy", "taylor_inertia=5%", "--set", "Accuracy/levels=3", "--quiet", "--output", "kept")
+    before = sorted(pathlib.Path("kept").rglob("*"))
+    deck("""Tanktread:
+  Flow: {type: uniaxial extension}
+  Particles:
+    defaults: {Membrane: {law: surface tension, capillary number: 0.05}}
+    one: {center: [0.0, 0.0, 0.0]}
+    other: {center: [1.0, 0.0, 0.0]}
+  Time: {final time: 0.1}
+""")
+    said = run("deck.yaml", "--accuracy", "one/taylor_inertia=5%", "--overwrite", "--quiet", "--output", "kept", code=2).stderr
+    check("overlap" in said, said)
+    check(sorted(pathlib.Path("kept").rglob("*")) == before, "results were deleted")
+
+
+def a_looser_request_keeps_the_finer_levels_of_a_resumed_run():
+    deck(DROP.replace("final time: 1.0", "final time: 0.1"))
+    run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/levels=4", "--quiet", "--output", "kept", code=1)
+    run("--resume", "kept", "--accuracy", "taylor_inertia=10%", "--quiet")
+    check([level["level"] for level in summary("kept")["accuracy"]["levels"]] == [0, 1, 2, 3], summary("kept")["accuracy"]["levels"])
+
+
 def the_wall_clock_limit_is_respected_and_reported():
     deck(DROP)
     result = run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/wall-clock limit=0.6", "--quiet", "--output", "short",
@@ -332,6 +356,19 @@ def the_check_predicts_levels_and_seconds():
     result = run("deck.yaml", "--accuracy", "taylor_inertia=0.1%", "--check")
     check("is predicted to meet it" in result.stdout and "s in all, from a pilot run" in result.stdout, result.stdout[-400:])
     check(not pathlib.Path("results").exists(), "results were written")
+    limited = run("deck.yaml", "--accuracy", "taylor_inertia=1e-6", "--set", "Accuracy/wall-clock limit=3", "--check").stdout
+    check("more than Accuracy/wall-clock limit allows" in limited, limited[-400:])
+
+
+def the_check_predicts_levels_if_the_coarsest_fails():
+    """Level 0 has four times the fixed step of the deck, which is then beyond the limit of stability."""
+    deck("""Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {law: Skalak, capillary number: 0.05, bending number: 0.02}
+  Time: {scheme: bs3, fixed step: 0.015, final time: 0.6}
+""")
+    result = run("deck.yaml", "--accuracy", "taylor_inertia=5%", "--check")
+    check("from a pilot run of the levels 1 and 2" in result.stdout, result.stdout[-400:])
 
 
 def wrinkles_are_reported_instead_of_an_error():
@@ -357,6 +394,7 @@ def wrong_requests_are_rejected():
         refused(words, "deck.yaml", "--accuracy", request)
     refused(["initial shape/run"], "deck.yaml", "--accuracy", "area=1%", "--set", "Particle/initial shape/run=results/other")
     refused(["is missing"], "deck.yaml", "--set", "Accuracy/levels=4")
+    refused(["area@mean", "branch"], deck(BRANCH), "--accuracy", "area@mean=1%")
 
 
 main()
