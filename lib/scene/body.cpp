@@ -180,7 +180,7 @@ Body make_body_of_several(const ParticleScene& particle_scene, const Member* sim
 }
 
 void check_in_medium(const ParticleScene& particle_scene, const Body& body) {
-  if (stokes::contains(particle_scene.medium().get(), coupling::collocation_matrix(body.space) * body.initial)) return;
+  if (stokes::contains(particle_scene.domain.medium.get(), coupling::collocation_matrix(body.space) * body.initial)) return;
   throw UserError((particle_scene.name.empty() ? "The particle" : particle_scene.path()) + " is not inside the fluid of Domain/kind `" +
                   particle_scene.domain.kind + "` at the start.");
 }

@@ -159,7 +159,8 @@ void DomainRow::add_columns(const SharedOptions& shared, Columns& to) const {
           "component # of the contribution of the particles to the mean stress, without its trace (6.9)"});
   to.add(pressure_gradient, "x1 x2 x3",
          {"pressure_gradient_", "force/length^3",
-          "component # of the uniform pressure gradient that balances the force of the particles on the fluid"});
+          "component # of the uniform pressure gradient that balances the force of the particles on the fluid; with posts or walls, the given "
+          "pressure gradient that drives the flow"});
   if (!to.when(has_intrinsic_viscosity(shared))) return;
   to.add(relative_viscosity,
          {"relative_viscosity", "1", "effective viscosity of the suspension divided by the viscosity of the outer fluid (6.10)",

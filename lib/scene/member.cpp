@@ -69,7 +69,6 @@ std::vector<Member> make_members(const Scene& scene) {
   std::vector<Member> all;
   std::vector<ParticleScene> scenes = scene.particle_scenes();
   for (ParticleScene& one : scenes) {
-    one.least_radius = scene.least_radius();
     const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
     Body body = scenes.size() == 1
                     ? make_body(one)

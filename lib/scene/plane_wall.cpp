@@ -29,7 +29,7 @@ WallRow row_of(std::span<const stokes::PlaneWall> walls, const spline::Space& sp
 void check_in_front(const ParticleScene& particle_scene, const Body& body) {
   const WallRow row = row_of(particle_scene.wall.planes(), body.space, body.initial, 1);
   const Vec3& place = row.place;
-  const double gap = row.gap, least = particle_scene.wall.contact_gap * particle_scene.least_radius.value_or(particle_scene.radius());
+  const double gap = row.gap, least = particle_scene.contact_length(particle_scene.wall.contact_gap);
   if (gap >= least) return;
   const std::string name = particle_scene.name.empty() ? "The particle" : particle_scene.path();
   const std::string where = formatted(" at [%.4g, %.4g, %.4g] ", place[0], place[1], place[2]);

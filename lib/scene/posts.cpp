@@ -29,6 +29,8 @@ void check_keys(const ParticleKind& kind, const Post& post) {
   refuse_key("torque", particle.torque.has_value());
   refuse_key("density difference", particle.density_difference.has_value());
   refuse_key("viscosity ratio", particle.viscosity_ratio != 1);
+  refuse_key("drift", particle.drift.has_value());
+  refuse_key("forces", particle.forces.has_value());
   refuse_key("initial shape", particle.shape.initial.has_value());
   refuse_key("orientation", !particle.shape.orientation.isZero(0));
   refuse_key("copies", kind.copies.present);
@@ -114,7 +116,8 @@ void check_posts(const SharedOptions& shared) {
   }
 }
 
-void reject_posts(const SharedOptions& shared, Rejections& to) {
+void reject_posts(const ParticleScene& particle_scene, Rejections& to) {
+  const SharedOptions& shared = particle_scene;
   const bool posts = !shared.posts.empty();
   const Chosen cylinder("Particle/shape `cylinder`");
   to.pair(posts && shared.tube.present, cylinder, shared.duct_choice(), "a post extends over a whole period and would cross the wall");
@@ -124,6 +127,7 @@ void reject_posts(const SharedOptions& shared, Rejections& to) {
           "only a pressure gradient can drive a flow past posts; give Flow/type `quiescent` and Flow/pressure gradient");
   to.pair(posts && !shared.runs_in_time(), shared.sought(), cylinder,
           shared.only_solids ? "nothing deforms in a scene of posts only" : "a particle among posts drifts past them, so that no shape is steady");
+  to.pair(posts && particle_scene.particle.drift == "held", cylinder, "Particle/drift `held`", "a particle among posts moves past them");
   to.pair(shared.flow.history && shared.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
           "nothing moves, so that one steady problem is solved");
 }

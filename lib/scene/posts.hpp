@@ -11,6 +11,7 @@
 namespace tanktread {
 
 struct ParticleKind;
+struct ParticleScene;
 struct Scene;
 struct SharedOptions;
 
@@ -37,6 +38,6 @@ void take_posts(Scene& scene);
 void check_posts(const SharedOptions& shared);
 
 /// Adds to `to` the combinations of choices that are not allowed with posts.
-void reject_posts(const SharedOptions& shared, Rejections& to);
+void reject_posts(const ParticleScene& particle_scene, Rejections& to);
 
 }  // namespace tanktread

@@ -70,6 +70,8 @@ void list_idle_keys(Scene& scene) {
     if (idle) scene.idle_keys.push_back(key + " has no effect " + why + ": remove the key.");
   };
   add(scene.flow.gravity && std::ranges::none_of(scene.particles, has_weight), "Flow/gravity", "without Particle/density difference");
+  const bool all_rigid = std::ranges::all_of(scene.particles, [](const ParticleKind& one) { return one.particle.rigid(); });
+  add(scene.volume_given && all_rigid && scene.named(), "Volume", "on rigid bodies");
   add(scene.only_solids && scene.output.power_balance, "Output/power balance", "in a scene of posts only");
   add(scene.only_solids && !scene.series.empty(), "Output/series", "in a scene of posts only");
   add(scene.solvers.rigid_bodies == coupling::BodyEquation::second_kind && !scene.in_system(), "Solvers/rigid bodies `second kind`",
@@ -139,7 +141,8 @@ void Scene::declare(deck::Section& root) {
   else if (root.given("Contact"))
     throw UserError("Contact needs Particles or a periodic Domain, because a single particle has no gaps to other particles.");
   wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
-  if (!only.particle.rigid() || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
+  const bool any_deforms = !std::ranges::all_of(particles, [](const ParticleKind& kind) { return kind.particle.rigid(); });
+  if (any_deforms || volume_given || root.documenting()) root.section("Volume", volume, "conservation of the particle's volume");
   root.section("Quadrature", quadrature, "numerical integration of the boundary integrals of the flow");
   root.section("Time", time, "time integration: scheme, step length and end of the run");
   steady.present = root.optional_section("Steady", steady, "search for the steady shape that the initial shape leads to, instead of a run in time");
@@ -210,6 +213,7 @@ double SharedOptions::next_snapshot(double now) const {
 ParticleScene Scene::of(const ParticleKind& kind) const {
   ParticleScene particle_scene(*this, kind);
   particle_scene.solvers.rigid_bodies = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
+  particle_scene.least_radius = least_radius();
   return particle_scene;
 }
 

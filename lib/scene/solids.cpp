@@ -105,7 +105,7 @@ void check_outside_of_posts(const Scene& scene, const std::vector<Member>& membe
     const auto outside = outside_of(post, cell);
     for (const Member& member : members)
       if (!outside(surface::value(member.body->space, member.body->initial, {0, 0.5, 0.5})) || intersects(*member.body, post, cell))
-        throw UserError(member.scene.path() + " crosses a post at the start: give it another center.");
+        throw UserError(member.scene.path() + " crosses " + (post.name.empty() ? "a post" : post.path()) + " at the start: give it another center.");
   }
 }
 

@@ -37,7 +37,7 @@ void check_fits_channel(const ParticleScene& particle_scene, const Body& body, c
                               "Channel/start = %.4g and Channel/end = %.4g.",
                               first, last, margin, channel.start(), channel.end()));
   const surface::ElementBoxes its(particle), walls(around);
-  const double least = particle_scene.tube.contact_gap * particle_scene.least_radius.value_or(body.radius);
+  const double least = particle_scene.contact_length(particle_scene.tube.contact_gap);
   if (const double gap = surface::closest_points(its, walls, 1e-5 * wall.radius(), least).gap; gap < least)
     throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
                               gap, particle_scene.tube.contact_gap, least));
@@ -56,7 +56,7 @@ void check_fits(const ParticleScene& particle_scene, const Body& body) {
   if (nearest.gap <= 0)
     throw UserError(formatted("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.",
                               where.c_str(), -nearest.gap, body.radius, outline.radius()));
-  const double least = particle_scene.tube.contact_gap * particle_scene.least_radius.value_or(body.radius);
+  const double least = particle_scene.contact_length(particle_scene.tube.contact_gap);
   if (nearest.gap < least)
     throw UserError(
         formatted("The particle starts too close to the tube's wall: %s the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g.",

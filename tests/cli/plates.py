@@ -180,9 +180,10 @@ Tanktread:
     post: {shape: cylinder, axis: x3, radius: 0.05, Surface: {azimuthal elements: 8, axial elements: 8}}
   Time: {final time: 0.1}
 """
-    refused(["Particles/drop crosses a post"], deck(text), "--check")
+    refused(["Particles/drop crosses Particles/post"], deck(text), "--check")
     run("deck.yaml", "--check", "--set", "Particles/drop/center=[7.06, 0, 0]")
-    refused(["Particles/drop crosses a post"], "deck.yaml", "--check", "--set", "Particles/drop/center=[7.04, 0, 0]")
+    refused(["cylinder", "drift `held`"], "deck.yaml", "--set", "Particles/drop/center=[3, 3, 0]", "--set", "Particles/drop/drift=held")
+    refused(["Particles/drop crosses Particles/post"], "deck.yaml", "--check", "--set", "Particles/drop/center=[7.04, 0, 0]")
 
 
 def keys_without_effect_on_posts_alone_are_named():
@@ -303,6 +304,7 @@ def impossible_decks_are_rejected():
     refused(["Flow/pressure gradient", "posts"], deck(CAPSULE.replace("  Wall:", "  Ignored:").replace("  Ignored: {point: [0.0, 0.0, -1.5], distance: 3.0, velocity: [0.2, 0.0, 0.0], second velocity: [1.0, 0.5, 0.0], elements per period: 10}\n", "")))
     refused(["Particle/velocity", "cylinder"], deck(POST), "--set", "Particle/velocity=[1, 0, 0]")
     refused(["Particle/semi-axes", "cylinder"], deck(POST), "--set", "Particle/semi-axes=[1, 1, 2]")
+    refused(["Particle/drift", "cylinder"], deck(POST), "--set", "Particle/drift=held")
 
 
 main()

@@ -471,6 +471,9 @@ def mistakes_are_reported():
     ):
         error = run("deck.yaml", "--check", "--set", setting, code=2).stderr.strip()
         check(error.count("\n") == 0 and all(word in error for word in words), setting, error)
+    error = run("deck.yaml", "--check", "--set", "Domain/side lengths=[20, 20, 20]", "--set", "Particles/small/center=[21.5, 0.0, -0.4]",
+                code=2).stderr
+    check("Particles/small is inside of Particles/drop" in error, error)
     error = run("deck.yaml", "--check", "--set", "Expect/x/value=1", "--set", "Expect/x/tolerance=1", "--set", "Expect/x/series=drop/taylor",
                 code=2).stderr
     check(re.search("drop/taylor", error), error)

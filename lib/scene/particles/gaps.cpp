@@ -211,16 +211,21 @@ bool encloses(const surface::Patches& patches, const Vec3& point) {
   return angle > 2 * std::numbers::pi;
 }
 
-/// Throws UserError if one particle is inside another one. The gap between their surfaces does not show this, because it is positive.
-void check_not_nested(const std::vector<Member>& members, const std::vector<Net>& x) {
+/// Throws UserError if one particle is inside another one or its image on the lattice. The gap between their surfaces does not show this, because it is
+/// positive.
+void check_not_nested(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     const surface::Patches outer(surface::BezierMap(members[p].body->space), x[p]);
     const Eigen::RowVector3d low = x[p].colwise().minCoeff(), high = x[p].colwise().maxCoeff();
     for (std::size_t q = 0; q < members.size(); ++q) {
-      const Vec3 inner = surface::value(members[q].body->space, x[q], {0, 0.5, 0.5});
-      if (p == q || (inner.transpose().array() < low.array()).any() || (inner.transpose().array() > high.array()).any()) continue;
-      if (encloses(outer, inner))
-        throw UserError("Particles/" + members[q].name + " is inside of Particles/" + members[p].name + " at the start.");
+      if (p == q) continue;
+      const Vec3 point = surface::value(members[q].body->space, x[q], {0, 0.5, 0.5});
+      for (const Vec3& image : images(x[p], x[q], false, cell)) {
+        const Vec3 inner = point + image;
+        if ((inner.transpose().array() < low.array()).any() || (inner.transpose().array() > high.array()).any()) continue;
+        if (encloses(outer, inner))
+          throw UserError("Particles/" + members[q].name + " is inside of Particles/" + members[p].name + " at the start.");
+      }
     }
   }
 }
@@ -234,7 +239,7 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
   const Pairs pairs(members, x, cell);
   const NearestPair nearest(pairs, [](std::size_t) { return true; });
   const Nearest found = nearest.of(nearest.with_gap(nearest.gap()));
-  if (found.gap > 10 * pairs.tolerance()) return check_not_nested(members, x);
+  if (found.gap > 10 * pairs.tolerance()) return check_not_nested(members, x, cell);
   const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].scene.path(); };
   if (found.first == found.second)
     throw UserError("Domain is smaller than " + name(found.first) +

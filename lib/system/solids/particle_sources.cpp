@@ -1,6 +1,7 @@
 #include "system/solids/particle_sources.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "system/targets/collocation.hpp"
@@ -22,16 +23,22 @@ ParticleSources::ParticleSources(const spline::Space& space, double viscosity, c
 }
 
 void ParticleSources::set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> per_current_area) {
+  require_no_shape();
   single_layer.set_reference(unstressed, std::move(per_current_area));
   measure_ = measure;
 }
 
 void ParticleSources::set_contrasts(const Eigen::VectorXd& contrasts) {
+  require_no_shape();
   contrasts_ = contrasts;
   double_layer.reset();
   if (contrasts.isZero(0)) return;
   double_layer.emplace(Layer::Kernel::double_layer, space_, stokes::Sites(), quadrature_);
   if (cell_) double_layer->repeat(*cell_, how_);
+}
+
+void ParticleSources::require_no_shape() const {
+  if (sites_.rows() > 0) throw std::logic_error("sources need the reference and the contrasts of the particles before their shape");
 }
 
 void ParticleSources::set(const Net& unstressed, std::span<const Particle> particles) {

@@ -70,6 +70,8 @@ class ParticleSources {
   std::optional<stokes::Layer> double_layer;  ///< double layer without the factor 1 - lambda; set if has_double() is true
 
  private:
+  void require_no_shape() const;  // throws std::logic_error after set_shape(), whose results depend on reference and contrasts
+
   const spline::Space& space_;
   double viscosity_;
   quadrature::Options quadrature_;

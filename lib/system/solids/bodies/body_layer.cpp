@@ -100,6 +100,12 @@ Net BodyLayer::regular(const Net& f) const {
   return u;
 }
 
+Apply BodyLayer::preconditioner() const {
+  return [this, n = flux_.size()](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = solved(Eigen::Map<const Eigen::VectorXd>(in, n));
+  };
+}
+
 Eigen::MatrixXd BodyLayer::solved(Eigen::MatrixXd columns) const {
   const Eigen::MatrixXd velocities = columns(rows_, Eigen::all);
   columns(rows_, Eigen::all) = viscosity_ * factors_->solve(velocities);

@@ -11,6 +11,7 @@
 #include "stokes/layer.hpp"
 #include "system/capsule_parameters.hpp"
 #include "system/parallel/ranks.hpp"
+#include "system/solvers/krylov.hpp"
 
 namespace tanktread::coupling {
 
@@ -36,6 +37,9 @@ class BodyLayer {
   /// Solves for the force densities that produce the velocities in `columns`. Returns `columns` with the rows of bodies (velocities at the sites)
   /// replaced by these densities. Not collective.
   Eigen::MatrixXd solved(Eigen::MatrixXd columns) const;
+
+  /// Returns solved() as a preconditioner for one column. It refers to this object.
+  Apply preconditioner() const;
 
   stokes::Evaluations evaluations() const { return beyond_ ? layer_.evaluations() + beyond_->evaluations() : layer_.evaluations(); }
 

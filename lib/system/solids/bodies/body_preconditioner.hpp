@@ -22,7 +22,7 @@ namespace tanktread::coupling {
 /// because GMRES mistakes the rounding of single precision for a residual that does not decrease.
 class OneBodyInverses {
  public:
-  static constexpr int most_points = 2000;
+  static constexpr int most_points = SelfCorrection::most_points;
 
   /// `rest`: control net of all particles, with the rigid bodies in their positions at rest.
   OneBodyInverses(std::span<const Particle> particles, const RigidParticles& bodies, const Net& rest, const quadrature::Options& quadrature);

@@ -36,7 +36,6 @@ FreeBodyInTube::FreeBodyInTube(RigidTractions& body, const Net& surface, const V
 
 BoundedFreeBody::Solution FreeBodyInTube::solve(const Net& position) const {
   const Net x = surface(position);
-  body_.tube()->set_shape(x);
   return body_.inside(x) ? in_body_axes(position) : outside_fluid(x);
 }
 
@@ -45,7 +44,9 @@ BoundedFreeBody::Solution FreeBodyInTube::solve(const Net& position) const {
 double FreeBodyInTube::pressure_drop(const Net& position) const {
   Tube* const tube = body_.tube();
   const auto& [motion, f, stresslet] = solution(position);
+  if (!motion.velocity.allFinite()) return motion.velocity[0];  // outside of the fluid
   const Net x = surface(position);
+  tube->set_shape(x);
   const bool carried = flow_.duct() && flow_.amplitude() != 0 && driven_.force.isZero(0) && driven_.torque.isZero(0);
   const Net z = carried ? Net(-f / flow_.amplitude()) : density_at_rest(position, tube->flow().velocities(moved(body_.sites(), position)));
   return body_.pressure_correction_of(x, f, rigid_velocity(x, motion, centre_of(position)), flow_, z) - tube->pressure_of(f);
@@ -62,12 +63,9 @@ Net FreeBodyInTube::density_at_rest(const Net& position, const Net& velocities) 
   const Mat3 turn = rotation_of(position);
   const Eigen::Index n = 3 * surface_.rows();
   const Apply apply = on_nets(n / 3, [&](const Net& f) { return caused(f, turn); });
-  const auto precondition = [&](const double* in, double* out) {
-    Eigen::Map<Eigen::VectorXd>(out, n) = body_.layer().solved(Eigen::Map<const Eigen::VectorXd>(in, n));
-  };
   Eigen::VectorXd right(n), z = Eigen::VectorXd::Zero(n);
   Eigen::Map<Net>(right.data(), n / 3, 3) = velocities * turn;
-  iterations_ += body_.solve_iteratively({{{"traction", n}}, apply, precondition}, right, z);
+  iterations_ += body_.solve_iteratively({{{"traction", n}}, apply, body_.layer().preconditioner()}, right, z);
   ++solves_;
   return as_net(z) * turn.transpose();
 }

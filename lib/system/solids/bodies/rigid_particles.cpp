@@ -236,6 +236,7 @@ void RigidParticles::move_out_of_cell(std::span<const CellShift> shifts) {
     Body& body = bodies_[static_cast<std::size_t>(of_particle_[p])];
     body.centre += shifts[p].position;
     body.motion.velocity += shifts[p].velocity;
+    body.cell_velocity = Vec3::Zero();
   }
 }
 

@@ -116,10 +116,7 @@ Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
   if (!responds()) return layer_.solved(velocities);
   const Eigen::Index n = velocities.rows();
-  const auto precondition = [&](const double* in, double* out) {
-    Eigen::Map<Eigen::VectorXd>(out, n) = layer_.solved(Eigen::Map<const Eigen::VectorXd>(in, n));
-  };
-  const LinearSystem system{{{"traction", n}}, on_nets(n / 3, [this](const Net& y) { return product(y); }), precondition};
+  const LinearSystem system{{{"traction", n}}, on_nets(n / 3, [this](const Net& y) { return product(y); }), layer_.preconditioner()};
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, velocities.cols());
   for (Eigen::Index k = 0; k < all.cols(); ++k) {
     if (velocities.col(k).isZero(0)) continue;
@@ -248,6 +245,7 @@ bool RigidTractions::all_rigid() const {
 }
 
 bool RigidTractions::inside(const Net& x) const {
+  if (walls_.tube) walls_.tube->set_shape(x);
   return (!walls_.tube || walls_.tube->gap() > 0) && stokes::contains(medium_.get(), collocation_ * x);
 }
 

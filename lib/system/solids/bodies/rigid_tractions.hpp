@@ -38,8 +38,8 @@ CapsuleParameters single_body(const spline::Space& space, double radius, double 
 /// flow requires.
 ///
 /// The collocation error of the force or torque that belongs to z_k is corrected by the reciprocal theorem (2.11): int z_k.(v - (1/mu) A f) dGamma
-/// over all bodies is added, with v the right-hand side. The error of a stresslet is corrected in the same way with the densities of unit strains of
-/// its body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. With the double-layer equation (2.23), the
+/// over all bodies is added, with v the right-hand side. moment() corrects the error of a stresslet in the same way with the densities of unit strains
+/// of its body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. With the double-layer equation (2.23), the
 /// errors of forces are linear in the error of one density. In a channel the residual on the wall is included (2.42). The matrix is dense, which
 /// limits the number of control points to a few thousand.
 ///
@@ -113,7 +113,7 @@ class RigidTractions {
 
   BodyLayer& layer() { return layer_; }  ///< returns the single layer on the net passed to set_shape() last
 
-  /// Returns whether the bodies with the net x are inside the tube and in the medium. If there is a tube, call Tube::set_shape(x) before.
+  /// Returns whether the bodies with the net x are inside the tube, which is set to x, and in the medium. Collective.
   bool inside(const Net& x) const;
 
   /// Returns int f r dGamma of body p for solution(), whose net must be the net set last. Unless there is a tube, its symmetric traceless

@@ -74,14 +74,15 @@ Net ChannelFlow::driving_velocity(const Net& x) const {
 
 EmptyChannel& ChannelFlow::kept() const {
   const std::shared_ptr<Wall> wall = this->wall();
-  if (!wall->empty_channel) {
+  return wall->empty_channel([&] {
     quadrature::Options options = quadrature_;
     options.tolerance = std::max(1e-10, sharpness * quadrature_.tolerance);
-    wall->empty_channel.reset(new EmptyChannel{{stokes::Layer::Kernel::single_layer, wall->surface().space, stokes::Sites(), options}, {}});
-    if (wall->cell()) wall->empty_channel->layer.repeat(*wall->cell());
-    wall->empty_channel->layer.set_shape(surface_->net);
-  }
-  return *wall->empty_channel;
+    stokes::Layer layer(stokes::Layer::Kernel::single_layer, wall->surface().space, stokes::Sites(), options);
+    auto made = std::make_unique<EmptyChannel>(std::move(layer), std::nullopt);
+    if (wall->cell()) made->layer.repeat(*wall->cell());
+    made->layer.set_shape(surface_->net);
+    return made.release();
+  });
 }
 
 /// Returns the flow through this channel. Solves for it only if no other channel with the same wall has.

@@ -76,7 +76,7 @@ class ChannelFlow : public stokes::DuctFlow {
   std::shared_ptr<Wall> wall(Phases* phases = nullptr) const;
 
   /// Replaces the wall operator by the operator for fields with the symmetries of the particle in the channel, and returns it. From then on, all
-  /// fields must have these symmetries. Collective.
+  /// fields must have these symmetries. The empty flow has all symmetries of the channel, so that a solution found before remains valid. Collective.
   std::shared_ptr<Wall> use_symmetry(Phases& phases, const surface::Symmetry& particle) const;
 
  private:

@@ -1,6 +1,6 @@
 #include "system/solids/ducts/tube.hpp"
 
-#include <cassert>
+#include <stdexcept>
 
 #include "system/targets/collocation.hpp"
 #include "system/solids/shared_walls.hpp"
@@ -129,7 +129,7 @@ void Tube::respond_periodic(const Net& f, const Net& v, Response& response) {
 }
 
 Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correction) {
-  assert(latest_shape_.rows() > 0);  // set_shape() has been called
+  if (latest_shape_.rows() == 0) throw std::logic_error("a tube needs the shape of the particles before it responds");
   const auto clock = phases_.time("wall");
   Response response;
   response.velocity = Net::Zero(particle_->sites().rows(), 3);

@@ -21,7 +21,8 @@ namespace tanktread::coupling {
 ///
 /// A load that depends on v, such as the load of a body with prescribed motion, contributes to (2.5), (2.6) and (2.7) like f. The terms of such a
 /// load are on the left-hand sides. G_W, f^D and c are defined at Tube, H is the double layer of the particle, b = dV/dx, and n = M0^-1 b. In the
-/// system, f^D, dp and the row of dp are multiplied by `unit`, so that all unknowns are velocities.
+/// system, f^D, dp and the row of dp are multiplied by `unit`, so that all unknowns are velocities. The flow rate of the duct flow must be
+/// prescribed: the system does not contain its reduction at a prescribed pressure drop.
 struct TubeSystem {
   Tube& tube;
   std::function<Net(const Net& v)> load;                        ///< returns the load that depends on v; no rows if there is none

@@ -1,6 +1,7 @@
 #include "system/solids/ducts/wall.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "quadrature/gauss.hpp"
@@ -126,6 +127,11 @@ void Wall::factor(const surface::Symmetry& of_wall) {
   factors_.factor(points_.ranks());
 }
 
+EmptyChannel& Wall::empty_channel(const std::function<EmptyChannel*()>& make) {
+  if (!empty_channel_) empty_channel_.reset(make());
+  return *empty_channel_;
+}
+
 Net Wall::apply(const Net& f) const {
   Net u(points_.targets().rows(), 3);
   on_itself_->apply(on_space(f), points_.own_targets(), u);
@@ -162,6 +168,7 @@ Net Wall::iterated(const Net& rhs) const {
 }
 
 Net Wall::solve_transposed(const Net& weights) const {
+  if (iterates()) throw std::logic_error("the transposed system of a wall needs its factors");
   const Net everywhere = factors_.solve_transposed(weights);
   Net folded = Net::Zero(weights.rows(), 3);
   for (Eigen::Index p = 0; p < weights.rows(); ++p)
@@ -232,7 +239,7 @@ Net Wall::force_weights() const {
 
 stokes::Evaluations Wall::evaluations() const {
   const stokes::Evaluations own = on_itself_->evaluations() + layer_.evaluations();
-  return empty_channel ? own + empty_channel->layer.evaluations() : own;
+  return empty_channel_ ? own + empty_channel_->layer.evaluations() : own;
 }
 
 }  // namespace tanktread::coupling

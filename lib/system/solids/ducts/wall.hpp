@@ -117,12 +117,13 @@ class Wall {
   /// the strength through this surface must be 0.
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
-  std::shared_ptr<EmptyChannel> empty_channel;  ///< cache of ChannelFlow for all systems that share this wall; null until first used
+  /// Returns the flow of the empty channel, which all systems that share this wall use. `make`: makes it at the first call.
+  EmptyChannel& empty_channel(const std::function<EmptyChannel*()>& make);
 
   /// Returns the bounding boxes of the elements of a channel wall, used to compute distances from the wall.
   const surface::ElementBoxes& boxes() const { return assert(boxes_), *boxes_; }
 
-  stokes::Evaluations evaluations() const;  ///< number of kernel evaluations, including `empty_channel`
+  stokes::Evaluations evaluations() const;  ///< number of kernel evaluations, including those of empty_channel()
 
  private:
   Eigen::Index n_sites() const { return points_.sites().rows(); }
@@ -151,6 +152,7 @@ class Wall {
   WallFactors factors_;                       // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;
   std::unique_ptr<Krylov> krylov_;
+  std::shared_ptr<EmptyChannel> empty_channel_;
 };
 
 }  // namespace tanktread::coupling

@@ -1,7 +1,7 @@
 #include "system/solids/plates/solid_response.hpp"
 
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
 
 namespace tanktread::coupling {
 
@@ -19,12 +19,12 @@ Vec3 along(const stokes::PlaneWall& wall, const Vec3& v) { return v - wall.norma
 PlatesAndPosts::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow) {
   const PlatesAndPosts& solids = *scene.solids;
   Vec3 force = Vec3::Zero();
-  if (scene.planes.empty()) force = solids.cell().volume() * flow.change() * scene.driving_gradient;
+  if (solids.cell().n() == 3) force = solids.cell().volume() * flow.change() * scene.driving_gradient;
   return solids.solve(solids.velocities() * flow.change().transpose() - flow.velocities(solids.sites()), force);
 }
 
 Vec3 solids_flow_integral(const SolidScene& scene, const PlatesAndPosts::Flow& flow) {
-  if (scene.planes.empty()) return scene.solids->cell().volume() * flow.drift;
+  if (scene.solids->cell().n() == 3) return scene.solids->cell().volume() * flow.drift;
   if (scene.planes.size() == 1) return Vec3::Zero();
   const stokes::PlaneWall& wall = scene.planes.front();
   const Eigen::VectorXd weights = scene.solids->moments([&](const Vec3& x) { return profile(scene, wall.height(x)); });
@@ -55,7 +55,7 @@ const PlatesAndPosts::Flow& SolidResponse::empty() {
 }
 
 PlatesAndPosts::Flow SolidResponse::respond(const Net& f, const Net& v) {
-  assert(shape_.rows() > 0);  // set_shape() has been called
+  if (shape_.rows() == 0) throw std::logic_error("plates and posts need the shape of the particles before they respond");
   const PlatesAndPosts& solids = *scene_.solids;
   Vec3 force = Vec3::Zero();
   if (f.size() > 0) force = f.transpose() * areas_;
