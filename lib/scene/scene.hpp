@@ -115,7 +115,7 @@ struct ParticleScene : SharedOptions, ParticleKind {
   /// Returns the options of the time integration, with `unit` set to the time scale 1/rate() of the particle.
   motion::TimeOptions time_options() const;
   bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem, as set by `Particle/forces` or by default
-  double contact_length(double gap) const { return gap * least_radius.value_or(radius()); }  ///< returns a length that is given divided by that radius
+  double contact_length(double gap) const { return gap * least_radius.value_or(radius()); }  ///< returns a gap in units of length
   double radius() const { return particle.shape.equivalent_radius(); }  ///< R_C, radius of the sphere of equal volume
   double rate() const;               ///< speed/R_C; if the speed is 0, modulus/(viscosity x R_C), or 1 for a rigid body; units 1/time
   /// speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without gradient

@@ -211,8 +211,8 @@ bool encloses(const surface::Patches& patches, const Vec3& point) {
   return angle > 2 * std::numbers::pi;
 }
 
-/// Throws UserError if one particle is inside another one or its image on the lattice. The gap between their surfaces does not show this, because it is
-/// positive.
+/// Throws UserError if one particle is inside another one or its image on the lattice. The gap between their surfaces, which is positive, does not
+/// show this.
 void check_not_nested(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     const surface::Patches outer(surface::BezierMap(members[p].body->space), x[p]);
