@@ -59,7 +59,8 @@ std::vector<std::string> forecast(const LadderRequest& task, const Program& prog
     try {
       if (program.run(text, place, false, task.options.wall_clock_limit) == stopped) throw motion::Stopped();
     } catch (const RunFailure& error) {  // climb() goes on, too
-      failure = formatted("level %d failed: ", k) + error.what();
+      const std::string what = error.what();
+      failure = formatted("level %d failed: ", k) + what.substr(0, what.find("; the checkpoint"));  // which is deleted with the directory
       continue;
     }
     coupling::decided([&] {
