@@ -175,8 +175,9 @@ class Run {
     if (!particles_->adapt(state_, totals_)) return;
     results_.remesh(particles_->body(), particles_->bezier());
     motion::GuardedDynamics motion(particles_->dynamics(), stop_requested);
-    state_.history.clear();
-    motion::begin(motion, state_);
+    motion.set_time(state_.time, began_);  // if the flow jumps at the end of the step, the velocity before the jump
+    state_.history = {motion.velocity(state_.x)};
+    state_.slope_error = 0;
   }
 
   /// Makes a step of the time scheme that ends at the time `limit` or earlier. If the motion is not smooth at the start of the step (a kink), the
@@ -198,13 +199,15 @@ class Run {
   /// Makes a time step. If particles are too close after the step for the contact limiter to keep them apart, repeats the step from the state
   /// `before` with half its size.
   void advance_apart(motion::GuardedDynamics& motion, double limit, const motion::State& before) {
-    for (int rejected = 0;; ++rejected) {
+    motion::StepReport discarded;  // sums over the steps that are repeated
+    for (;;) {
       report_ = scheme_->advance(motion, state_, limit);
-      report_.rejected += rejected;
+      report_.iterations += discarded.iterations, report_.rejected += discarded.rejected;
       if (particles_->enforce_gaps(state_, report_.step)) return;
       if (scene_.time.fixed_step)
         throw RunFailure(
             "after a step of fixed length particles are too close for Contact/limiter to hold them apart: set a smaller Time/fixed step");
+      discarded.iterations = report_.iterations, discarded.rejected = report_.rejected + 1;
       Net frozen = std::move(state_.frozen);
       const double frozen_time = state_.frozen_time;
       state_ = before;
@@ -325,13 +328,13 @@ class Run {
     if (const std::string coarse = coarse_wall(scene_, particles_->body(), row_); !coarse.empty()) warn({"coarse wall", coarse});
     if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
     if (scene_.has_gaps()) end_at_contact();
-    if (coupling::any_stop_requested(stop_requested())) return by_signal;
-    if (scene_.output.too_late(ranks_.seconds_since(start_))) return by_clock;
+    const bool signalled = coupling::any_stop_requested(stop_requested()), late = scene_.output.too_late(ranks_.seconds_since(start_));
     const auto tolerance = scene_.time.steady_tolerance;
     const bool flow_changes = scene_.flow.history && scene_.flow.history->lasts(state_.time);
     if (tolerance && !flow_changes && row_.largest("shape_velocity") < *tolerance) return steady;
     if (scene_.time.end_when_past && least_axial_position(scene_, particles_->body(), row_) > *scene_.time.end_when_past) return past;
-    return {};
+    if (!(state_.time < scene_.time.final_time)) return {};
+    return signalled ? by_signal : late ? by_clock : std::string();
   }
 
   Account account(const std::string& status) const {

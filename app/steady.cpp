@@ -1,4 +1,5 @@
 #include <chrono>
+#include <exception>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -46,6 +47,7 @@ class SteadyRun {
     stop_where_told();
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(chosen_).c_str(), stdout);
     for (const Warning& warning : first_warnings(scene_)) results_.warn(warning.sentence);
+    check_parity(*system_);
     clock_.emplace(phases_, "steady shape");
     try {
       failure_ = coupling::failure_of_any([this] { search(); });
@@ -102,22 +104,37 @@ class SteadyRun {
     return way.arrived() ? way.last : failed;
   }
 
-  /// Computes the velocity and modes of the current shape, and records its row and snapshot.
-  void write() {
+  /// Computes the velocity of the current shape and, if it was found, its modes, and records its row and snapshot. If the computation of the modes
+  /// fails or is stopped, records the shape without modes before it throws.
+  void write(bool found = true) {
     state_.history = {system_->motion->velocity(state_.x)};
     if (!state_.history.front().allFinite())
       throw RunFailure("the evaluation of the velocity of this shape failed: " + system_->motion->failure());
-    if (scene_.spectrum.present) {
-      const auto clock = phases_.time("spectrum");
-      found_.modes = modes();
-    }
+    found_.modes.clear();
+    const std::exception_ptr lost = scene_.spectrum.present && found ? error_of_modes() : nullptr;
     record();
     save();
     earlier_coarsenings_ = totals_.coarsenings;
+    if (lost) std::rethrow_exception(lost);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  /// Computes the modes of the current shape. Returns the failure or stop if there is one.
+  std::exception_ptr error_of_modes() {
+    const auto clock = phases_.time("spectrum");
+    try {
+      found_.modes = modes();
+      return {};
+    } catch (const RunFailure&) {
+      system_->motion->set_time(0, 0);  // a return map may have set another time
+      return std::current_exception();
+    } catch (const motion::Stopped&) {
+      system_->motion->set_time(0, 0);
+      return std::current_exception();
+    }
+  }
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
@@ -216,7 +233,7 @@ class SteadySearch : public SteadyRun {
       if (!found.converged) found = approach(start, state_.x, found);
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
-    write();
+    write(found.converged);
     if (!found.converged)
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g; another Steady/step or Steady/method "
                                  "`%s` may help", found.iterations, found.rest,
@@ -240,7 +257,7 @@ class PeriodicSearch : public SteadyRun {
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     found_.period = returns_->period(), found_.mean_velocity = returns_->mean_velocity();
-    write();
+    write(found.converged);
     if (!found.converged)
       throw RunFailure(formatted("no periodic motion was found: after %d periods the residual is %.2g", found.iterations, found.rest));
   }

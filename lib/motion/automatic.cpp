@@ -47,13 +47,14 @@ void Automatic::reconsider(const State& state, const StepReport& report, Choice&
   const double longest = stable / std::max(choice.stiffness, 1e-300);
   double next = choice.scheme;
   if (choice.scheme == bs3) {
-    const bool bound = state.step > longest;
-    const bool another = choice.since >= tried_again_after || std::abs(std::log(choice.stiffness / choice.then)) > 0.3;
+    const bool bound = options_.fixed_step.value_or(state.step) > longest;
+    const bool another = options_.fixed_step || choice.since >= tried_again_after || std::abs(std::log(choice.stiffness / choice.then)) > 0.3;
     if (bound && (choice.work == 0 || another)) next = tr_bdf2;
   } else {
     const double work = (1 + solve_share) * report.iterations / report.step;
     choice.work = choice.work == 0 ? work : memory_of_work * choice.work + (1 - memory_of_work) * work;
-    if (choice.since >= trial && choice.work > 1.5 * 3 / std::min(longest, report.step)) next = bs3;
+    const bool stable_step = !options_.fixed_step || *options_.fixed_step <= longest;
+    if (stable_step && choice.since >= trial && choice.work > 1.5 * 3 / std::min(longest, report.step)) next = bs3;
   }
   if (next == choice.scheme) return;
   if (next == tr_bdf2) choice.work = 0;

@@ -97,7 +97,8 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
   for (int round = 0; round < most_rounds; ++round) {
     const Place from = solved.place;
     const std::shared_ptr<SteadyEquations> here = family_(from.q * unit_, second_);
-    const double aside = 1e-3 * std::max(std::abs(from.q), std::abs(step_));
+    // towards the middle of the branch, so that the parameter stays in the range of its key
+    const double aside = std::copysign(1e-3 * std::max(std::abs(from.q), std::abs(step_)), (start_ + options_.to) / (2 * unit_) - from.q);
     here->dynamics().freeze(from.x);
     const Net slope = (family_((from.q + aside) * unit_, second_)->residual(from.x) - here->residual(from.x)) / aside;
     if (!slope.allFinite()) return {};

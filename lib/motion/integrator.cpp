@@ -93,7 +93,7 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   dynamics.set_time(state.time + trial, state.time);
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
   const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // std::max ignores `change` if NaN
-  return std::min(step, longest);
+  return std::min(std::max(step, options.least_step()), longest);
 }
 
 double step_towards(double time, double limit, double step) {

@@ -75,7 +75,7 @@ void add_columns(const std::vector<Mode>& modes, int number, bool all_rigid, Col
                    "Translations and rotations that grow, such as a tilt out of the plane of shear, have a positive rate_k; the summary gives "
                    "the kind of each mode",
                    "none of the reported modes changes the shape"});
-  to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes (positive growth rate) among those that change the shape"});
+  to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes (positive growth rate) among the reported ones that change the shape"});
   for (std::size_t k = 0; k < static_cast<std::size_t>(number); ++k)
     add_columns(k < modes.size() ? modes[k].rate : std::complex(none, none), std::to_string(k + 1), to);
 }

@@ -93,8 +93,10 @@ bool approach(SteadyEquations& equations, Net& x) {
     };
     while (!moves_little() && step > 1e-6 * full) step *= 0.5;
     if (step == full || !delta.allFinite()) return k > 0;
-    x += delta;
-    equations.dynamics().restore_constraints(x);
+    Net next = x + delta;
+    equations.dynamics().restore_constraints(next);
+    if (!next.allFinite()) return k > 0;
+    x = std::move(next);
     step = std::min(full, 4 * step);
   }
   return true;

@@ -63,6 +63,9 @@ void check_times(const Scene& scene) {
       throw UserError(formatted("Periodic/period must be a multiple of the period of Flow/history, %.10g, but is %.10g.", 1 / *history->frequency,
                                 scene.periodic.period));
   }
+  if (const auto least = scene.time.minimum_step; least && in_time && !scene.lands_on_snapshots() && scene.snapshot_interval() < *least)
+    throw UserError("Output/interval must not be shorter than Time/minimum step, because every step has at most one snapshot; it is " +
+                    deck::number_text(scene.snapshot_interval()) + ".");
   if (scene.snapshot_interval() < 1e-6 * scene.time.final_time)
     throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * scene.time.final_time) +
                     ", but is " + deck::number_text(scene.snapshot_interval()) + ".");

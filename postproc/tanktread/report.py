@@ -79,7 +79,8 @@ def curves(run):
     step = max(1, len(run.time) // 600)
     rows = sorted({*range(0, len(run.time), step), len(run.time) - 1})
     kept = [name for name in names if len(names) <= 80 or "/" not in name or name.endswith("/taylor_inertia")]
-    return {"x": _list(run.time[rows]), "label": run.time_label, "labels": {name: run.axis(name) for name in kept},
+    return {"x": _list(run.time[rows]), "rate": float(run.time_scale), "label": run.time_label,
+            "labels": {name: run.axis(name) for name in kept},
             "y": {name: _list(run.series[name][rows]) for name in kept},
             "errors": {name: _list(run.errors[name][rows]) for name in kept if run.band(name) is not None},
             "meanings": {name: run.descriptions[name] for name in kept}}

@@ -208,7 +208,7 @@ class Run:
         numbers = (self.summary or {}).get("numbers") or {}
         if "radius" in numbers and not self.several:
             return float(numbers["radius"])
-        volume = self.of(self.particles[0], "volume")[0] if self.several else self.snapshots()[0].volume()
+        volume = self.of(self.particles[0], "volume")[0] if self.several else self.snapshot_at(0).volume()
         return float(3 * volume / (4 * numpy.pi)) ** (1 / 3)
 
     def scale(self, dimension):

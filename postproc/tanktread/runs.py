@@ -1,7 +1,9 @@
 """Runs of the program: a single run of a deck, or the runs of a study. Completed runs are kept and not repeated."""
 
+import collections
 import concurrent.futures
 import contextlib
+import fcntl
 import functools
 import hashlib
 import json
@@ -14,6 +16,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from shlex import quote as quoted
 
@@ -107,6 +110,10 @@ def results_of(deck, name=None, settings=None, accepted=(0, 1)):
         print(PROGRAM.name, *words, file=sys.stderr)
         code = subprocess.run([PROGRAM, *words, "--quiet"], env=os.environ | ENVIRONMENT, check=False).returncode
         expect(code in accepted, f"{deck} did not run to its end (exit code {code})")
+    elif 3 not in accepted:
+        status = str((Run(directory).summary or {"status": "stopped"})["status"])
+        expect(not status.startswith(("failed", "stopped")), f"{directory} did not come to its end: tanktread --resume "
+               f"{directory} continues it, or name this directory to use what is there")
     return directory
 
 
@@ -196,6 +203,20 @@ def _earlier(directory, before, ranks):
     return {"seconds": seconds, "processor_seconds": ranks * seconds}
 
 
+def _occupied(directory):
+    """Returns whether a run of the program is writing to a directory; it holds a lock of the directory meanwhile."""
+    if not directory.is_dir():
+        return False
+    descriptor = os.open(directory, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return True
+    finally:
+        os.close(descriptor)
+    return False
+
+
 class Study:
     """Runs of decks with changed keys. Their results are kept in `directory`; a run with the same decks and settings is
     not repeated. `limit`: largest processor time of a run in seconds (None: no limit); it does not count
@@ -208,6 +229,7 @@ class Study:
         self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)
         self.limit, self.jobs, self.fresh = limit, jobs, fresh
         self._made, self._running = set(), set()
+        self._locks, self._lock = collections.defaultdict(threading.Lock), threading.Lock()
 
     def run(self, decks, settings, ranks=1):
         """Returns the Outcome of `tanktread decks… --set …`. `decks`: a path (see deck_at), or several paths; later
@@ -215,6 +237,12 @@ class Study:
         smaller limit, or killed together with its study, is resumed from its checkpoint, or repeated if it has none."""
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
+        with self._lock:
+            lock = self._locks[where]
+        with lock:  # of two equal runs, the second one finds the results of the first
+            return self._run(decks, settings, ranks, where)
+
+    def _run(self, decks, settings, ranks, where):
         note, before = where / "outcome.json", None
         with contextlib.suppress(Mistake):  # outcome.json is missing or damaged
             before = Outcome(where, parsed(note, json.loads))
@@ -223,6 +251,7 @@ class Study:
         unfinished = not before or before.stopped or before.limit < (self.limit or math.inf)
         if before and (where in self._made or (began and not unfinished and not self.fresh)):
             return before
+        expect(not _occupied(where), f"{where}: another run is writing to it, perhaps of the same study")
         self._made.add(where)
         # without --bind-to none, runs side by side would all be bound to the first cores
         launcher = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks)] if ranks > 1 else []
@@ -254,14 +283,15 @@ class Study:
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = code = os.waitstatus_to_exitcode(status)
             self._running.discard(process)
-        killed = _signal(code)
-        if self.limit and killed in (signal.SIGKILL, signal.SIGXCPU, signal.SIGPROF):
+        killed, used = _signal(code), usage.ru_utime + usage.ru_stime
+        at_limit = killed in (signal.SIGXCPU, signal.SIGPROF) or used > (self.limit or math.inf) / 2
+        if self.limit and at_limit and killed in (signal.SIGKILL, signal.SIGXCPU, signal.SIGPROF):
             code, said = None, [f"stopped after {self.limit:g} s of processor time"]
         elif killed:
             said.append(f"killed by signal {killed}")
         return {"code": code, "message": said[-1] if said else "", "limit": self.limit,
                 "seconds": time.monotonic() - start,
-                "processor_seconds": usage.ru_utime + usage.ru_stime, "command": " ".join(map(quoted, words))}
+                "processor_seconds": used, "command": " ".join(map(quoted, words))}
 
     def _start_timer(self):
         """Starts the timer that ends a run of one rank at the limit. The timer counts fractions of a second, which
@@ -311,7 +341,9 @@ class Study:
         key = re.sub(r"^Particles/[^/]*/(?=.*/)", "", key)  # Particles/cell/Membrane/law is described as Membrane/law,
         key = re.sub(r"^Particles/[^/]*/", "Particle/", key)  # and Particles/cell/radius as Particle/radius
         section, _, name = key.rpartition("/")
-        body = self._manual.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
+        headings = section, f"`{section.rpartition('/')[0]}/<name>`"  # Membrane/forces/left is Membrane/forces/<name>
+        bodies = [self._manual.partition(f"\n## {one}\n")[2].partition("\n## ")[0] for one in headings]
+        body = bodies[0] or bodies[1]
         row = next((row for row in body.splitlines() if row.startswith(f"| `{name}`")), "|||| |")
         unit = row.split("|")[4].strip()
         return "" if unit == "1" else unit

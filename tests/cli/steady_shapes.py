@@ -258,6 +258,16 @@ def a_parity_needs_a_symmetry_and_signs():
         check(len(said.splitlines()) == 1 and word in said, said)
 
 
+def a_shape_is_kept_if_its_modes_cannot_be_computed():
+    limits = "{Maximum Iterations: 1, Maximum Restarts: 1}"
+    said = run(deck(DECK), "--set", "Spectrum/method=krylov", "--set", "Spectrum/number=2", "--set", f"Solvers/spectrum/Belos={limits}",
+               "--output", "kept", "--quiet", code=3).stderr
+    check("the results so far" in said, said)
+    run(deck(DECK), "--output", "alone", "--quiet")
+    close(series("kept", "taylor_surface")[-1], series("alone", "taylor_surface")[-1], 1e-9, "the shape")
+    check(numpy.isnan(series("kept", "rate_1")).all() and list(pathlib.Path("kept").glob("snapshot_*")), "modes, or no snapshot")
+
+
 def above_the_fold_no_shape_is_found_and_the_last_shape_is_written():
     said = run(deck(DECK), "--set", "Membrane/capillary number=0.3", "--set", "Steady/iterations=20", "--output", "none", "--quiet", code=3).stderr
     check(len(said.splitlines()) == 1 and "not found" in said and "the results so far" in said, said)

@@ -142,6 +142,7 @@ SETTINGS = [
     (["Volume/constraint=none"], ["Volume/constraint", "none", "Membrane/load measure"]),
     (["Time/fixed step=0.1", "Time/initial step=0.1"], ["Time/fixed step", "Time/initial step", "contradict"]),
     (["Time/initial step=1e-12"], ["Time/initial step", "Time/minimum step", "1e-09", "1e-12"]),
+    (["Output/interval=0.01", "Output/between steps=interpolate", "Time/minimum step=0.02"], ["Output/interval", "Time/minimum step"]),
     (["Time/maximum step=0.1", "Time/minimum step=0.2"], ["Time/maximum step", "Time/minimum step", "0.2", "0.1"]),
     (["Expect/energy/value=1"], ["Expect/energy/tolerance", "missing"]),
     (["Expect/volum/value=1", "Expect/volum/tolerance=1"], ["Expect/volum", "no series", "was volume meant?"]),

@@ -14,12 +14,8 @@ namespace {
 /// Returns the system in which the modes of the shape x of `system` are computed: `system`, or a system without symmetry if the modes may have
 /// another parity than the shape, because the velocities of all points are then needed.
 std::shared_ptr<SteadySystem> system_of_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const Net& x) {
-  const bool parity = system->scene.spectrum.parity.has_value(), known = system->knows_images();
-  if (!parity && known) return system;
-  if (parity && !known)
-    throw UserError("Spectrum/parity needs surface fields with known images: remove the key to find modes of all parities.");
-  if (system->particles->body().symmetry.order() == 1)
-    throw UserError("Spectrum/parity needs a symmetric scene, and this one has no symmetry: remove the key.");
+  if (!system->scene.spectrum.parity && system->knows_images()) return system;
+  check_parity(*system);
   Scene whole = system->scene;
   whole.symmetry.use = "none";
   return pool.variant(*system, std::move(whole), x);
@@ -39,6 +35,14 @@ std::vector<coupling::Eigenpair> floquet_exponents(motion::ReturnMap& returns, d
 }
 
 }  // namespace
+
+void check_parity(const SteadySystem& system) {
+  if (!system.scene.spectrum.present || !system.scene.spectrum.parity) return;
+  if (!system.knows_images())
+    throw UserError("Spectrum/parity needs surface fields with known images: remove the key to find modes of all parities.");
+  if (system.particles->body().symmetry.order() == 1)
+    throw UserError("Spectrum/parity needs a symmetric scene, and this one has no symmetry: remove the key.");
+}
 
 std::vector<motion::Mode> shape_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const Net& x, motion::ReturnMap* returns,
                                       const Warn& warn) {

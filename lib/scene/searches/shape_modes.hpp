@@ -15,6 +15,9 @@ namespace tanktread {
 /// Function that receives warnings for the user. It is to show each kind of warning only once.
 using Warn = std::function<void(const Warning&)>;
 
+/// Throws UserError if the scene has no symmetry that Spectrum/parity could refer to.
+void check_parity(const SteadySystem& system);
+
 /// Returns the modes of the shape x of `system`. Their rates are growth rates if x is steady. If `returns` is not null, it is the return map of the
 /// periodic motion through x, and the rates are Floquet exponents; modes that errors of time steps hide are left out. `pool` builds a system without
 /// symmetry if the modes may have another parity than the shape. Afterwards, x is the latest shape that `system` has evaluated. Throws UserError if

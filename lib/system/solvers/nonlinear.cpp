@@ -212,18 +212,20 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
   const auto list = impl_->last = Teuchos::rcp(new Teuchos::ParameterList(impl_->list));
   auto& anderson = list->sublist("Anderson Parameters");
   if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
+  RCP<NOX::Solver::Generic> solver;
+  const auto failed = [&] { return NonlinearReport{solver.is_null() ? 0 : solver->getNumIterations(), false}; };
   try {
-    const auto solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(residual_norm ? residual_norm : norm, unit, tolerance, most)), list);
+    solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(residual_norm ? residual_norm : norm, unit, tolerance, most)), list);
     const bool converged = solver->solve() == NOX::StatusTest::Converged;
     x = net(solver->getSolutionGroup().getX(), unit);
     return {solver->getNumIterations(), converged};
   } catch (const char*) {  // thrown by NOX if the function or a direction cannot be evaluated
-    return {0, false};
+    return failed();
   } catch (const Thyra::CatastrophicSolveFailure&) {
-    return {0, false};
+    return failed();
   } catch (const std::runtime_error& error) {  // exactly this type: thrown by Anderson's method if differences of iterates are linearly dependent
     if (typeid(error) != typeid(std::runtime_error)) throw;
-    return {0, false};
+    return failed();
   } catch (const Teuchos::Exceptions::InvalidParameter& error) {
     throw UserError(std::string("Solvers/NOX: NOX does not accept these parameters: ") + error.what());
   }

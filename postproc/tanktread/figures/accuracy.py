@@ -47,7 +47,8 @@ def values(run, request):
         times, series = numpy.arange(len(chosen), dtype=float), series[chosen]
     if request["of"] == "run":
         return times, series
-    return numpy.zeros(1), numpy.array([series[-1] if request["of"] == "end" else mean(times, series)])
+    known = ~numpy.isnan(series)
+    return numpy.zeros(1), numpy.array([series[-1] if request["of"] == "end" else mean(times[known], series[known])])
 
 
 def largest(one, other):
@@ -116,7 +117,7 @@ def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None,
     families: dict = {}
     errors = []
     for run, shade in zip(runs, style.plt.get_cmap(style.FIELD)(numpy.linspace(0.1, 0.8, len(runs)))):
-        inside = (run.time >= known["t"][0]) & (run.time <= known["t"][-1])
+        inside = (run.time >= known["t"][0]) & (run.time <= known["t"][-1]) & ~numpy.isnan(run.series[series])
         expect(inside.any(), f"{run.directory} has no row within the times of the curve")
         times = run.time[inside]
         errors.append(numpy.array([difference([time], [value], known["t"], known[series])

@@ -148,7 +148,7 @@ def stresses(run):
     flow = run.value("Flow/type")
     expect(flow == "simple shear", f"{run.directory}: intrinsic viscosity is of simple shear, and this is {flow}")
     expect(run.value("Flow/history") is None, f"{run.directory}: the flow changes in time; see its intrinsic_viscosity")
-    volume = run.series["volume"][0] if "volume" in run.series else run.snapshots()[0].volume()
+    volume = run.series["volume"][0] if "volume" in run.series else 4 / 3 * numpy.pi * run.radius**3
     unit = run.value("Flow/viscosity", 1) * run.rate[0] * volume
     s11, s22, s33, s13 = (run.series[f"stresslet_{k}"] / unit for k in ("11", "22", "33", "13"))
     return s13, s11 - s33, s33 - s22

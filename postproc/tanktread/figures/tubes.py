@@ -32,7 +32,7 @@ def duct(runs, *axes):
     levels = numpy.append(numpy.arange(0, max(largest), STEP), max(largest))
     for axis, d, run, most in zip(axes, ducts, runs, largest):
         filled = draw_section(axis, d, levels)
-        if "centroid_x2" in run.series:
+        if f"{place_name(run)}2" in run.series:
             draw_path(axis, run, d, style.RUNS[1], 4, linewidth=1.6, label="path of the centroid")
         axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
         axis.set_title(f"{run.name}: largest velocity {most:.4f}", pad=10)
@@ -69,9 +69,14 @@ def draw_section(axis, d, levels):
     return filled
 
 
+def place_name(run):
+    """Returns the name of the series of the particle's position without the number of the coordinate."""
+    return "center_x" if "center_x1" in run.series else "centroid_x"
+
+
 def draw_path(axis, run, d, color, size, **pen):
     """Draws the path of the centroid across the tube with a mark at its start, and returns it, shape (2, rows)."""
-    path = numpy.array([run.series[name] for name in ("centroid_x2", "centroid_x3")]) / d["radius"]
+    path = numpy.array([run.series[f"{place_name(run)}{k}"] for k in (2, 3)]) / d["radius"]
     axis.plot(*path, color=color, **pen)
     axis.plot(*path[:, 0], color=color, marker="o", markersize=size)
     return path
@@ -114,7 +119,8 @@ def draw_tube_sections(run, d, shaded, along, across):
     across.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
     place = 0.0
     for shot, colour in shaded:
-        c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
+        c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"{place_name(run)}{k}"])
+                         for k in (1, 2, 3)])
         side, front = section(shot, c[1], 1) / d["radius"], section(shot, c[0], 0) / d["radius"]
         c /= d["radius"]
         draw_pieces(across, front, colour)
@@ -197,7 +203,7 @@ def channel(run, cut, extents, velocity, pressure, wall, *, shapes: int = 7, acr
 def way_along(run, c):
     """Returns the position s (rows,) of the centroid along the centre line: s of the nearest point of the centre line,
     plus the component along its tangent of the vector from this point to the centroid."""
-    name = "center_x" if "center_x1" in run.series else "centroid_x"
+    name = place_name(run)
     places = numpy.column_stack([run.series[f"{name}{k}"] for k in (1, 2, 3)])
     nearest = numpy.argmin(numpy.linalg.norm(places[:, None] - c["centre"][None], axis=2), axis=1)
     along = numpy.gradient(c["centre"], c["s"], axis=0)[nearest]

@@ -30,8 +30,9 @@ class Unknown:
         self.logarithmic = spacing == "logarithmic"
         expect(not self.logarithmic or self.start_value > 0,
                f"{self.name} starts from a positive number, or has `spacing: linear`")
-        self.unit = 1.0 if self.logarithmic else abs(self.start_value) or 1.0
         self.known, *bounds = (optional(number, given, word, self.name) for word in ("known", "from", "to"))
+        width = bounds[1] - bounds[0] if None not in bounds else 0
+        self.unit = 1.0 if self.logarithmic else abs(self.start_value) or abs(width) / 2 or 1.0
         expect(not self.logarithmic or all(bound is None or bound > 0 for bound in bounds),
                f"{self.name}: `from` and `to` must be above 0, or it has `spacing: linear`")
         start = self.number(self.start_value)
@@ -139,6 +140,7 @@ class SeriesData(Datum):
         super().__init__(given, name)
         self.series = [given[word] for word in ("series", "over") if word in given]
         self.places = int("origin" in given)
+        expect("at" not in given or "value" in given, f"{name}: `at` is of a value; a curve has its own times")
         expect(not self.places or given["origin"] == "free" and "curve" in given,
                f"{name}: `origin: free` is of a curve, and there is no other origin")
         if "curve" in given:
@@ -163,6 +165,11 @@ class SeriesData(Datum):
         last = 0 if self.times is None or self.places else numpy.max(self.times)
         expect(last <= times[-1] * (1 + 1e-9),
                f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
+        if self.times is not None and not self.places:
+            expect(numpy.min(self.times) >= times[0] - 1e-9 * abs(times[-1]),
+                   f"{self.name}: its data begin before the run, at {numpy.min(self.times):g}: give `origin: free`")
+        expect(not self.places or self.span <= (times[-1] - times[0]) * (1 + 1e-9),
+               f"{self.name}: the run is shorter than the data, {self.span:g}: set Time/final time")
         # the largest estimated error; for a ratio, the errors of both series combined; 0 if it is unknown
         if self.discretisation is None:
             for name in self.series:

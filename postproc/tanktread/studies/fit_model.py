@@ -30,10 +30,11 @@ def parts(sizes):
     return [slice(*ends) for ends in itertools.pairwise(numpy.cumsum([0, *sizes]))]
 
 
-def determined(error):
-    """Returns the standard error of a component of x, or inf if it is 1 or larger: then the unknown is uncertain by a
-    factor of e or, if it is not logarithmic, by as much as its start value."""
-    return numpy.where((error > 0) & (error < 1), error, numpy.inf)
+def determined(unknowns, x, errors):
+    """Returns the standard errors of the unknowns in x, or inf where the data do not determine an unknown: where it is
+    uncertain by a factor of e or, if it is not logarithmic, by more than its start value and more than its value."""
+    most = [1 if one.logarithmic else max(1, abs(number)) for one, number in zip(unknowns, x)]
+    return numpy.where((errors > 0) & (errors < most), errors, numpy.inf)
 
 
 class Runs:
@@ -54,10 +55,14 @@ class Runs:
         for (text, (experiment, _)), outcome in zip(new.items(), outcomes):
             expect(not outcome.refused, f"the deck is refused: {outcome.message}")
             self._run, self._found[text] = outcome.run if outcome.done else self._run, None
+            if not outcome.done:
+                self.messages.append(outcome.message)
+                continue
             try:
-                expect(outcome.done, outcome.message)
                 self._found[text] = [datum.prediction(outcome.run) for datum in experiment.data]
             except ValueError as error:  # a shape whose outline cannot be found counts as a failed run
+                if isinstance(error, Mistake) and not any(self._found.values()):
+                    raise  # a mistake of the experiment file, such as a series that the run does not have
                 self.messages.append(str(error))
         return [self._found[text] for text in texts]
 
@@ -78,6 +83,9 @@ class Fit:
         # slice of the position of each datum in x
         self.positions = parts([len(self.unknowns), *(datum.places for datum in self.data)])[1:]
         self.count = sum(datum.count for datum in self.data)
+        for one, experiment in itertools.product(self.unknowns, experiments):
+            expect(one.owner not in (None, experiment.name) or one.key not in experiment.settings,
+                   f"{experiment.name}: {one.key} is in `set`, but it is unknown")
         self.stated = all(datum.error is not None for datum in self.data)
 
     length = property(lambda self: sum(datum.length for datum in self.data)
@@ -177,8 +185,11 @@ class Fit:
         self.told = numpy.isfinite(strength) & (strength > 2 * disagreement) & (strength > 0)
         full = numpy.column_stack([self.derivative[:, self.told], self.moved])
         scale, k = numpy.linalg.norm(full, axis=0), self.told.sum()
+        expect((scale > 0).all(), f"{self.law}: the position of an outline or curve has no effect: the runs do not "
+               "reach the data; change a start value or Time/final time")
         _, sizes, right = numpy.linalg.svd(full / scale)
-        with numpy.errstate(divide="ignore"):
+        sizes = numpy.pad(sizes, (0, full.shape[1] - len(sizes)))  # the error is infinite in directions without data
+        with numpy.errstate(divide="ignore", invalid="ignore"):
             spread = right.T / sizes
         covariance = (spread @ spread.T / numpy.outer(scale, scale))[:k, :k]
         self.freedom = self.length - full.shape[1]
@@ -190,8 +201,8 @@ class Fit:
     @property
     def values(self):
         """Returns {name: (value, standard error or inf)}."""
-        return {one.name: (one.value(x), one.error_of(one.value(x), determined(error)))
-                for one, x, error in zip(self.unknowns, self.x, self.number_errors)}
+        return {one.name: (one.value(x), one.error_of(one.value(x), error)) for one, x, error in
+                zip(self.unknowns, self.x, determined(self.unknowns, self.x, self.number_errors))}
 
     scatter = property(lambda self: numpy.sqrt(self.square / self.freedom),
                        doc="By what factor residuals are larger than their errors.")

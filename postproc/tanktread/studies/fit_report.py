@@ -39,7 +39,12 @@ def further(fits, settings):
         both[numpy.ix_(best.told, best.told)] += best.information() / (1 if best.stated else best.scatter ** 2)
         index = numpy.array(alone.index)[alone.told]
         both[numpy.ix_(index, index)] += alone.information()
-        errors = determined(numpy.sqrt(numpy.diag(numpy.linalg.pinv(both))))
+        size = numpy.sqrt(numpy.diag(both))
+        size = numpy.where(size > 0, size, 1)
+        known, axes = numpy.linalg.eigh(both / numpy.outer(size, size))
+        # directions without information have a large error, which is that of all unknowns in them
+        errors = numpy.sqrt((axes**2 / known.clip(1e-12)).sum(1)) / size
+        errors = determined(best.unknowns, best.x, errors)
         rows.append((f"{key} {value}", {unknown.name: unknown.error_of(unknown.value(x), error)
                                         for unknown, x, error in zip(best.unknowns, best.x, errors)},
                      {fit.law: one.square if one else numpy.inf for fit, one in zip(fits[1:], others)}))
@@ -131,6 +136,7 @@ def draw(fits, axes=None):
     """Returns a figure of the data with the fit, the residuals, and the ellipses of pairs of unknowns."""
     best = fits[0]
     (predictions,) = best.predictions(best.x)
+    over_time = any(numpy.size(getattr(datum, "times", None)) > 1 for datum in best.data)
     known = list(itertools.compress(zip(best.unknowns, best.x), best.told))
     pairs = list(itertools.combinations(range(len(known)), 2))[:3]
     figure, axes = style.panels(axes, 1, 2 + len(pairs), 4.6 * (2 + len(pairs)), 4.4)
@@ -148,6 +154,8 @@ def draw(fits, axes=None):
             data.errorbar(datum.times, datum.values, datum.error, fmt=".", color=color, ms=4, label=datum.name)
         else:
             name = datum.name.removesuffix(": data")
+            if over_time:
+                name = prediction[0][-1] if datum.at is None else datum.at
             data.errorbar(name, datum.values[0], datum.error or 0, fmt=".", color=color, ms=7)
             data.plot(name, datum.predicted(prediction, [])[0], "_", color=color, ms=14)
         residual.plot(numpy.arange(rows.start, rows.start + datum.count), best.residual[rows][:datum.count], ".",
@@ -155,13 +163,13 @@ def draw(fits, axes=None):
     if data.get_legend_handles_labels()[0]:
         data.legend(fontsize=7)
     series = [datum for datum in best.data if not isinstance(datum, OutlineData)]
-    if any(numpy.size(datum.times) > 1 for datum in series):
+    if over_time:
         data.set_xlabel("time" + best.runs.unit("Time/final time"))
     elif series:
         data.tick_params(axis="x", rotation=60, labelsize=7)
     ylabel = " or ".join(dict.fromkeys(" / ".join(datum.series) for datum in series))
     data.set(ylabel=ylabel, title=f"data and {best.law}")
-    residual.set(title="residuals / standard errors", xlabel="number of the datum")
+    residual.set(title="residuals / standard errors" if best.stated else "residuals", xlabel="number of the datum")
     residual.axhline(0, color=style.FAINT, linewidth=0.8)
     residual.xaxis.get_major_locator().set_params(integer=True)
     for axis, (i, j) in zip(axes[2:], pairs):

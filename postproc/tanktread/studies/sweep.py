@@ -79,6 +79,9 @@ def combinations(text):
     groups = [[dict(zip(grid, row)) for row in itertools.product(*grid.values())],
               [dict(zip(together, row)) for row in zip(*together.values())] or [{}],
               drawn(text["random"]) if text["random"] else [{}]]
+    names = [*groups[0][0], *groups[1][0], *groups[2][0]]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    expect(not twice, f"{', '.join(twice)}: a key is in one of grid, together and random only")
     rows = [text["set"] | a | b | c for a, b, c in itertools.product(*groups)]
     return [row for k, row in enumerate(rows) if row not in rows[:k]]
 
@@ -163,8 +166,12 @@ class Sweep:
         self.study.limit = optional(positive, text, "limit", path)
         self.keys = [key for key in dict.fromkeys(key for row in self.rows for key in row)
                      if len({str(row.get(key)) for row in self.rows}) > 1]
+        series = any(take == "all" for _, take, _ in self.columns.values())
         for name in self.columns:
-            expect(name not in (*self.keys, *RUN), f"{path}: record: {name} is already a column of the table")
+            expect(name not in (*self.keys, *RUN, *(["time"] if series else [])),
+                   f"{path}: record: {name} is already a column of the table")
+            expect(not any(other.startswith(f"{name}/") for other in self.columns),
+                   f"{path}: record: {name} is also the beginning of the name of another column")
 
     def make(self):
         """Makes the runs and prints the progress on standard error."""

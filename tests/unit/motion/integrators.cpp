@@ -297,6 +297,29 @@ TEST(Integrators, AutoIsExplicitIfThatIsStableAndImplicitOtherwise) {
   }
 }
 
+TEST(Integrators, AutoMakesFixedStepsThatAreTooLongForExplicitSchemesImplicitly) {
+  for (const double product : {2.7, 5.0}) {  // of step and stiffness; BS3 is stable up to 2.51
+    TimeOptions options = with("auto");
+    options.fixed_step = 0.1;
+    Model model(product / 0.1);
+    State state = start(0.1);
+    const auto scheme = integrator(options);
+    while (state.time < 20) scheme->advance(model, state, 20);
+    EXPECT_NEAR(state.x(0, 0), std::cos(20.0), 1e-2) << product;
+    EXPECT_GT(model.solves, 100) << product;
+  }
+}
+
+TEST(Integrators, TheFirstStepIsNotShorterThanTheLeast) {
+  Model model(30);
+  State state = start(0);
+  state.history = {model.velocity(state.x)};
+  TimeOptions options = with("tr-bdf2");
+  options.final_time = 1;
+  options.minimum_step = 0.1;
+  EXPECT_EQ(first_step(model, state, options), 0.1);
+}
+
 /// Model in a lattice that moves. Records the time that was set when the operators were assembled.
 class InLattice : public Model {
  public:
