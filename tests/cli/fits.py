@@ -197,6 +197,8 @@ def mistakes_are_reported_in_one_sentence():
     numpy.savetxt("arc.csv", _ellipse(1, 1)[:40], delimiter=",")
     numpy.savetxt("circle.csv", _ellipse(1, 1), delimiter=",")
     datum, bare = {"series": "taylor_inertia", "value": 0.3, "error": 0.01}, {"series": "taylor_inertia", "value": 0.3}
+    curve = {"series": "taylor_inertia", "curve": "curve.csv", "error": 0.01}
+    numpy.savetxt("curve.csv", [[-1, 0.1], [0.5, 0.2]], delimiter=",")
     for change, words in (({"unknown": {}}, "nothing is unknown"), ({"deck": "other.yaml"}, "no deck other.yaml"), ({"models": 1}, "models is not known"),
                           ({"unknown": {"Membrane/capillary number": 0.3, "Particle/viscosity ratio": 1.0}}, "2 numbers are unknown"),
                           ({"experiments": {"a": {"data": [{"outline": "arc.csv", "scale": 1, "error": 0.1}]}}}, "does not close"),
@@ -205,6 +207,8 @@ def mistakes_are_reported_in_one_sentence():
                           ({"experiments": {"a": {"data": [datum | {"series": "tailor"}]}}}, "no series tailor"),
                           ({"experiments": {"a": {"data": [datum | {"at": 9.0}]}}}, "before its data"),
                           ({"experiments": {"a": {"data": [datum | {"origin": "free"}]}}}, "is of a curve"),
+                          ({"experiments": {"a": {"data": [curve | {"at": 1}]}}}, "`at` is of a value"), ({"experiments": {"a": {"data": [curve]}}}, "begin before"),
+                          ({"experiments": {"a": {"set": {"Membrane/capillary number": 0.2}, "data": [datum]}}}, "is in `set`, but it is unknown"),
                           ({"experiments": {"a": {"data": [datum]}, "b": {"data": [bare]}}}, "missing for b: data, but other"),
                           ({"experiments": {"a": {"data": [bare]}}, "unknown": {"Membrane/capillary number": {"known": 0.3, "error": 0.1}}},
                            "Membrane/capillary number has an error, but the data have none"),

@@ -226,6 +226,12 @@ def a_deck_with_changed_keys_is_run_once_and_its_surface_is_evaluated():
     close(abs(shot.evaluate(shot.points, cells, s, t, ds=1) - slope).max(), 0, 1e-7, "a derivative")
 
 
+def equal_runs_of_a_study_are_made_once():
+    study, job = tanktread.Study(directory="equal", jobs=2), (deck(DECK), {"Time/final time": 0.1})
+    first, second = study.all([job, job])
+    check(first.done and second.done and first.directory == second.directory, first.message, second.message)
+
+
 def a_run_is_repeated_if_a_file_named_in_its_deck_has_changed():
     deck(DECK.replace("simple shear", "simple shear, history: { file: history.csv }"))
     ends = []
@@ -394,6 +400,8 @@ def mistakes_are_reported_in_one_sentence():
                         ("deck: deck.yaml\nrecord: [a]\nrandom: {number: 2, keys: {A/b: {from: 1, to: 2, number: 2}}}", "A/b: number is not known"),
                         ("deck: deck.yaml\nrecord: {A/b: a}\ngrid: {A/b: [1, 2]}", "A/b is already a column"),
                         ("deck: deck.yaml\nrecord: {status: a}\ngrid: {A/b: [1, 2]}", "status is already a column"),
+                        ("deck: deck.yaml\nrecord: {all: {series: a, take: all}, time: time}", "time is already a column"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: [1, 2]}\ntogether: {A/b: [3, 4]}", "A/b: a key is in one of"),
                         ("deck: deck.yaml\nrecord: [a]\nranks: 0", "a whole number above 0"), ("deck: deck.yaml\nrecord: [a]\nlimit: x", "limit: x is not")):
         deck(text, "study.yaml")
         said = _sweep("study.yaml", code=2)
