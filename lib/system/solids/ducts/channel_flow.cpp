@@ -77,8 +77,8 @@ EmptyChannel& ChannelFlow::kept() const {
   return wall->empty_channel([&] {
     quadrature::Options options = quadrature_;
     options.tolerance = std::max(1e-10, sharpness * quadrature_.tolerance);
-    stokes::Layer layer(stokes::Layer::Kernel::single_layer, wall->surface().space, stokes::Sites(), options);
-    auto made = std::make_unique<EmptyChannel>(std::move(layer), std::nullopt);
+    std::unique_ptr<EmptyChannel> made(
+        new EmptyChannel{{stokes::Layer::Kernel::single_layer, wall->surface().space, stokes::Sites(), options}, {}});
     if (wall->cell()) made->layer.repeat(*wall->cell());
     made->layer.set_shape(surface_->net);
     return made.release();
