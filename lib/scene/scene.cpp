@@ -213,7 +213,8 @@ double SharedOptions::next_snapshot(double now) const {
 ParticleScene Scene::of(const ParticleKind& kind) const {
   ParticleScene particle_scene(*this, kind);
   particle_scene.solvers.rigid_bodies = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
-  particle_scene.least_radius = least_radius();
+  const auto sized = [](const ParticleKind& one) { return one.particle.shape.sized(); };
+  if (std::ranges::all_of(particles, sized)) particle_scene.least_radius = least_radius();
   return particle_scene;
 }
 
