@@ -61,6 +61,7 @@ int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot&
   motion::State state;
   state.x = body.rest;
   results.save({}, state, {}, results.sample(snapshot, state.time));
+  if (scene_.output.surface_text) results.write_surface(body.rest);
   clock.reset();
   account.plan = plan_;
   for (const auto& [name, count] : {std::pair("far", kernel.far), {"near", kernel.near}, {"self", kernel.self}})

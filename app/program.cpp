@@ -179,8 +179,9 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
 }
 
 /// Replaces `file` by its path, as returned by `found`. Registers it, or the newest snapshot of a run with this directory, to be copied into the
-/// results directory under the name `kept`.
-void find_and_keep(std::string& file, const std::string& kept, const Arguments& arguments, Scene& scene) {
+/// results directory under the name `kept`, after `other_` if another file has this name.
+void find_and_keep(std::string& file, std::string kept, const Arguments& arguments, Scene& scene) {
+  while (std::ranges::find(scene.files, kept, &std::pair<std::string, std::string>::second) != scene.files.end()) kept.insert(0, "other_");
   file = found(file, kept, arguments);
   scene.files.emplace_back(output::newest_file(file), kept);
 }

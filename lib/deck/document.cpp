@@ -100,7 +100,7 @@ struct Layers {
       keys.erase(std::ranges::unique(keys).begin(), keys.end());
       if (!all.empty())
         expectation.set("not binding", all);
-      else if (!keys.empty() && !expectation.isParameter("not binding"))
+      else if (!keys.empty() && expectation.get("not binding", std::string()).empty())
         expectation.set("not binding", "the deck was changed: " + joined(keys, " and "));
     }
   }

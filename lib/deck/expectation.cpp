@@ -50,10 +50,18 @@ namespace {
 /// Returns the difference up to which two times count as equal in a run that ends at the time `end`.
 double slack(double time, double end) { return 1e-9 * std::max(std::abs(time), std::abs(end)); }
 
+/// Returns the values of an angle without its jumps by a period.
+std::vector<double> unwrapped(std::vector<double> values, double period) {
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (!std::isnan(values[k - 1])) values[k] = values[k - 1] + std::remainder(values[k] - values[k - 1], period);
+  return values;
+}
+
 Verdict verdict(const Expectation& e, const SeriesTable& series, const UndefinedSeries& undefined) {
   Verdict out{e.name,       std::numeric_limits<double>::quiet_NaN(), e.value, std::numeric_limits<double>::quiet_NaN(), false, {},
               e.not_binding};
   const auto values = series.find(e.series), times = series.find("time");
+  const double period = e.series.ends_with("inclination") ? 180 : 0;  // of the angle of an axis, in degrees
   if (values == series.end() || values->second.empty()) {
     out.reason = "the results hold no series " + e.series;
     return out;
@@ -65,11 +73,14 @@ Verdict verdict(const Expectation& e, const SeriesTable& series, const Undefined
       out.reason = "the results do not reach the time " + number_text(*e.at);
       return out;
     }
-    out.value = interpolated(times->second, values->second, std::clamp(*e.at, times->second.front(), times->second.back()));
+    out.value = interpolated(times->second, period > 0 ? unwrapped(values->second, period) : values->second,
+                             std::clamp(*e.at, times->second.front(), times->second.back()));
   } else {
     out.value = values->second.back();
   }
-  out.error = std::abs(out.value - e.value) / (e.kind == "relative" ? std::abs(e.value) : 1.0);
+  if (period > 0) out.value = std::remainder(out.value, period);
+  const double apart = period > 0 ? std::remainder(out.value - e.value, period) : out.value - e.value;
+  out.error = std::abs(apart) / (e.kind == "relative" ? std::abs(e.value) : 1.0);
   out.passed = out.error <= e.tolerance;  // false if the error is NaN
   if (const auto condition = undefined.find(e.series); std::isnan(out.value) && condition != undefined.end())
     out.reason = e.series + " is undefined " + (e.at ? "at the time " + number_text(*e.at) : "at the end") + ", because " + condition->second;

@@ -94,9 +94,8 @@ std::string yaml_text(const Record& section, int depth) {
   for (const Entry& entry : section.entries)
     if (!entry.value.empty()) out += indent + name_text(entry.key) + ": " + entry.value + "\n";
   for (const auto& inner : section.sections) {
-    const bool without_keys = inner->given && !inner->foreign && inner->entries.empty() && inner->sections.empty();
     if (const std::string text = yaml_text(*inner, depth + 1); !text.empty()) out += indent + name_text(inner->name) + ":\n" + text;
-    else if (without_keys) out += indent + name_text(inner->name) + ": {}\n";
+    else if (inner->given && !inner->foreign) out += indent + name_text(inner->name) + ": {}\n";
   }
   return out;
 }

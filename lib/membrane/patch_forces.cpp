@@ -17,7 +17,8 @@ void PatchForce::declare(deck::Section& section) {
     for (const char* key : {"direction", "radius", "force"})
       if (!section.given(key)) throw UserError(section.path(key) + " is missing: a force on a membrane needs `direction`, `radius` and `force`.");
   section.key("direction", direction, deck::any(), "1",
-              "vector from the centroid of the unstressed shape towards the middle of the membrane patch that the force acts on; its "
+              "vector from the centroid of the unstressed shape (of the resting shape, if Membrane/stress-free shape is given) towards the "
+              "middle of the membrane patch that the force acts on; its "
               "length has no effect (required; the default is not used)");
   section.key("radius", radius, deck::positive(), "length",
               "radius of the membrane patch that the force acts on: the largest distance of a point of the patch, on the unstressed membrane, from "

@@ -139,9 +139,9 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
 /// Creates the files of a new run.
 void Results::begin() {
   if (!request_.overwrite) output::check_vacant(directory_);
+  for (const auto& [file, name] : scene_.files) keep(file, name);  // first, because it may be a result of the run that is overwritten
   output::start_directory(directory_);
   run_ = identifier();
-  for (const auto& [file, name] : scene_.files) keep(file, name);
   if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_arrays(stokes::DuctFlow(*body_->duct)));
   record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
   series_.emplace(directory_);
@@ -221,7 +221,13 @@ void Results::record(Columns& row) {
                            (declared == columns_.all().end() ? "none" : declared->name));
   write([&] {
     record_->append(row.values());
-    if (record_->rows() == 1 || Clock::now() >= due_) write_files();
+    if (record_->rows() > 1 && Clock::now() < due_) return;
+    try {
+      write_files();
+    } catch (...) {
+      record_->truncate(record_->rows() - 1);  // the step is undone
+      throw;
+    }
   });
 }
 
@@ -248,7 +254,7 @@ void Results::warn_once(const std::string& kind, const std::string& sentence) {
 }
 
 void Results::write_surface(const Net& surface) {
-  write([&] { spline::write_iga(directory_ / "surface.iga", body_->space, surface); });
+  write([&] { output::write_whole(directory_ / "surface.iga", spline::iga_text(body_->space, surface), durable()); });
 }
 
 Results::Sampled Results::sample(const SurfaceSnapshot& snapshot, double time) {
@@ -287,7 +293,7 @@ int Results::close(const Account& account, const Phases& phases) {
   memory_ = peak_memory(ranks_);
   std::string missed;
   write([&] {
-    if (!unwritten_snapshots_.empty()) write_files();
+    if (!unwritten_snapshots_.empty() || rows_written_ != record_->rows()) write_files();
     missed = finish(account, phases);
   });
   if (!account.whole) missed.clear();

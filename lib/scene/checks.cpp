@@ -12,6 +12,7 @@
 #include "scene/memory.hpp"
 #include "scene/posts.hpp"
 #include "scene/scene.hpp"
+#include "scene/series/series.hpp"
 
 namespace tanktread {
 
@@ -103,6 +104,10 @@ void check_several(const Scene& scene) {
       throw UserError(list + ": " + error.what());
     }
   }
+  const Columns columns = run_columns(scene);
+  for (const ParticleKind& kind : scene.particles)
+    if (std::ranges::find(columns.all(), kind.name, &Column::name) != columns.all().end())
+      throw UserError(kind.path() + " has the name of a series of the run: give it another name.");
 }
 
 /// Throws UserError if the mesh cannot have the element lengths that the adaptation requires.

@@ -141,7 +141,10 @@ Net initial_shape(const ParticleScene& particle_scene, const Body& body, const o
 Net stress_free_shape(const ParticleScene& particle_scene, const Body& body, const Body& first) {
   const membrane::Options& membrane = particle_scene.membrane;
   if (membrane.stress_free == "resting") return body.rest;
-  if (membrane.stress_free == "file") return net_of_file(body.space, membrane.stress_free_file.value(), "Membrane/stress-free file");
+  if (membrane.stress_free == "file") {
+    const Net net = net_of_file(first.space, membrane.stress_free_file.value(), "Membrane/stress-free file");
+    return &first == &body ? net : spline::Transfer(first.nested(), body.nested())(net).net;
+  }
   if (particle_scene.particle.shape.imported)
     throw UserError(
         "Membrane/stress-free shape must be `resting` or `file` if Particle/shape is `file`, because the axis of that shape is not known.");

@@ -178,6 +178,11 @@ void ParticleKind::reject(const ParticleScene& particle_scene, Rejections& to) c
   to.pair(surfactant && (rigid || !drop), "Interface/surfactant",
           {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"},
           "only the interface of a drop can have a surfactant");
+  to.pair(surfactant && strong, "Interface/surfactant", "Membrane/load `strong`", "its load is by virtual work, in the form `weak` only");
+  const bool pieces = surface.polar() && surface.poles == "bezier transform";
+  to.pair(adaptation.enabled && pieces && (surfactant || particle_scene.maxwell_membrane() || !fields.empty() || particle_scene.contact.limiter),
+          "Adaptation/enabled with fields on surfaces or Contact/limiter", "Surface/poles `bezier transform`",
+          "the elements at these poles are not those of the mesh that adapts; give `c1`");
   const surface::TubeOptions& tube = particle_scene.tube;
   const std::pair<bool, Chosen> works[] = {{particle_scene.contact.limiter, "Contact/limiter"},
                                                 {particle.density_difference.has_value(), "Particle/density difference"},

@@ -54,6 +54,7 @@ struct ParticlesSection {
         "particle. Keys that are not set are taken from the particle that its key `like` names, or otherwise from Particles/defaults",
         [this](const std::string& name, deck::Section& inner) {
           if (name.find_first_of("/=") != name.npos) throw UserError(inner.path() + ": the name of a particle must not contain `/` or `=`.");
+          if (name == "." || name == "..") throw UserError(inner.path() + ": the name of a particle must not be `.` or `..`.");
           all.emplace_back(defaults).name = name;
           all.back().declare(inner, registry);
         },

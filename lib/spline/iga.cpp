@@ -295,8 +295,8 @@ SplineSurface read_iga(const std::filesystem::path& file) {
   return out;
 }
 
-void write_iga(const std::filesystem::path& file, const Space& space, const Net& net) {
-  std::ofstream out(file);
+std::string iga_text(const Space& space, const Net& net) {
+  std::ostringstream out;
   out << std::setprecision(std::numeric_limits<double>::max_digits10);
   out << "type surface\nnodeN " << space.n_points << "\nelemN " << space.elements.size() << "\n";
   for (int i = 0; i < space.n_points; ++i) out << "node " << net(i, 0) << " " << net(i, 1) << " " << net(i, 2) << " 1\n";
@@ -307,7 +307,7 @@ void write_iga(const std::filesystem::path& file, const Space& space, const Net&
     for (Eigen::Index i = 0; i < e.extraction->rows(); ++i)
       for (Eigen::Index b = 0; b < e.extraction->cols(); ++b) out << (*e.extraction)(i, b) << (b + 1 < e.extraction->cols() ? " " : "\n");
   }
-  if (!out.flush()) throw UserError("Surface file " + file.string() + " cannot be written.");
+  return out.str();
 }
 
 }  // namespace tanktread::spline

@@ -28,7 +28,7 @@ struct SplineSurface {
 /// at the candidate. If neither the function nor the candidate has been assigned yet, the candidate becomes the collocation point of the function.
 SplineSurface read_iga(const std::filesystem::path& file);
 
-/// Writes a surface with 17 digits, so that reading it returns the same numbers. Throws UserError if the file cannot be written.
-void write_iga(const std::filesystem::path& file, const Space& space, const Net& net);
+/// Returns a surface as text of this format with 17 digits, so that reading it returns the same numbers.
+std::string iga_text(const Space& space, const Net& net);
 
 }  // namespace tanktread::spline

@@ -23,8 +23,12 @@ constexpr std::string_view unfinished = ".part", damaged = ".damaged", ladder = 
 
 bool is_result(const std::string& name) {
   return name == "run.h5" || name == "duct.h5" || name == "channel.h5" || name == "run.hdf.series" || name == "summary.yaml" ||
+         name == "surface.iga" ||
          (name.starts_with("snapshot_") && (name.ends_with(".hdf") || name.find(std::string(".hdf").append(damaged)) != name.npos));
 }
+
+/// Returns true if the result shows that a run has recorded something. The flow in a duct is recorded before the first row.
+bool is_of_run(const std::string& name) { return is_result(name) && name != "duct.h5" && name != "channel.h5"; }
 
 bool is_unfinished(const std::string& name) {
   return name.ends_with(unfinished) && is_result(name.substr(0, name.size() - unfinished.size()));
@@ -109,7 +113,7 @@ void check_vacant(const fs::path& directory) {
   std::error_code absent;
   if (!fs::is_directory(directory, absent)) return;
   in_directory(directory, [&] {
-    if (fs::exists(directory / ladder) || !files_where(directory, is_result).empty())
+    if (fs::exists(directory / ladder) || !files_where(directory, is_of_run).empty())
       throw UserError(directory.string() + " holds the results of a run: --resume " + directory.string() +
                       " continues it, --overwrite deletes it first, --output chooses another directory.");
   });
@@ -126,9 +130,10 @@ void start_results(const fs::path& directory) {
 void start_directory(const fs::path& directory) {
   start_results(directory);
   in_directory(directory, [&] {
-    fs::remove(directory / ladder);
+    if (!fs::exists(directory / ladder)) return;  // folders `level_<k>` are not those of a ladder
     for (const auto& entry : fs::directory_iterator(directory))
       if (is_level(entry)) start_results(entry.path());
+    fs::remove(directory / ladder);
   });
 }
 

@@ -131,8 +131,9 @@ class CoupledParticles : public ParticleSystem {
     const Net load = std::ranges::any_of(members_, needs_load) ? capsule_->evaluate_on_demand(own.x, {}, 0)->load() : Net(Net::Zero(own.x.rows(), 3));
     std::vector<Net> loads;
     for (const Member& member : members_) loads.push_back(member.own(load));
+    const double origin = capsule_->tube() ? capsule_->tube()->frame_origin(own.x) : 0;  // before any mesh changes
     for (std::size_t p = 0; p < members_.size(); ++p)
-      if (due(members_[p])) adapt_mesh(p, loads[p], own, totals);
+      if (due(members_[p])) adapt_mesh(p, loads[p], origin, own, totals);
     if (replaced_.empty()) return false;
     const std::unique_ptr<SurfaceFields> fields = std::move(fields_);  // outlives its capsule, see SurfaceFields::transferred
     rebuild(own.x);
@@ -276,12 +277,13 @@ class CoupledParticles : public ParticleSystem {
   /// Returns the largest error of the slope (the velocity of the control points) that the tolerance allows.
   double accuracy() const { return scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate()); }
 
-  /// Adapts the mesh of particle p if the indicator requires it.
-  void adapt_mesh(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
+  /// Adapts the mesh of particle p if the indicator requires it. `origin`: Tube::frame_origin() of the tube; 0 without a tube.
+  void adapt_mesh(std::size_t p, const Net& load, double origin, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
-    if (const coupling::Tube* tube = capsule_->tube())
-      widths = films(members_, p, tube->in_wall_frame(state.x), tube->cell(), &tube->wall());
+    Net in_frame = state.x;
+    in_frame.col(0).array() -= origin;
+    if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, in_frame, tube->cell(), &tube->wall());
     else if (scene_.has_gaps() || scene_.wall.present) widths = films(members_, p, state.x, capsule_->cell());
     Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths,
                              fields_->values_at(p));

@@ -15,7 +15,8 @@ using surface::Vec2;
 
 constexpr int far_around = 24, order_far = 5, order_close = 7;
 constexpr double far = 1.2, smallest = 1e-5;  // far: distance from the plane of the end beyond which the fixed nodes far_ are accurate enough.
-                                              // smallest: size below which a cell is not divided. Both are divided by the radius of the duct
+                                              // divided by the largest distance of the outline from its centroid. smallest: size below which a
+                                              // cell is not divided, divided by the radius of the duct
 
 Mat3 axes(const surface::Channel::Section& place) {
   Mat3 axes;
@@ -31,6 +32,7 @@ DuctEnd::DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inwa
     const Vec2 arm = at.x - flow_.outline().centroid();
     if (arm[0] * at.d[1] - arm[1] * at.d[0] <= 0)
       throw UserError("Channel/outline must be star-shaped about its centroid: each of its points must be visible from there.");
+    arm_ = std::max(arm_, arm.norm());
   }
   Nodes nodes;
   cells_ = cells(far_around);
@@ -135,7 +137,7 @@ Net DuctEnd::velocities(const Net& x) const {
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     const Vec3 target = x.row(i).transpose(), local = turn.transpose() * (target - place_.centre);
-    if (std::abs(local[0]) > far * flow_.radius()) {
+    if (std::abs(local[0]) > far * arm_) {
       at.push_back(target), rows.push_back(i);
       continue;
     }

@@ -59,6 +59,7 @@ class DuctEnd {
   DuctFlow flow_;
   surface::Channel::Section place_;
   double inward_;
+  double arm_ = 0;  // largest distance of the outline from its centroid
   Sources far_;
   std::vector<Cell> cells_;
   std::vector<Sources> close_;  // for each cell, its nodes as sources, for targets close to the plane of the end but not to the cell

@@ -84,7 +84,8 @@ void Channel::find_ends() {
   if (factors_) take(factors_->breaks.front(), factors_->breaks.back());
   if (own_.half_length) take(-*own_.half_length - own_.corner_radius.value_or(0), *own_.half_length + own_.corner_radius.value_or(0));
   if (own_.bend_radius) take(own_.bend_start, own_.bend_start + *own_.bend_radius * own_.bend_angle * pi / 180);
-  start_ = own_.start.value_or(first_ - 4 * radius), end_ = own_.end.value_or(last_ + 4 * radius);
+  const auto radius_at = [&](double s) { return factors_ ? outline(s).radius() : radius; };  // other profiles end with the given outline
+  start_ = own_.start.value_or(first_ - 4 * radius_at(first_)), end_ = own_.end.value_or(last_ + 4 * radius_at(last_));
   if (options_.period == 0) return;
   start_ = (first_ + last_ - options_.period) / 2, end_ = start_ + options_.period;
 }
@@ -117,7 +118,7 @@ void Channel::check() {
     throw UserError(
         formatted("Channel/start and Channel/end must leave straight ends of 1.7 R_T = %.4g: the channel changes from s = %.4g to %.4g, "
                   "but the computed part extends from %.4g to %.4g.",
-                  straight_end * radius, first_, last_, start_, end_));
+                  straight_end * std::max(outline(start_).radius(), outline(end_).radius()), first_, last_, start_, end_));
   if (own_.bend_radius && *own_.bend_radius <= 1.05 * inwards)
     throw UserError(
         formatted("Channel/bend radius must exceed the width of the channel from its centre line to the inner wall of the bend, %.4g, by at least "

@@ -16,6 +16,8 @@
 namespace tanktread::spline {
 namespace {
 
+void write(const std::string& path, const Space& space, const Net& net) { std::ofstream(path) << iga_text(space, net); }
+
 /// A temporary file that is deleted at the end of the test.
 struct Scratch {
   std::filesystem::path path =
@@ -44,7 +46,7 @@ TEST(Iga, AWrittenSurfaceIsReadUnchanged) {
       const Space s = space(mesh, rule);
       const Net net = ball(mesh);
       const Scratch file;
-      write_iga(file.path, s, net);
+      write(file.path, s, net);
       const SplineSurface read = read_iga(file.path);
       ASSERT_EQ(read.space.elements.size(), s.elements.size());
       EXPECT_EQ(read.net, net);
@@ -59,7 +61,7 @@ TEST(Iga, AWrittenSurfaceIsReadUnchanged) {
 TEST(Iga, EveryFunctionOfAnImportedSurfaceHasASeparateSite) {
   const TMesh mesh = cube(4);
   const Scratch file;
-  write_iga(file.path, space(mesh, ExtraordinaryRule::g1), ball(mesh));
+  write(file.path, space(mesh, ExtraordinaryRule::g1), ball(mesh));
   const SplineSurface read = read_iga(file.path);
   EXPECT_LT(collocation_condition(read.space), 15);  // on a uniform mesh the collocation points are the vertices
   for (const auto& sites : read.space.collocation) {
@@ -79,7 +81,7 @@ TEST(Iga, SurfacesWithPolesAreClosedToo) {
     net.row(i) << std::cos(longitude) * std::cos(latitude), std::sin(longitude) * std::cos(latitude), std::sin(latitude);
   }
   const Scratch file;
-  write_iga(file.path, s, net);
+  write(file.path, s, net);
   EXPECT_EQ(read_iga(file.path).space.n_points, s.n_points);
 }
 
@@ -99,7 +101,7 @@ bool says(const std::string& message, const std::string& part) { return message.
 std::string complaint(const std::function<void(std::string&)>& change) {
   const TMesh mesh = cube(3);
   const Scratch file;
-  write_iga(file.path, space(mesh, ExtraordinaryRule::g1), ball(mesh));
+  write(file.path, space(mesh, ExtraordinaryRule::g1), ball(mesh));
   std::string text = file.text();
   change(text);
   file.write(text);
@@ -156,11 +158,11 @@ TEST(Iga, InvertedElementsAndSurfacesAreRejected) {
   const Net net = ball(mesh);
   const Scratch file;
   s.elements[7] = turned_over(s.elements[7]);
-  write_iga(file.path, s, net);
+  write(file.path, s, net);
   EXPECT_TRUE(says(refusal(file.path), "inverted"));
   s.elements[7] = turned_over(s.elements[7]);
   for (Element& e : s.elements) e = turned_over(e);
-  write_iga(file.path, s, net);
+  write(file.path, s, net);
   EXPECT_TRUE(says(refusal(file.path), "inside out"));
 }
 

@@ -168,7 +168,6 @@ TEST(FreeBodyInTube, IsInvariantUnderRotationAndTranslation) {
   solvers.tolerance = 1e-9;
   quadrature::Options quadrature;
   quadrature.tolerance = 1e-6;
-  s.tube->particles().set_reference(s.x);
   RigidTractions tractions(s.space, s.x, s.x, single_body(s.space, 0.5, viscosity, quadrature, solvers), {s.tube.get()}, {}, s.ranks);
   stokes::FlowOptions options;
   options.type = "duct", options.mean_velocity = 1.3;

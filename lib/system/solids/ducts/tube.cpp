@@ -45,10 +45,7 @@ stokes::Evaluations Tube::kernel_evaluations() const {
   return between_ ? all + between_->layer.evaluations() : all;
 }
 
-Net Tube::in_wall_frame(Net x) const {
-  if (!fixed()) x.col(0).array() -= particle_->geometry.measures(x).centroid[0];
-  return x;
-}
+double Tube::frame_origin(const Net& x) const { return fixed() ? 0 : particle_->geometry.measures(x).centroid[0]; }
 
 void Tube::set_shape(const Net& x, std::optional<double> origin) {
   if (same(latest_shape_, x) && latest_origin_ == origin) return;

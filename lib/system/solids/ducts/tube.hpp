@@ -170,8 +170,8 @@ class Tube {
   /// Returns the smallest distance between the particle and the wall; negative if they intersect.
   double gap() const;
 
-  /// Returns the particle's net in the frame of `wall()`, which moves with the particle in a straight tube.
-  Net in_wall_frame(Net x) const;
+  /// Returns x1 of the origin of the frame of `wall()` for the particle's net x. The frame moves with the particle in a straight tube.
+  double frame_origin(const Net& x) const;
 
   /// Returns whether the wall is fixed in the laboratory frame (a channel), so that results depend on the position along the channel.
   bool fixed() const { return wall().channel != nullptr; }
