@@ -112,6 +112,10 @@ def an_expectation_fails_a_run_only_with_the_keys_it_was_stated_for():
     check([one["not binding"] for one in summary("out")["expect"]] == 2 * ["the deck was changed: Flow/viscosity"], summary("out")["expect"])
     # the expectation does not bind the resumed run either
     run("--resume", "out", "--quiet", "--set", "Time/final time=0.06")
+    # an expectation about the end of a run, which it has met, does not bind the longer run
+    end = deck(SMALL + "  Expect: {end: {series: time, value: 0.05, tolerance: 1.0e-9}}\n", "end.yaml")
+    run(end, "--set", "Time/final time=0.05", "--quiet", "--output", "met")
+    run("--resume", "met", "--quiet", "--set", "Time/final time=0.06")
 
 
 def an_expectation_compares_times_with_units():

@@ -38,6 +38,9 @@ def a_finished_run_is_deleted_only_when_asked():
     pathlib.Path("notes/notes.txt").write_text("mine")
     run("deck.yaml", "--output", "notes", "--quiet")
     check(pathlib.Path("notes/notes.txt").read_text() == "mine", "a file that is no result is gone")
+    run("deck.yaml", "--output", "sweep/level_1", "--quiet")
+    run("deck.yaml", "--output", "sweep", "--quiet")
+    check(pathlib.Path("sweep/level_1/run.h5").exists(), "results in a folder are gone that no requested accuracy has made")
 
 
 def runs_with_changed_keys_have_directories_named_after_the_keys():

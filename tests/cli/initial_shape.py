@@ -90,6 +90,13 @@ def a_run_whose_deck_names_its_particle_is_the_run_of_one_particle():
     check("two is a run of several particles" in said, said)
 
 
+def a_run_that_starts_from_its_own_directory_keeps_the_shape():
+    run(deck(FIRST % ("0.05", "false")), "--output", "own", "--quiet")
+    run(deck(THEN % "run: own"), "--output", "other", "--quiet")
+    run("deck.yaml", "--output", "own", "--overwrite", "--quiet")
+    check((series("own", "taylor_inertia") == series("other", "taylor_inertia")).all(), series("own", "taylor_inertia"))
+
+
 def copies_translate_and_rotate_a_shape_from_a_file_or_run():
     run(deck(FIRST % ("0.05", "false")), "--output", "first", "--quiet", "--set", "Particle/center=[0.5, 0, 0]", "--set", "Particle/drift=held")
     deck("0, 0, 0\n4, 1, 0, 0, 0, 90\n", "positions.csv")

@@ -208,6 +208,13 @@ def a_looser_request_keeps_the_finer_levels_of_a_resumed_run():
     check([level["level"] for level in summary("kept")["accuracy"]["levels"]] == [0, 1, 2, 3], summary("kept")["accuracy"]["levels"])
 
 
+def the_interval_of_a_finished_level_may_change():
+    deck(DROP.replace("final time: 1.0", "final time: 0.2"))
+    run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/levels=3", "--quiet", "--output", "kept", code=1)
+    run("--resume", "kept", "--set", "Output/interval=0.05", "--set", "Accuracy/levels=4", "--quiet", code=1)
+    check([level["level"] for level in summary("kept")["accuracy"]["levels"]] == [0, 1, 2, 3], summary("kept")["accuracy"]["levels"])
+
+
 def the_wall_clock_limit_is_respected_and_reported():
     deck(DROP)
     result = run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/wall-clock limit=0.6", "--quiet", "--output", "short",

@@ -135,6 +135,15 @@ TEST(Verdicts, StateWhereASeriesIsUndefined) {
   EXPECT_EQ(all[2].reason, "gap is undefined at the end, because two bodies are none");
 }
 
+TEST(Verdicts, OfAnInclinationHaveThePeriodOfAnAxis) {
+  SeriesTable table;
+  for (int k = 0; k <= 20; ++k) table["time"].push_back(k), table["inclination"].push_back(std::remainder(80.5 + k, 180));
+  for (const auto& [at, value] : {std::pair("9.5", "90"), {"9.5", "-90"}, {"9.25", "89.75"}, {"20", "-79.5"}}) {
+    const auto found = verdicts(expectations(std::string("    inclination: {value: ") + value + ", tolerance: 1e-9, at: " + at + "}\n"), table);
+    EXPECT_TRUE(found[0].passed) << at << ": " << found[0].value;
+  }
+}
+
 TEST(Verdicts, FailForNan) {
   EXPECT_FALSE(verdicts(expectations("    a: {value: 1, tolerance: 1e70}\n"), {{"time", {0.0}}, {"a", {std::nan("")}}})[0].passed);
 }
