@@ -140,7 +140,7 @@ void Scene::declare(deck::Section& root) {
   if (several || domain.present || root.documenting())
     root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
   else if (root.given("Contact"))
-    throw UserError("Contact needs Particles or a periodic Domain, because a single particle has no gaps to other particles.");
+    throw UserError("Contact needs Particles or Domain, because a single particle has no gaps to other particles.");
   wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
   const bool any_deforms = !std::ranges::all_of(particles, [](const ParticleKind& kind) { return kind.particle.rigid(); });
   if (any_deforms || volume_given || root.documenting()) root.section("Volume", volume, "conservation of the particle's volume");

@@ -16,26 +16,9 @@ namespace tanktread::output {
 
 namespace {
 
-/// Returns, for each element, a number that is equal for all elements of one surface. Elements of one surface share control points.
-std::vector<int> surfaces_of(const spline::Space& space) {
-  std::vector<int> of_point(static_cast<std::size_t>(space.n_points));
-  std::iota(of_point.begin(), of_point.end(), 0);
-  const auto root = [&](int k) {
-    while (of_point[static_cast<std::size_t>(k)] != k)
-      k = of_point[static_cast<std::size_t>(k)] = of_point[static_cast<std::size_t>(of_point[static_cast<std::size_t>(k)])];
-    return k;
-  };
-  for (const spline::Element& element : space.elements)
-    for (const int point : element.points) of_point[static_cast<std::size_t>(root(point))] = root(element.points.front());
-  std::vector<int> found;
-  for (const spline::Element& element : space.elements) found.push_back(root(element.points.front()));
-  return found;
-}
-
-/// Returns, for each point, the index of the first point with the same position on the same surface, which may be the point itself. `surface_of`:
-/// number of the surface of each point. For this search, the points are sorted along a direction that is unrelated to the symmetries of meshes, so
-/// that few points have nearly equal coordinates along it.
-std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places, const std::vector<int>& surface_of) {
+/// Returns, for each point, the index of the first point with the same position, which may be the point itself. For this search, the points are
+/// sorted along a direction that is unrelated to the symmetries of meshes, so that few points have nearly equal coordinates along it.
+std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places) {
   const Vec3 direction(0.8137, 0.4691, 0.3433);
   double size = 0;
   std::vector<double> along;
@@ -50,7 +33,7 @@ std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places, const 
   std::iota(first.begin(), first.end(), 0);
   for (std::size_t a = 0; a < order.size(); ++a)
     for (std::size_t b = a; b-- > 0 && along[order[a]] - along[order[b]] <= tolerance;)
-      if (surface_of[order[a]] == surface_of[order[b]] && (places[order[a]] - places[order[b]]).norm() <= tolerance) {
+      if ((places[order[a]] - places[order[b]]).norm() <= tolerance) {
         const std::size_t low = std::min(first[order[a]], first[order[b]]);
         first[order[a]] = first[order[b]] = low;
       }
@@ -76,8 +59,6 @@ LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net) {
   LagrangeMesh mesh;
   std::vector<Vec3> places;
   std::vector<spline::Site> sites;
-  const std::vector<int> surfaces = surfaces_of(space);
-  std::vector<int> surface_of;
   mesh.offsets.push_back(0);
   for (std::size_t e = 0; e < space.elements.size(); ++e) {
     const int p = space.elements[e].degree;
@@ -85,11 +66,10 @@ LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net) {
     for (const auto& [i, j] : node_order(p)) {
       sites.push_back({static_cast<int>(e), double(i) / p, double(j) / p});
       places.push_back(surface::position(points.patch(), sites.back().s, sites.back().t));
-      surface_of.push_back(surfaces[e]);
     }
     mesh.offsets.push_back(static_cast<std::int64_t>(places.size()));
   }
-  const std::vector<std::size_t> first = first_of_equals(places, surface_of);
+  const std::vector<std::size_t> first = first_of_equals(places);
   std::vector<std::int64_t> number(places.size());
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (first[k] == k) {

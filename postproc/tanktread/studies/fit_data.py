@@ -168,8 +168,9 @@ class SeriesData(Datum):
         if self.times is not None and not self.places:
             expect(numpy.min(self.times) >= times[0] - 1e-9 * abs(times[-1]),
                    f"{self.name}: its data begin before the run, at {numpy.min(self.times):g}: give `origin: free`")
-        expect(not self.places or self.span <= (times[-1] - times[0]) * (1 + 1e-9),
-               f"{self.name}: the run is shorter than the data, {self.span:g}: set Time/final time")
+        if self.places:
+            expect(self.span <= (times[-1] - times[0]) * (1 + 1e-9),
+                   f"{self.name}: the run is shorter than the data, {self.span:g}: set Time/final time")
         # the largest estimated error; for a ratio, the errors of both series combined; 0 if it is unknown
         if self.discretisation is None:
             for name in self.series:
