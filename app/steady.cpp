@@ -1,9 +1,10 @@
 #include <chrono>
-#include <exception>
 #include <cstdio>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "app/runs.hpp"
@@ -311,10 +312,13 @@ class BranchSearch : public SteadyRun {
 
 int find_steady(const Scene& scene, const RunRequest& request) {
   if (request.resume) throw UserError("--resume continues a run in time: " + scene.sought().here + " has no time steps to continue.");
-  if (scene.continuation.present) return BranchSearch(scene, request).go();
-  if (scene.periodic.present) return PeriodicSearch(scene, request).go();
-  if (scene.steady.present) return SteadySearch(scene, request).go();
-  return InitialShape(scene, request).go();
+  switch (scene.search()) {
+    case Search::steady: return scene.continuation.present ? BranchSearch(scene, request).go() : SteadySearch(scene, request).go();
+    case Search::periodic: return PeriodicSearch(scene, request).go();
+    case Search::spectrum: return InitialShape(scene, request).go();
+    case Search::none: break;
+  }
+  throw std::logic_error("a run in time is not a search");
 }
 
 }  // namespace tanktread

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -76,6 +77,7 @@ output::Entries<std::string> evaluation_cost(const Scene& scene) {
   if (!scene.in_system() && scene.first().particle.motion != Motion::free) return {};
   for (const int divisor : {4, 2}) {
     Scene coarse = scene;
+    coarse.walls = std::make_shared<coupling::SharedWalls>();  // walls keep a pointer to the Phases of measured()
     if (!coarsen(coarse, divisor)) continue;
     Cost cost{};
     try {

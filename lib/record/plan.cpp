@@ -145,7 +145,7 @@ std::string solvers_line(const Scene& scene) {
 /// Returns the line of the plan about a rigid particle: that its motion is prescribed, or how its free motion is computed.
 std::string rigid_line(const ParticleScene& particle_scene, const Body& body) {
   if (particle_scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
-  if (body.wall || particle_scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
+  if (body.wall || particle_scene.medium()) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
   return std::string("rigid and free, no membrane: six rigid motions") +
          (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") +
          ", solved once, determine its motion";

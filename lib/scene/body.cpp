@@ -192,9 +192,10 @@ surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
   const coupling::LoadList loads = make_loads(particle_scene, body, body.wall.get()).all();
   if (channel) return coupling::symmetry(particle_scene.symmetry, body.space, nets, *body.wall, loads);
-  const auto walls = particle_scene.wall.planes();
-  return coupling::symmetry(particle_scene.symmetry, body.space, nets, body.flow, loads,
-                            walls.empty() ? particle_scene.domain.medium.get() : &walls.front(), particle_scene.domain.cell());
+  const auto medium = particle_scene.medium();
+  const auto walls = particle_scene.wall.planes();  // meshed plates, if there is no medium
+  return coupling::symmetry(particle_scene.symmetry, body.space, nets, body.flow, loads, medium || walls.empty() ? medium.get() : &walls.front(),
+                            particle_scene.domain.cell());
 }
 
 coupling::LoadList ParticleLoads::all() const {

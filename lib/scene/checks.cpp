@@ -29,20 +29,6 @@ void check_viscosity_ratio(const ParticleScene& particle_scene) {
                   most, ratio));
 }
 
-/// Throws UserError if a key of the particle's motion belongs to another motion.
-void check_motion(const ParticleScene& particle_scene) {
-  const ParticleOptions& particle = particle_scene.particle;
-  if (particle.motion != Motion::prescribed && (particle.velocity || particle.angular_velocity))
-    throw UserError(std::string("Particle/") + (particle.velocity ? "velocity" : "angular velocity") +
-                    " belongs to Particle/motion `prescribed`, but Particle/motion is " + text(particle.motion) + ".");
-  if (particle.motion != Motion::free && (particle.force || particle.torque))
-    throw UserError(std::string("Particle/") + (particle.force ? "force" : "torque") +
-                    " is for Particle/motion `free`, but Particle/motion is " + text(particle.motion) +
-                    (particle.rigid()
-                         ? ": the force on a body with prescribed motion follows from its motion."
-                         : ": for a deformable particle give a force per volume, by Particle/density difference and Flow/gravity."));
-}
-
 /// Throws UserError if a key of the particle needs another key or section that the deck does not have.
 void check_needs(const ParticleScene& particle_scene) {
   if (particle_scene.particle.density_difference && !particle_scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
@@ -82,6 +68,7 @@ void check_shared(const Scene& scene) {
   scene.domain.check(scene.flow, scene.tube.present ? scene.tube.list() : "");
   if (scene.wall.present) scene.wall.check(scene.flow, scene.domain.cell());
   check_posts(scene);
+  check_posts_memory(scene);
 }
 
 /// Checks each of several particles as a separate scene, and checks that the particles can be combined in one scene. Throws UserError with the name
@@ -135,7 +122,6 @@ void Scene::check() const {
 }
 
 void ParticleScene::check(Rejections found) const {
-  check_motion(*this);
   check_needs(*this);
   particle.shape.check();
   surface.check();

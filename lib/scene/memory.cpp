@@ -8,6 +8,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "scene/scene.hpp"
+#include "scene/solids.hpp"
 #include "scene/tube.hpp"
 #include "surface/walls/channel.hpp"
 #include "system/parallel/ranks.hpp"
@@ -103,7 +104,13 @@ void check_first_kind(const Scene& scene) {
   for (const ParticleScene& one : scene.particle_scenes())
     if (one.particle.rigid()) n_points += points(one);
   if (n_points == 0) throw UserError("Solvers/rigid bodies `first kind` is for rigid bodies, but every Particle deforms.");
-  check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
+  check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles * coupling::Ranks().size());
+}
+
+void check_posts_memory(const Scene& scene) {
+  if (scene.posts.empty() || scene.tube.present) return;
+  check_bytes("Surface/azimuthal elements and Surface/axial elements of posts", formatted("give at most %.0f control points", most_wall_points()),
+              solid_points(scene), doubles * coupling::Ranks().size());
 }
 
 }  // namespace tanktread

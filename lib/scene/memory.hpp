@@ -14,6 +14,9 @@ void check_memory(const ParticleScene& particle_scene);
 /// equation is too large.
 void check_first_kind(const Scene& scene);
 
+/// Throws UserError if the operator of the tractions on plates and posts is too large. Plates alone are inverted by Fourier series.
+void check_posts_memory(const Scene& scene);
+
 /// Returns the largest number of control points that the wall of a tube may have. Each rank stores the factors of the wall, and the factors of all
 /// ranks together must fit into the allowed memory.
 double most_wall_points();

@@ -26,6 +26,13 @@ void ParticleOptions::reject(const ParticleScene& particle_scene, Rejections& to
   to.pair(density_difference && prescribed, "Particle/density difference", moved, forced);
   to.pair(prescribed && particle_scene.name.empty() && particle_scene.time.steady_tolerance, "Time/steady tolerance", moved,
           "a single body with prescribed motion has no shape or rotation that could become steady");
+  for (const auto& [key, given] : {std::pair("Particle/velocity", velocity.has_value()), {"Particle/angular velocity", angular_velocity.has_value()}})
+    to.pair(given && !prescribed, key, {choice(), "Particle/motion `deforming` or `free`"}, "it belongs to `prescribed`");
+  for (const auto& [key, given] : {std::pair("Particle/force", force.has_value()), {"Particle/torque", torque.has_value()}}) {
+    to.pair(given && prescribed, key, moved, forced);
+    to.pair(given && !rigid(), key, "Particle/motion `deforming`",
+            "it is for `free`; for a deformable particle give a force per volume, by Particle/density difference and Flow/gravity");
+  }
   to.pair(forces && !prescribed, "Particle/forces", {choice(), "Particle/motion `deforming` or `free`"},
           "it is the method for the force on a body with prescribed motion");
   to.pair(forces && prescribed && particle_scene.in_system() && particle_scene.runs_in_time() && !particle_scene.tube.repulsion, "Particle/forces",

@@ -199,6 +199,11 @@ bool ParticleScene::reciprocal_forces() const {
   return particle.forces ? *particle.forces == "reciprocal" : quadrature.rule == quadrature::LayerRule::adaptive;
 }
 
+Chosen SharedOptions::sought() const {
+  const Search chosen = search();
+  return {chosen == Search::steady ? "Steady" : chosen == Search::periodic ? "Periodic" : "Spectrum", any_search};
+}
+
 std::shared_ptr<const stokes::Medium> SharedOptions::medium() const {
   const auto plane = wall.plane();
   return plane ? std::make_shared<stokes::PlaneWall>(*plane) : domain.medium;
@@ -236,7 +241,7 @@ std::string_view why_in_system(const SharedOptions& shared, const ParticleKind& 
   if (!kind.particle.rigid()) return "Particle/motion";
   if (shared.domain.present) return "Domain";
   if (shared.output.power_balance) return "Output/power balance";
-  if (!shared.runs_in_time()) return "Steady, Periodic or Spectrum";
+  if (!shared.runs_in_time()) return SharedOptions::any_search;
   if (shared.tube.repulsion) return "repulsion";
   if (shared.flow.history && kind.particle.motion == Motion::prescribed) return "Flow/history";
   if (!shared.series.empty()) return "Output/series";

@@ -48,6 +48,10 @@ namespace deck {
 class Units;
 }
 
+/// Search for shapes or motions that takes the place of a run in time: the section of the deck that asks for it. `spectrum` is the spectrum of the
+/// initial shape; that of a shape that is searched for belongs to the other searches.
+enum class Search { none, steady, periodic, spectrum };
+
 /// Options of a deck that all particles share, with one section of the deck each.
 struct SharedOptions {
   const Registry* registry = &no_parts;  ///< user-defined loads, fields, flows, media and series
@@ -76,11 +80,14 @@ struct SharedOptions {
   std::shared_ptr<coupling::SharedWalls> walls;  ///< walls, plates and posts, which the systems of one search share
   std::vector<std::pair<std::string, std::string>> files;  ///< files that the deck names: path, and name of the copy that the run keeps
 
-  bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
+  Search search() const {
+    return steady.present ? Search::steady : periodic.present ? Search::periodic : spectrum.present ? Search::spectrum : Search::none;
+  }
+  bool runs_in_time() const { return search() == Search::none; }
+  static constexpr const char* any_search = "Steady, Periodic or Spectrum";  ///< the sections of all searches, for messages
   /// Returns true if a single particle has films of fluid next to it: at a wall, or between the particle and its periodic images.
   bool has_films_around_one() const { return wall.present || tube.present || domain.present; }
-  /// Returns the section of the deck (Steady, Periodic or Spectrum) that replaces the simulation in time.
-  Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }
+  Chosen sought() const;  ///< returns the section of search(), for messages about rejected combinations
   /// Returns the type of the flow, for messages about rejected combinations.
   Chosen flow_choice() const { return {flow.choice(), "Flow/type"}; }
   /// Returns the section that describes a duct, for messages about rejected combinations.

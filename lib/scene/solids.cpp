@@ -109,19 +109,28 @@ void check_outside_of_posts(const Scene& scene, const std::vector<Member>& membe
   }
 }
 
-std::string solids_line(const Scene& scene, int ranks) {
+double solid_points(const Scene& scene) {
   const stokes::PeriodicCell cell = *scene.domain.cell();
   double points = 0;
+  if (scene.wall.solid) {
+    const auto [first, second] = scene.wall.elements(cell, scene.least_radius());
+    points += (scene.wall.distance ? 2. : 1.) * first * second;
+  }
+  for (const Post& post : scene.posts) points += static_cast<double>(post.around) * elements_along(post, period_of(post, cell));
+  return points;
+}
+
+std::string solids_line(const Scene& scene, int ranks) {
+  const stokes::PeriodicCell cell = *scene.domain.cell();
+  const double points = solid_points(scene);
   std::string line;
   if (scene.wall.solid) {
     const auto [first, second] = scene.wall.elements(cell, scene.least_radius());
     const int plates = scene.wall.distance ? 2 : 1;
-    points += plates * first * second;
     line = formatted("%d plate%s of %d x %d elements", plates, plates > 1 ? "s" : "", first, second);
   }
   for (const Post& post : scene.posts) {
     const int along = elements_along(post, period_of(post, cell));
-    points += post.around * along;
     line += (line.empty() ? "" : ", ") + formatted("a post of %d x %d elements", post.around, along);
   }
   line += formatted(": %.0f unknowns of their traction, ", 3 * points);

@@ -20,6 +20,9 @@ std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phas
 /// Throws UserError if a particle crosses a post at the start.
 void check_outside_of_posts(const Scene& scene, const std::vector<Member>& members);
 
+/// Returns the number of collocation points of all plates and posts.
+double solid_points(const Scene& scene);
+
 /// Returns the line that describes plates and posts in the plan that is printed before a run.
 std::string solids_line(const Scene& scene, int ranks);
 

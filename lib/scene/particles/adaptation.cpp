@@ -257,7 +257,7 @@ std::vector<Warning> refine_isolated_body(const ParticleScene& particle_scene, B
     only[0].body = std::make_unique<Body>(std::move(body));
     only[0].block = {.n_points = only[0].body->space.n_points, .n_elements = static_cast<int>(only[0].body->space.elements.size())};
     std::vector<double> widths;
-    if (only[0].body->wall || particle_scene.wall.present) widths = films(only, 0, x, {}, only[0].body->wall.get());
+    if (particle_scene.has_films_around_one()) widths = films(only, 0, x, {}, only[0].body->wall.get());
     motion::State state;
     state.x = only[0].body->rest;
     Adapted change = adapted(particle_scene, *only[0].body, only[0].block, state, load, false, widths);

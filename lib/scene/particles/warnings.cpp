@@ -152,8 +152,11 @@ std::string Warnings::compression(const StepFindings& signs) {
 std::string Warnings::stiffness(const StepFindings& signs) {
   const bool fixed = scene_.time.fixed_step.has_value(), explicit_scheme = scene_.time.scheme == "bs3";
   const bool iterated = scene_.time.scheme == "crank-nicolson" && scene_.time.nonlinear_solver == "plain";
-  if (!scene_.elastic() || !(explicit_scheme || iterated)) return {};
-  const double limit = explicit_scheme ? 2.51 : 2, reached = signs.step * tanktread::stiffness(scene_, signs.element);
+  double stiffest = 0;
+  for (const ParticleScene& one : deforming_)
+    if (one.elastic()) stiffest = std::max(stiffest, tanktread::stiffness(one, signs.element));
+  if (stiffest == 0 || !(explicit_scheme || iterated)) return {};
+  const double limit = explicit_scheme ? 2.51 : 2, reached = signs.step * stiffest;
   memory_.limited = reached > 0.8 * limit ? memory_.limited + 1 : 0;
   if (!(fixed && reached > limit) && memory_.limited < limited_steps) return {};
   const char* what = explicit_scheme ? "explicit step" : "sub-iterated step";

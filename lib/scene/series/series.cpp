@@ -65,7 +65,7 @@ void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
   const bool prescribed = scene.only_solids || scene.is_resistance_problem();
   to.add(time, {"time", "time", "simulated time; along a branch of steady shapes the number of the point, from 0; 0 for any other steady problem"});
   to.add(wall_seconds, {"wall_seconds", "s", "wall-clock time since the start of the run, including the earlier parts of a resumed run"});
-  if (scene.in_system() || prescribed || scene.tube.present || scene.wall.present)
+  if (scene.in_system() || prescribed || scene.tube.present || scene.medium())
     to.add(static_cast<double>(counts.solver_iterations),
            {"solver_iterations", "1",
             "number of iterations of the linear solver, for implicit steps or for tractions, since the start of the run"});

@@ -40,8 +40,8 @@ CapsuleParameters single_body(const spline::Space& space, double radius, double 
 /// The collocation error of the force or torque that belongs to z_k is corrected by the reciprocal theorem (2.11): int z_k.(v - (1/mu) A f) dGamma
 /// over all bodies is added, with v the right-hand side. moment() corrects the error of a stresslet in the same way with the densities of unit
 /// strains of its body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. With the double-layer equation
-/// (2.23), the errors of forces are linear in the error of one density. In a channel the residual on the wall is included (2.42). The matrix is
-/// dense, which limits the number of control points to a few thousand.
+/// (2.23), the errors of forces are linear in the error of one density. In a channel the residual on the wall is included (2.42) if all particles
+/// are rigid. The matrix is dense, which limits the number of control points to a few thousand.
 ///
 /// The fluid may have other boundaries: images on a lattice, the wall of a tube and its pressure drop, plates and posts (2.47), and deformable
 /// particles. These boundaries change the solution as follows:

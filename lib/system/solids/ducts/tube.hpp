@@ -177,7 +177,7 @@ class Tube {
   bool fixed() const { return wall().channel != nullptr; }
 
   bool corrects_walls() const { return fixed(); }  ///< whether wall_residual() contributes to the correction of forces (2.42)
-  bool fits_other_mesh() const { return !fixed(); }  ///< whether the tube can be kept (second constructor of a tube) if the particle's mesh changes
+  bool fits_other_mesh() const { return !fixed(); }  ///< whether the tube can be kept (third constructor of a tube) if the particle's mesh changes
 
   /// Returns whether the points `rows` of x are inside the duct; in a channel, also between its ends.
   bool inside(const Net& x, std::span<const int> rows) const;

@@ -154,7 +154,7 @@ void PlatesAndPosts::factor(stokes::Layer& on_itself) {
       all.col(n + k).segment<3>(3 * i) = parameters_.free[static_cast<std::size_t>(k)];
       all.row(n + k).segment<3>(3 * i) = (plates_ ? cell().volume() : areas_[i]) * parameters_.free[static_cast<std::size_t>(k)].transpose();
     }
-  factors_ = DenseFactors(all);
+  factors_ = DenseFactors(std::move(all));
 }
 
 PlatesAndPosts::Flow PlatesAndPosts::solve(const Net& u, const Vec3& force) const {
