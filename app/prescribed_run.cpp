@@ -56,7 +56,7 @@ int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot&
   std::optional<Phases::Scope> clock(std::in_place, phases, "output");
   Results results(scene_, request_, body, surface::BezierMap(body.space), ranks);
   results.record(row);
-  for (const Warning& remark : remarks) results.warn(remark.sentence);
+  for (const Warning& remark : remarks) results.warn(remark);
   if (const std::string coarse = coarse_wall(scene_, body, row); !coarse.empty()) results.warn(coarse);
   motion::State state;
   state.x = body.rest;

@@ -233,7 +233,7 @@ class Run {
   }
 
   void warn(const Warning& warning) {
-    if (warnings_.fresh(warning)) results_.warn(warning.sentence);
+    if (warnings_.fresh(warning)) results_.warn(warning);
   }
 
   [[noreturn]] void fail(const std::string& reason) {
@@ -277,7 +277,7 @@ class Run {
   void warn_of_limits() {
     if (first_.particle.rigid()) return;
     const auto n_elements = static_cast<int>(particles_->body().space.elements.size());
-    for (const std::string& sentence : warnings_.sentences({first_, row_, quality_, n_elements})) results_.warn(sentence);
+    for (const Warning& warning : warnings_.of_step({first_, row_, quality_, n_elements})) results_.warn(warning);
   }
 
   void save() {

@@ -1,12 +1,16 @@
 #pragma once
+// Warnings because of which no error of a run can be estimated.
+
+#include <string>
+#include <string_view>
 
 namespace tanktread::accuracy {
 
-/// Part of the warning text of a run whose compressed membrane forms wrinkles that its mesh does not represent. No error is estimated for such a run.
-constexpr const char* wrinkles = "waves as short as its elements can have grown a hundredfold";
+/// Kinds of warnings (Warning::kind). wrinkles: a compressed membrane forms wrinkles that its mesh does not represent. full_mesh: a mesh has reached
+/// its largest size, so that the meshes of finer levels do not differ.
+constexpr const char *wrinkles = "compression", *full_mesh = "number of points";
 
-/// Part of the warning text of a run whose mesh has reached its largest size. The meshes of finer levels then do not differ, so no error is
-/// estimated.
-constexpr const char* full_mesh = "Adaptation/largest number of points = ";
+/// Returns the reason, as a clause, why no error can be estimated of a run with a warning of this kind, of any particle; empty for other kinds.
+std::string obstacle_of(std::string_view kind);
 
 }  // namespace tanktread::accuracy

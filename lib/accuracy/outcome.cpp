@@ -5,9 +5,9 @@
 #include <limits>
 #include <sstream>
 
-#include "accuracy/obstacles.hpp"
 #include "base/errors.hpp"
 #include "base/text_file.hpp"
+#include "record/files/summary.hpp"
 
 namespace tanktread::accuracy {
 
@@ -153,11 +153,8 @@ std::string obstacle(const std::vector<Outcome>& levels) {
   for (const output::Series& series : finest.record.series())
     if (series.name == "contact_impulse" && series.values.back() > 0)
       return "Contact/limiter holds particles apart by forces that depend on the time step";
-  const std::string summary = summary_of(finest.directory);
-  if (summary.find(full_mesh) != std::string::npos) return "the mesh has reached Adaptation/largest number of points: increase it";
-  if (summary.find(wrinkles) != std::string::npos)
-    return "the membrane is compressed and resists bending too little for its mesh, so that wrinkles can have grown that the mesh does not represent";
-  return {};
+  const std::vector<std::string> all = output::listed(summary_of(finest.directory), "obstacles");
+  return all.empty() ? "" : all.front();
 }
 
 namespace {
@@ -176,6 +173,20 @@ double cancelled(const Request& request, const std::vector<Outcome>& levels, dou
   return (last + change) * expected_error(fine) / (expected_error(coarse) - expected_error(fine)) + of_time(fine);
 }
 
+/// Returns the estimated error of the series of a request. `differences`: largest differences between successive levels, coarse to fine. `tiny`: true
+/// if the last two of them are much smaller than the request allows; the larger one is then an estimate even if they do not fall regularly.
+Estimate estimate(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser,
+                  const std::vector<double>& differences, bool tiny = false) {
+  const double scale = scale_of(levels.back().record, request.series);
+  Estimate found = estimated(differences, scale, expected_errors(levels, request, scale, looser));
+  if (tiny && !found.trusted()) {
+    const double before = differences[differences.size() - 2];
+    found = {std::max(differences.back(), found.ratio > most_ratio ? before / most_ratio : before), found.ratio, ""};
+  }
+  if (!differences.empty()) found.error = std::max(found.error, cancelled(request, levels, differences.back(), looser));
+  return found;
+}
+
 }  // namespace
 
 RequestResult answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
@@ -185,15 +196,9 @@ RequestResult answer(const Request& request, const std::vector<Outcome>& levels,
   found.value = request.of == Of::run ? magnitude(whole) : of_part.values.back();
   const double scale = scale_of(levels.back().record, request.series);
   found.allowed = request.relative ? std::max(request.value * magnitude(whole), round_off * scale) : request.value;
-  const std::vector<Curve> all = differences(request.series, request.of, levels);
-  const std::vector<double> sizes = norms(all);
-  found.estimate = estimated(sizes, scale, expected_errors(levels, request, scale, looser));
+  const std::vector<double> sizes = norms(differences(request.series, request.of, levels));
   const bool tiny = sizes.size() > 1 && sizes.back() <= found.allowed / 10 && sizes[sizes.size() - 2] <= found.allowed / 10;
-  if (tiny && !found.estimate.trusted()) {
-    const double before = sizes[sizes.size() - 2];
-    found.estimate = {std::max(sizes.back(), found.estimate.ratio > most_ratio ? before / most_ratio : before), found.estimate.ratio, ""};
-  }
-  if (!sizes.empty()) found.estimate.error = std::max(found.estimate.error, cancelled(request, levels, sizes.back(), looser));
+  found.estimate = estimate(request, levels, looser, sizes, tiny);
   if (request.of == Of::mean) found.estimate.error += average(whole).error;
   if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
   const std::vector<double> noise = norms(differences(request.series, Of::run, levels));
@@ -214,11 +219,7 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     SeriesError one{series.name, series.unit, series.si, {}, {}};
     const std::vector<Curve> pairs = differences(series.name, Of::run, levels);
     const Curve whole = curve(finest, series.name);
-    const double scale = scale_of(finest, series.name);
-    const Request of_run{series.name, Of::run, 0, false};
-    const std::vector<double> sizes = norms(pairs);
-    Estimate whole_run = estimated(sizes, scale, expected_errors(levels, of_run, scale, looser));
-    if (!sizes.empty()) whole_run.error = std::max(whole_run.error, cancelled(of_run, levels, sizes.back(), looser));
+    Estimate whole_run = estimate({series.name, Of::run, 0, false}, levels, looser, norms(pairs));
     for (bool requested = false; const RequestResult& answer : answers) {
       if (answer.request.series != series.name || answer.request.of != Of::run || (requested && !answer.estimate.trusted())) continue;
       whole_run = answer.estimate, requested = true;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iomanip>
 #include <span>
 #include <sstream>
 
@@ -92,15 +91,6 @@ std::string without_statement(std::string summary) {
 
 void print_warning(const std::string& sentence) { std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str()); }
 
-/// Prints the sentences in the section `warnings` of a summary.
-void print_warnings(const std::string& summary) {
-  std::istringstream lines(summary);
-  std::string line, sentence;
-  while (std::getline(lines, line) && line != "warnings:") continue;
-  while (std::getline(lines, line) && line.starts_with("  - "))
-    if (std::istringstream(line.substr(4)) >> std::quoted(sentence)) print_warning(sentence);
-}
-
 /// Returns the text of the summary in which the empty section `expect` is replaced by `section`. If there is none, appends `section`.
 std::string with_expect(const std::string& summary, const std::string& section) {
   const std::size_t at = summary.find("\nexpect: []\n");
@@ -141,7 +131,7 @@ std::string publish(const LadderRequest& task, const std::vector<Outcome>& level
 
   const std::vector<deck::Verdict> verdicts = deck::verdicts(task.expect.all, table);
   std::string text = text_of_file(finest.directory / "summary.yaml", "summary.yaml", 10'000'000);
-  print_warnings(text);
+  for (const std::string& one : output::listed(text, "warnings")) print_warning(one);
   if (!end.status.empty()) text.replace(0, text.find('\n'), "status: " + in_quotes(end.status));
   text = with_expect(without_statement(text), output::yaml(verdicts, estimates(task.expect, errors, table.at("time"))));
   text += "error:\n";

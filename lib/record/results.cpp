@@ -12,6 +12,7 @@
 
 #include <sys/resource.h>
 
+#include "accuracy/obstacles.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/expectation.hpp"
@@ -177,7 +178,7 @@ std::optional<Resumed> Results::resumed() {
   if (saved.file.step != last_saved_)
     throw UserError("--resume " + directory_.string() + ": " + chosen +
                     formatted(" contains step %d, but its name states another step", last_saved_));
-  for (const Warning& warning : resumed.totals.warnings.shown) warnings_.push_back(warning.sentence);
+  for (const Warning& warning : resumed.totals.warnings.shown) warnings_.push_back(warning.sentence), add_obstacle(warning.kind);
   write([&] {
     load_record(saved.checkpoint, chosen);
     set_aside(saved.damaged, chosen);
@@ -249,8 +250,18 @@ void Results::warn(const std::string& sentence) {
   if (writes_ && !request_.of_ladder) std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str());
 }
 
+void Results::warn(const Warning& warning) {
+  add_obstacle(warning.kind);
+  warn(warning.sentence);
+}
+
 void Results::warn_once(const std::string& kind, const std::string& sentence) {
-  if (kinds_of_warnings_.insert(kind).second) warn(sentence);
+  if (kinds_of_warnings_.insert(kind).second) warn(Warning{kind, sentence});
+}
+
+void Results::add_obstacle(const std::string& kind) {
+  const std::string why = accuracy::obstacle_of(kind);
+  if (!why.empty() && std::ranges::find(obstacles_, why) == obstacles_.end()) obstacles_.push_back(why);
 }
 
 void Results::write_surface(const Net& surface) {
@@ -346,6 +357,7 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   summary.modes = account.modes;
   summary.errors = known_errors();
   summary.warnings = warnings_;
+  summary.obstacles = obstacles_;
   output::write_whole(directory_ / "summary.yaml", output::yaml(summary));
   series_->write();
   if (durable() == output::Durable::yes)

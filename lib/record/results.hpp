@@ -101,6 +101,7 @@ class Results {
 
   /// Prints a warning on standard error and adds it to the summary.
   void warn(const std::string& sentence);
+  void warn(const Warning& warning);  ///< also adds to the summary whether its kind prevents estimates of errors
   void warn_once(const std::string& kind, const std::string& sentence);  ///< does nothing after the first warning of this kind
 
   /// Fields of a snapshot, sampled at the nodes of the current mesh, on the first rank. They can be written to a file even after the mesh has
@@ -137,6 +138,7 @@ class Results {
   void complete(output::Checkpoint& checkpoint, const motion::State& state, const RunTotals& totals, double picture_time) const;
   void set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen);
   void load_record(const output::Checkpoint& checkpoint, const std::string& chosen);
+  void add_obstacle(const std::string& kind);
   void write_files();
   bool young() const { return Clock::now() - start_ < std::chrono::seconds(1); }
   output::Durable durable() const { return young() ? output::Durable::no : output::Durable::yes; }
@@ -158,7 +160,7 @@ class Results {
   std::optional<output::SnapshotSeries> series_;
   std::optional<output::Nodes> nodes_;  // nodes of the snapshots
   std::vector<std::pair<int, std::string>> unwritten_snapshots_;  // snapshots that are not written yet: step number and contents of the file
-  std::vector<std::string> warnings_;
+  std::vector<std::string> warnings_, obstacles_;
   std::set<std::string> kinds_of_warnings_;  // kinds passed to warn_once()
   output::Entries<long> memory_;  // peak memory, for the summary
   int last_saved_ = -1;

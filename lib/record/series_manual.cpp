@@ -75,6 +75,7 @@ constexpr Entry entries[] = {
     {"modes", "", "capsule, drop",
      "kind of each eigenmode of the last spectrum: `shape` changes the shape, `translation`, `rotation` and `volume` do not"},
     {"warnings", "", "all", "limits of the method that the run came close to, one sentence each"},
+    {"obstacles", "", "runs whose error cannot be estimated", "reasons for this, such as wrinkles that the mesh does not represent"},
 };
 
 /// Kind of runs or particles that have the same columns. If `extends`, the manual lists only the columns that the previous kind does not have.

@@ -1,5 +1,8 @@
 #include "record/files/summary.hpp"
 
+#include <iomanip>
+#include <sstream>
+
 #include "deck/words.hpp"
 
 namespace tanktread::output {
@@ -56,7 +59,19 @@ std::string yaml(const Summary& summary) {
   if (!summary.modes.empty()) text += map("modes", summary.modes);
   text += summary.warnings.empty() ? "warnings: []\n" : "warnings:\n";
   for (const std::string& one : summary.warnings) text += "  - " + scalar(one) + "\n";
+  if (!summary.obstacles.empty()) text += "obstacles:\n";
+  for (const std::string& one : summary.obstacles) text += "  - " + scalar(one) + "\n";
   return text;
+}
+
+std::vector<std::string> listed(const std::string& summary, const std::string& name) {
+  std::istringstream lines(summary);
+  std::vector<std::string> all;
+  std::string line, text;
+  while (std::getline(lines, line) && line != name + ":") continue;
+  while (std::getline(lines, line) && line.starts_with("  - "))
+    if (std::istringstream(line.substr(4)) >> std::quoted(text)) all.push_back(text);
+  return all;
 }
 
 }  // namespace tanktread::output

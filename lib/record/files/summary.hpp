@@ -26,10 +26,14 @@ struct Summary {
   Entries<std::string> errors;  ///< error estimates of a run without the section Accuracy, one line each
   Entries<std::string> modes;  ///< kind of each mode of a spectrum
   std::vector<std::string> warnings;  ///< warnings about limits of the method that the run came close to
+  std::vector<std::string> obstacles;  ///< reasons, as clauses, why no error of the run can be estimated
 };
 
 /// Returns the section `expect` of the summary. `estimates`: estimated error of the series of each expectation; if empty, none is written.
 std::string yaml(const std::vector<deck::Verdict>& verdicts, const std::vector<double>& estimates = {});
+
+/// Returns the texts in a list of texts, such as `warnings`, of a summary; none if the summary has no such list.
+std::vector<std::string> listed(const std::string& summary, const std::string& name);
 
 /// Returns the text of `summary.yaml`: YAML 1.1, every text in quotes, every double with enough digits to be read back exactly.
 std::string yaml(const Summary& summary);

@@ -281,8 +281,8 @@ std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& cha
   };
   add(change.refused > 0, "levels",
       whole + formatted("they have been halved as often as Adaptation/levels = %d allows", options.levels));
-  add(change.full, "number of points",
-      whole + accuracy::full_mesh + std::to_string(options.largest_number_of_points) + " does not allow their refinement");
+  add(change.full, accuracy::full_mesh,
+      whole + "Adaptation/largest number of points = " + std::to_string(options.largest_number_of_points) + " does not allow their refinement");
   add(change.body && change.finer && change.change > 1e-12 && !member.scene.particle.rigid(), "moved surface",
       formatted("refinement moved the surface by %.2g R_C, because the spline spaces are not nested: set Surface/extraordinary points to "
                 "catmull-clark",

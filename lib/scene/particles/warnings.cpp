@@ -93,20 +93,20 @@ bool Warnings::fresh(const Warning& warning) {
   return true;
 }
 
-std::vector<std::string> Warnings::sentences(const StepFindings& signs) {
-  std::vector<std::string> sentences;
+std::vector<Warning> Warnings::of_step(const StepFindings& signs) {
+  std::vector<Warning> all;
   const auto add = [&](const char* kind, const std::string& sentence) {
     const Warning warning{kind, formatted("at time %.4g ", signs.time) + sentence};
-    if (!sentence.empty() && fresh(warning)) sentences.push_back(warning.sentence);
+    if (!sentence.empty() && fresh(warning)) all.push_back(warning);
   };
   add("choice", choice());
-  add("compression", compression(signs));
+  add(accuracy::wrinkles, compression(signs));
   add("stiffness", stiffness(signs));
   add("fold", fold(signs));
   add("stretch", stretch(signs));
   add("gap", gap(signs));
   add("volume", volume(signs));
-  return sentences;
+  return all;
 }
 
 std::string Warnings::choice() const {
@@ -144,9 +144,10 @@ std::string Warnings::compression(const StepFindings& signs) {
   memory_.waves = std::max(0.0, memory_.waves + fastest_growth * signs.step);
   if (memory_.waves < grown) return {};
   const bool bends = deforming_[*worst].bending_modulus() > 0;
-  return formatted("%.0f %% of the membrane is compressed (to %.2g G_s) with %s: %s; set Membrane/bending modulus%s or Membrane/pre-inflation",
+  return formatted("%.0f %% of the membrane is compressed (to %.2g G_s) with %s: waves as short as its elements can have grown a hundredfold; set "
+                   "Membrane/bending modulus%s or Membrane/pre-inflation",
                    100 * signs.compressed_area.at(*worst), signs.smallest_tension[*worst],
-                   bends ? "too little resistance to bending for its mesh" : "no resistance to bending", accuracy::wrinkles, bends ? " higher" : "");
+                   bends ? "too little resistance to bending for its mesh" : "no resistance to bending", bends ? " higher" : "");
 }
 
 std::string Warnings::stiffness(const StepFindings& signs) {

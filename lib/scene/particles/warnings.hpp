@@ -54,7 +54,7 @@ class Warnings {
   bool fresh(const Warning& warning);
 
   /// Returns the warnings to show after this step. Each kind is returned only once in a run.
-  std::vector<std::string> sentences(const StepFindings& signs);
+  std::vector<Warning> of_step(const StepFindings& signs);
 
   const Memory& memory() const { return memory_; }
   void remember(Memory memory) { memory_ = std::move(memory); }

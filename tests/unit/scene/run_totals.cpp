@@ -42,12 +42,12 @@ TEST(RunTotals, OfAnotherVersionIsMissing) {
 }
 
 /// Returns the warnings of one step with a compression that lets waves grow.
-std::vector<std::string> look(Warnings& warnings) {
+std::vector<Warning> look(Warnings& warnings) {
   StepFindings signs;
   signs.step = 0.1;
   signs.smallest_tension = {-0.2}, signs.compressed_area = {0.5};
   signs.element = 0.1;
-  return warnings.sentences(signs);
+  return warnings.of_step(signs);
 }
 
 TEST(RunTotals, WarningsContinueAfterResumption) {

@@ -20,8 +20,8 @@ struct Told {
     of_run.emplace(whole);
   }
   std::string first(const StepFindings& signs) {
-    const auto sentences = of_run->sentences(signs);
-    return sentences.empty() ? std::string() : sentences.front();
+    const auto all = of_run->of_step(signs);
+    return all.empty() ? std::string() : all.front().sentence;
   }
 };
 
