@@ -22,14 +22,14 @@ Estimate estimated(const std::vector<double>& differences, double scale, const s
   if (n == 1 || !std::isfinite(differences[n - 2])) return {last, unknown, "it needs the results of three levels"};
   if (std::max(last, differences[n - 2]) <= round_off * scale) return {std::max(last, differences[n - 2]), unknown, ""};
   const auto factor = [&](std::size_t level) { return differences[level - 1] / (expected[level - 1] - expected[level]); };
-  const double error = factor(n) * finest;
+  const double error = predicted_error(last, expected[n - 1], finest, finest);
   const double ratio = expected[n - 1] / finest * factor(n - 1) / factor(n);
   if (ratio >= least_ratio && ratio <= most_ratio) return {error, ratio, ""};
   if (n > 2 && std::isfinite(differences[n - 3])) {
     const double of_two = std::sqrt(expected[n - 2] / finest * factor(n - 2) / factor(n));
     if (ratio >= 1 && of_two >= least_ratio && of_two <= most_ratio) return {error, of_two, ""};
   }
-  return {error, ratio, formatted("from level to level its error falls by the factor %.2g, not by 1.5 to 10", ratio)};
+  return {error, ratio, formatted("from level to level its error falls by the factor %.2g, not by %g to %g", ratio, least_ratio, most_ratio)};
 }
 
 namespace {

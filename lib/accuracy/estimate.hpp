@@ -30,6 +30,10 @@ constexpr double round_off = 1e-10;
 /// Smallest and largest `Estimate::ratio` with which an estimate is trusted.
 constexpr double least_ratio = 1.5, most_ratio = 10;
 
+/// Returns the error (9.1) at a level with the expected error `at`. `difference`: difference between two levels with the expected errors `coarse` and
+/// `fine`.
+inline double predicted_error(double difference, double coarse, double fine, double at) { return difference / (coarse - fine) * at; }
+
 /// Returns the estimated error (9.1). `differences`: differences between all pairs of successive levels, coarse to fine. `expected`: expected error
 /// E_l of each level up to a common factor; it has one entry more than `differences`. `scale`: magnitude of the values; differences below `round_off`
 /// times `scale` count as round-off.

@@ -36,9 +36,11 @@ class Temporary {
 /// Returns the lowest level after the levels `pilots` and below `levels` at which the predicted error times `margin` is at most answer.allowed, or
 /// `levels` if there is none. The error is extrapolated from the difference between the two pilots, answer.estimate.error.
 int needed(const RequestResult& answer, const std::vector<Outcome>& pilots, int levels) {
-  const double factor = answer.estimate.error / (expected_error(pilots[0].level) - expected_error(pilots[1].level));
+  const auto error = [&](const Level& at) {
+    return predicted_error(answer.estimate.error, expected_error(pilots[0].level), expected_error(pilots[1].level), expected_error(at));
+  };
   int level = std::min(pilots[1].level.mesh + 1, levels);
-  while (level < levels && margin * factor * expected_error({level, level, level}) > answer.allowed) ++level;
+  while (level < levels && margin * error({level, level, level}) > answer.allowed) ++level;
   return level;
 }
 

@@ -48,7 +48,7 @@ class Ladder {
         return conclude(stopped, "a run that balances the parts was stopped");
       const int code = run(k);
       if (code == stopped) return conclude(stopped, formatted("level %d was stopped", k));
-      if (count_ >= 3 && failure_of_last_.empty() && judge(k) && !is_finished(k + 1)) return conclude(met, "");
+      if (count_ >= 3 && failure_of_last_.empty() && judge(k)) return conclude(met, "");
       if (hopeless()) return conclude(missed, "finer levels are not expected to reduce the error");
     }
     if (count_ == 0) throw RunFailure("no accuracy level was completed: " + failure_);
@@ -98,14 +98,6 @@ class Ladder {
       const fs::path place = directory(std::to_string(k));
       return task_.resume && (fs::exists(place / "summary.yaml", absent) || fs::exists(place / failure_file, absent));
     }) != 0;
-  }
-
-  /// Returns whether level k of a resumed ladder is finished. Its results, which are more accurate, are then kept although a coarser level meets the
-  /// requests.
-  bool is_finished(int k) const {
-    if (!task_.resume || k > last_level || !is_over(k)) return false;
-    const std::string deck = program_.deck(settings(task_.values, level_at(k)));
-    return decided([&] { return finished(directory(std::to_string(k)), level_at(k), deck).has_value(); }) != 0;
   }
 
   /// Returns the reason not to run level k if it is predicted to exceed the wall-clock limit of all levels together, otherwise an empty text.

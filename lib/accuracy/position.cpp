@@ -153,7 +153,7 @@ void write_position_errors(const std::array<std::filesystem::path, 3>& levels, c
     std::vector<double> errors = distances(surface, *before);
     const double size = (surface.points.colwise().maxCoeff() - surface.points.colwise().minCoeff()).norm();
     if (!estimated({largest(distances(*before, *first)), largest(errors)}, size, expected).trusted()) continue;
-    for (double& error : errors) error *= expected[2] / (expected[1] - expected[2]);
+    for (double& error : errors) error = predicted_error(error, expected[1], expected[2], expected[2]);
     output::add_field(fine / name, to / name, "position error", errors);
   }
 }

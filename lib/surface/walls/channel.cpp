@@ -84,7 +84,8 @@ void Channel::find_ends() {
   if (factors_) take(factors_->breaks.front(), factors_->breaks.back());
   if (own_.half_length) take(-*own_.half_length - own_.corner_radius.value_or(0), *own_.half_length + own_.corner_radius.value_or(0));
   if (own_.bend_radius) take(own_.bend_start, own_.bend_start + *own_.bend_radius * own_.bend_angle * pi / 180);
-  const auto radius_at = [&](double s) { return factors_ ? outline(s).radius() : radius; };  // other profiles end with the given outline
+  // radius at an end of the profile; only profiles of a file end with other cross-sections than the given outline
+  const auto radius_at = [&](double s) { return factors_ ? radius * std::sqrt(std::max(0., section(s).factor.prod())) : radius; };
   start_ = own_.start.value_or(first_ - 4 * radius_at(first_)), end_ = own_.end.value_or(last_ + 4 * radius_at(last_));
   if (options_.period == 0) return;
   start_ = (first_ + last_ - options_.period) / 2, end_ = start_ + options_.period;
