@@ -170,7 +170,7 @@ double cancelled(const Request& request, const std::vector<Outcome>& levels, dou
   const auto of_time = [&](const Level& level) { return of_level_2 * std::pow(time_ratio, 2 - level.time); };
   const double change = of_time(coarse) - of_time(fine);
   if (!(change > much * last)) return 0;
-  return (last + change) * expected_error(fine) / (expected_error(coarse) - expected_error(fine)) + of_time(fine);
+  return predicted_error(last + change, expected_error(coarse), expected_error(fine), expected_error(fine)) + of_time(fine);
 }
 
 /// Returns the estimated error of the series of a request. `differences`: largest differences between successive levels, coarse to fine. `tiny`: true
