@@ -125,7 +125,7 @@ void set_post(Setter& to, const std::string& surface, int level) {
 void set_wall(Setter& to, const std::string& list, int level) {
   if (!to.has(list + "/azimuthal elements")) return;
   to.refine(list + "/azimuthal elements", level, 8, 400);
-  to.refine(list + "/axial elements", level, 8, list == "Channel" ? 1000 : 400);
+  to.refine(list + "/axial elements", level, list == "Channel" ? 8 : 4, list == "Channel" ? 1000 : 400);
   to.set_whole(list + "/flow elements", 16 * elements_per_side(level), 8, 4000);
 }
 
