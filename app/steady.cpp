@@ -125,16 +125,16 @@ class SteadyRun {
   /// Computes the modes of the current shape. Returns the failure or stop if there is one.
   std::exception_ptr error_of_modes() {
     const auto clock = phases_.time("spectrum");
+    std::exception_ptr lost;
     try {
       found_.modes = modes();
-      return {};
     } catch (const RunFailure&) {
-      system_->motion->set_time(0, 0);  // a return map may have set another time
-      return std::current_exception();
+      lost = std::current_exception();
     } catch (const motion::Stopped&) {
-      system_->motion->set_time(0, 0);
-      return std::current_exception();
+      lost = std::current_exception();
     }
+    if (lost) system_->motion->set_time(0, 0);  // a return map may have set another time
+    return lost;
   }
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }

@@ -281,10 +281,13 @@ class CoupledParticles : public ParticleSystem {
   void adapt_mesh(std::size_t p, const Net& load, double origin, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
-    Net in_frame = state.x;
-    in_frame.col(0).array() -= origin;
-    if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, in_frame, tube->cell(), &tube->wall());
-    else if (scene_.has_gaps() || scene_.has_films_around_one()) widths = films(members_, p, state.x, capsule_->cell());
+    if (const coupling::Tube* tube = capsule_->tube()) {
+      Net in_frame = state.x;
+      in_frame.col(0).array() -= origin;
+      widths = films(members_, p, in_frame, tube->cell(), &tube->wall());
+    } else if (scene_.has_gaps() || scene_.has_films_around_one()) {
+      widths = films(members_, p, state.x, capsule_->cell());
+    }
     Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths,
                              fields_->values_at(p));
     std::ranges::move(adaptation_remarks(member, change, state.time), std::back_inserter(remarks_));

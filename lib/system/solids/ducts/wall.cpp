@@ -62,14 +62,14 @@ bool Wall::is_for(const surface::TubeWall& wall, const quadrature::Options& quad
   return same_surface && same_symmetry && quadrature == quadrature_ && solver == solver_;
 }
 
-/// Computes null_vector_ and flux_vector_. The outer product of these two fields is added to A, because A is singular: a uniform pressure produces no
-/// velocity. The product is scaled so that it maps a uniform pressure to about the velocity that A produces for a tangential traction of equal size.
+/// Computes no_flux_. The outer product of its two vectors is added to A, because A is singular: a uniform pressure produces no velocity. The product
+/// is scaled so that it maps a uniform pressure to about the velocity that A produces for a tangential traction of equal size.
 void Wall::find_null_vector() {
-  flux_vector_ = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
-  null_vector_.resize(n_sites(), 3);
-  for (Eigen::Index i = 0; i < null_vector_.rows(); ++i)
-    null_vector_.row(i) = surface::point(surface_.space, surface_.net, surface_.sites[static_cast<std::size_t>(i)].front()).n.transpose();
-  null_vector_ *= surface_.radius() / dot(flux_vector_, null_vector_);
+  no_flux_.flux_vector = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
+  no_flux_.null_vector.resize(n_sites(), 3);
+  for (Eigen::Index i = 0; i < no_flux_.null_vector.rows(); ++i)
+    no_flux_.null_vector.row(i) = surface::point(surface_.space, surface_.net, surface_.sites[static_cast<std::size_t>(i)].front()).n.transpose();
+  no_flux_.null_vector *= surface_.radius() / dot(no_flux_.flux_vector, no_flux_.null_vector);
 }
 
 template <class Real>
@@ -123,7 +123,7 @@ void Wall::factor(const surface::Symmetry& of_wall) {
     points_.collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { assemble_rows(targets, rows); }, part);
     for (std::size_t k = 0; k < row.size(); ++k) add_rows(own[first + k], *representative_of(own[first + k]).from, part.middleRows<3>(3 * row[k]));
   }
-  if (cell_ && points_.ranks().rank() == 0) factors_.add_product(null_vector_, flux_vector_);
+  if (cell_ && points_.ranks().rank() == 0) factors_.add_product(no_flux_.null_vector, no_flux_.flux_vector);
   factors_.factor(points_.ranks());
 }
 
@@ -136,7 +136,7 @@ Net Wall::apply(const Net& f) const {
   Net u(points_.targets().rows(), 3);
   on_itself_->apply(on_space(f), points_.own_targets(), u);
   const Net rows = points_.collocated(u);
-  return cell_ ? Net(rows + dot(flux_vector_, f) * null_vector_) : rows;
+  return cell_ ? Net(rows + dot(no_flux_.flux_vector, f) * no_flux_.null_vector) : rows;
 }
 
 Net Wall::solve(const Net& rhs) const {

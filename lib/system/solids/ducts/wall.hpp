@@ -146,8 +146,10 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net inlet_column_, traction_per_pressure_drop_;
-  Net null_vector_, flux_vector_;  // periodic wall only. null_vector_: normals n at the sites, scaled by radius/(flux_vector_.n); a traction
-                                   // proportional to n produces no velocity. flux_vector_: int N_A n dGamma
+  struct NoFlux {     // condition int f.n dGamma = 0 of a periodic wall
+    Net null_vector;  // normals n at the sites, scaled by radius/(flux_vector.n); a traction proportional to n produces no velocity
+    Net flux_vector;  // int N_A n dGamma
+  } no_flux_;
   std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
   WallFactors factors_;                       // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;
