@@ -93,12 +93,26 @@ void sort_and_drop_repeated(std::vector<int>& numbers) {
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
+/// Which copies of the surfaces contribute to assembled rows: the surfaces alone, with their displaced images, or only these images.
+enum class Copies { surfaces, with_images, images };
+
+Copies copies(const LayerMedium& medium) { return medium.rows_include_images() ? Copies::with_images : Copies::surfaces; }
+
+/// Returns the displacements of the copies that contribute.
+std::vector<Vec3> displacements(const LayerMedium& medium, Copies copies) {
+  if (copies == Copies::surfaces) return {Vec3::Zero()};
+  std::vector<Vec3> shifts = medium.panel_shifts();
+  if (copies == Copies::images) std::erase_if(shifts, [](const Vec3& shift) { return shift.isZero(0); });
+  return shifts;
+}
+
 /// Assembles the integrals of kernel times basis function, one per control point and kernel component, for up to sixteen targets at a time.
 template <class Real>
 class RowSums {
  public:
   /// `at`: positions of targets off the surfaces, one row per target; if null, the targets are sites.
-  RowSums(LayerSources& sources, const LayerMedium& medium, const Net* at) : sources_(sources), medium_(medium), at_(at) {}
+  RowSums(LayerSources& sources, const LayerMedium& medium, const Net* at, Copies copies)
+      : sources_(sources), medium_(medium), at_(at), copies_(copies), shifts_(displacements(medium, copies)) {}
 
   FarBasis<Real> basis;
   std::vector<Real> sums;  ///< sums[m (6 row + c) + l], with m = assembly_block: integral of kernel entry c (11, 12, 13, 22, 23, 33) times the basis
@@ -107,13 +121,12 @@ class RowSums {
   void add(std::span<const int> targets, int rows) {
     sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
     skip_.assign(basis.panels.size(), 0u);
-    const std::vector<Vec3> itself{Vec3::Zero()};
-    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], images() ? medium_.panel_shifts() : itself, l);
-    for (const Vec3& image : images() ? medium_.node_shifts() : itself) {
+    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], l);
+    for (const Vec3& image : wrapped() ? medium_.node_shifts() : shifts_) {
       double place[3 * assembly_block];
       for (int l = 0; l < assembly_block; ++l) {
         const Vec3 x0 = place_of(targets[std::min<std::size_t>(l, targets.size() - 1)]);
-        const Vec3 seen = images() ? Vec3(medium_.wrapped(x0) - image) : x0;
+        const Vec3 seen = (wrapped() ? medium_.wrapped(x0) : x0) - image;
         for (int c = 0; c < 3; ++c) place[assembly_block * c + l] = seen[c];
       }
       for (std::size_t k = 0; k < basis.panels.size(); ++k) add_far_panel(k, place, static_cast<int>(targets.size()));
@@ -122,14 +135,13 @@ class RowSums {
 
  private:
   Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : sources_.surface.site(target); }
-  bool images() const { return medium_.rows_include_images(); }
+  bool wrapped() const { return copies_ == Copies::with_images; }  // whether far sums use nodes that are moved into the cell
 
-  /// Adds the corrections by near-singular and singular quadrature for one target. `images`: displacements of the panels; a displaced panel is
-  /// corrected if it is close to the target. On a lattice, the far sum that is corrected contains the nodes of displaced panels. l: index of the
-  /// target in its block of sixteen.
-  void add_close_panels(int target, const std::vector<Vec3>& images, int l) {
+  /// Adds the corrections by near-singular and singular quadrature for one target. A displaced panel is corrected if it is close to the target. The
+  /// far sum that is corrected contains the nodes of displaced panels. l: index of the target in its block of sixteen.
+  void add_close_panels(int target, int l) {
     LayerSurface& surface = sources_.surface;
-    for (const Vec3& image : images) {
+    for (const Vec3& image : shifts_) {
       const Vec3 x0 = place_of(target) - image;
       const std::span<SelfPair> self_pairs = !at_ && image.isZero(0) ? surface.self_pairs(target) : std::span<SelfPair>();
       for (const int e : surface.near(x0, self_pairs))
@@ -143,7 +155,7 @@ class RowSums {
     const Panels& panels = sources_.surface.panels;
     const auto k = static_cast<std::size_t>(basis.index[e]);
     moments_.resize(static_cast<std::size_t>(6) * panels[e].table->n_bernstein);
-    if (images()) {
+    if (copies_ != Copies::surfaces) {
       sources_.moments_beyond_far_sum(e, table, pair, x0, moments_.data());
     } else {
       skip_[k] |= 1u << l;
@@ -155,7 +167,7 @@ class RowSums {
 
   void add_far_panel(std::size_t k, const double* place, int n_targets) {
     const int first = sources_.surface.panels[basis.panels[k]].first_node;
-    PanelNodes<Real> nodes = basis.nodes(sources_.surface, images() ? medium_.nodes(sources_) : sources_.surface.node, k);
+    PanelNodes<Real> nodes = basis.nodes(sources_.surface, wrapped() ? medium_.nodes(sources_) : sources_.surface.node, k);
     if (sources_.single())
       nodes.weight = &sources_.weight[first];
     else
@@ -168,6 +180,8 @@ class RowSums {
   LayerSources& sources_;
   const LayerMedium& medium_;
   const Net* at_;
+  Copies copies_;
+  std::vector<Vec3> shifts_;  // displacements of the panels that contribute
   std::vector<Real> kernel_;
   std::vector<double> moments_;
   std::vector<std::uint32_t> skip_;
@@ -209,12 +223,13 @@ void add_medium_rows(LayerSources& sources, LayerMedium& medium, std::span<const
   }
 }
 
+/// Assembles the rows of the targets without the terms of the medium other than displaced images.
 template <class Real>
-void assemble_rows(LayerSources& sources, LayerMedium& medium, std::span<const int> targets, const Net* at, Rows<Real>& a) {
+void assemble_copies(LayerSources& sources, const LayerMedium& medium, std::span<const int> targets, const Net* at, Copies copies, Rows<Real>& a) {
   const auto clock = sources.phases.time("assembly");
   constexpr std::size_t block = assembly_block;
   const Panels& panels = sources.surface.panels;
-  RowSums<Real> rows(sources, medium, at);
+  RowSums<Real> rows(sources, medium, at, copies);
   const std::vector<int> row_of_point = indices(sources.surface.n_points);
   rows.basis.clear(panels);
   for (int e = 0; e < panels.size(); ++e) rows.basis.add(panels, e, row_of_point, sources.surface.n_points);
@@ -227,6 +242,11 @@ void assemble_rows(LayerSources& sources, LayerMedium& medium, std::span<const i
       write_rows(3 * static_cast<int>(first + l), sources.surface.n_points, &rows.sums[l], a);
     }
   }
+}
+
+template <class Real>
+void assemble_rows(LayerSources& sources, LayerMedium& medium, std::span<const int> targets, const Net* at, Rows<Real>& a) {
+  assemble_copies(sources, medium, targets, at, copies(medium), a);
   add_medium_rows(sources, medium, targets, at, a);
   if (sources.desingularised()) subtract_identities(sources, targets, a);
 }
@@ -253,6 +273,10 @@ template void Layer::assemble(std::span<const int> sites, Rows<double>& a);
 template void Layer::assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
 template void Layer::assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
 
+void Layer::assemble_images(const Net& at, std::span<const int> targets, Rows<float>& a) {
+  assemble_copies(sources_, *medium_, targets, &at, Copies::images, a);
+}
+
 void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) {
   assert(single());
   const auto clock = sources_.phases.time("assembly");
@@ -261,7 +285,7 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
   std::vector<std::vector<int>> panels_of(static_cast<std::size_t>(sources_.surface.n_points));
   for (int e = 0; e < panels.size(); ++e)
     for (int a = 0; a < panels[e].functions; ++a) panels_of[panels.points(e)[a]].push_back(e);
-  RowSums<double> rows(sources_, *medium_, nullptr);
+  RowSums<double> rows(sources_, *medium_, nullptr, copies(*medium_));
   std::vector<int> row_of_point;
   entries.resize(6 * near.point.size());
   for (std::size_t first = 0; first < sites.size(); first += block) {

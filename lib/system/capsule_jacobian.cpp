@@ -138,15 +138,19 @@ Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Ne
   return v.size() > 0 ? Net(v - change) : Net(-change);
 }
 
+/// Solves B v = rhs for v to the relative residual `tolerance`.
+Net CapsuleJacobian::fluid_velocity(const Net& rhs, double tolerance) {
+  const LinearSystem system{velocity_blocks(parameters_.particles), on_nets(rhs.rows(), [this](const Net& u) { return product(u, {}, 0, {}); }), {}};
+  Eigen::VectorXd v = flat(rhs);
+  counts_.solver_iterations += inner_solver_.solve(system, flat(rhs), v, tolerance).iterations;
+  return as_net(v);
+}
+
 /// Returns the change J dx of the fluid velocity due to the displacement dx. Solves B (J dx) = rhs to a smaller tolerance than the system of
 /// an implicit step, because each product with the matrix of that system may require this solve.
 Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& added_work) {
   const Net rhs = product({}, dx, -1, added_work);
-  if (!has_system_) return rhs;
-  const LinearSystem system{velocity_blocks(parameters_.particles), on_nets(dx.rows(), [this](const Net& u) { return product(u, {}, 0, {}); }), {}};
-  Eigen::VectorXd v = flat(rhs);
-  counts_.solver_iterations += inner_solver_.solve(system, flat(rhs), v, 1e-3).iterations;
-  return as_net(v);
+  return has_system_ ? fluid_velocity(rhs, 1e-3) : rhs;
 }
 
 CapsuleJacobian::RateChange CapsuleJacobian::velocity_change(const Net& dx, const Net& added_work) {

@@ -33,6 +33,9 @@ class CapsuleJacobian {
   /// at x. `slip`: slip at x, required only if control points slide; empty if it is unknown.
   void linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums, const Slip& slip);
 
+  /// Returns an approximation of B^-1 rhs with the operator B of (4.2). The relative residual is at most 0.05.
+  Net inverse_product(const Net& rhs) { return fluid_velocity(rhs, 0.05); }
+
   /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.
   Net velocity_product(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
   RateChange velocity_change(const Net& dx, const Net& added_work);  ///< returns J dx as `rate`
@@ -68,6 +71,7 @@ class CapsuleJacobian {
   std::vector<Mat3> gradients_at(const Net& x) const;
   Net product(const Net& v, const Net& dx, double shift, const Net& added_work);
   Net without_pressure(Net work, const Net& db) const;
+  Net fluid_velocity(const Net& rhs, double tolerance);
   Net fluid_velocity_change(const Net& dx, const Net& added_work);
   Net without_flux(Net rate) const;
   double tolerance_factor() const;

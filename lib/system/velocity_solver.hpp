@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "stokes/flow/ambient_flow.hpp"
@@ -87,6 +89,10 @@ class VelocitySolver {
   /// Solves (4.2) at a shape. `guess`: initial guess of the velocity; used if the velocity is the only unknown of the linear solve. `error`: see
   /// SolvedShape.
   SolvedShape solve(const Net& shape, const Net& guess, double error);
+
+  /// Sets an approximate inverse of the operator B of (4.2), for all later solves without rigid bodies. A few products with B then suffice, so that no
+  /// rows are assembled for them.
+  void use_inverse(std::function<Net(const Net&)> inverse) { inverse_ = std::move(inverse); }
 
   /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14), where B v = w is the linear system for the velocity v at the shape, and P
   /// the volume projection (2.8). Needs no linear solve. Requires that all unknowns are velocities and that walls are eliminated.
@@ -215,6 +221,7 @@ class VelocitySolver {
   Bodies bodies_;
   std::unique_ptr<InterfaceMotion> interface_;  // set if any control points slide along an interface
   Krylov krylov_;
+  std::function<Net(const Net&)> inverse_;  // see use_inverse()
   Forces forces_;
 };
 

@@ -13,6 +13,10 @@
 
 namespace tanktread::coupling {
 
+namespace {
+constexpr double few_iterations = 1e-5;  // relative residual above which a solve with an approximate inverse takes at most some three iterations
+}  // namespace
+
 /// Adds an iterative solve to the counts. Throws RunFailure if it did not converge although its solution is finite (`finite`).
 void VelocitySolver::record_solve(const SolveReport& report, bool finite, double tolerance) {
   ++counts_.velocity_solves;
@@ -41,9 +45,10 @@ Net VelocitySolver::velocity_product(const Net& x, const Net& v, const Net& load
   return bv;
 }
 
-/// Returns the preconditioner of the velocity system at x, from inverses for isolated rigid bodies and for the thin films between bodies. Empty if no
-/// such inverses are stored. Valid until the bodies move.
+/// Returns the preconditioner of the velocity system at x: with rigid bodies, from inverses for isolated bodies and for the thin films between bodies,
+/// otherwise the inverse of use_inverse(). Empty if there are no such inverses. Valid until the particles move.
 Apply VelocitySolver::velocity_preconditioner(const Net& x) {
+  if (bodies_.rigid.empty()) return inverse_ ? on_nets(x.rows(), inverse_) : Apply();
   if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, resting_, parameters_.quadrature);
   if (bodies_.isolated->empty()) return {};
   const auto films = std::make_shared<FilmInverses>(particles(), *bodies_.isolated, bodies_.rigid, x,
@@ -61,7 +66,11 @@ Apply VelocitySolver::velocity_preconditioner(const Net& x) {
 /// together. The initial guess is rhs if `guess` is empty or there are rigid bodies, and otherwise `guess`. `error`: see Evaluation::solve.
 Net VelocitySolver::solve_velocity(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs, const Net& guess, double error) {
   const auto clock = phases_.time("velocity system");
-  layers_.assemble(x, viscous());
+  const auto least = [](const Particle& one) { return one.radius * std::sqrt(static_cast<double>(one.block.n_points)); };
+  const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
+  const Eigen::VectorXd right = flat(rhs);
+  const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
+  layers_.assemble(x, viscous(), inverse_ && bodies_.rigid.empty() && eliminates_walls() && tolerance > few_iterations);
   if (!eliminates_walls()) return solve_blocks(x, f, volume, rhs);
   const auto apply = [&](Net v) {
     volume.apply(v);
@@ -75,12 +84,8 @@ Net VelocitySolver::solve_velocity(const Net& x, const Net& f, const VolumeProje
     volume.apply(bv);
     return bv;
   };
-  const Eigen::VectorXd right = flat(rhs);
   Eigen::VectorXd v = flat(guess.size() > 0 && bodies_.rigid.empty() ? guess : rhs);
   const LinearSystem system{velocity_blocks(particles()), on_nets(x.rows(), apply), velocity_preconditioner(x)};
-  const auto least = [](const Particle& one) { return one.radius * std::sqrt(static_cast<double>(one.block.n_points)); };
-  const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
-  const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
   const SolveReport report = krylov_.solve(system, right, v, tolerance);
   record_solve(report, v.allFinite(), tolerance);
   Net solution = as_net(v);
@@ -145,7 +150,7 @@ Net VelocitySolver::traction_product(const Net& x, const VolumeProjection& volum
 /// of `found`, and sets its response of a tube.
 Net VelocitySolver::solve_tractions(const Net& x, const VolumeProjection& volume, const Net& flow, SolvedShape& found) {
   const auto clock = phases_.time("tractions");
-  layers_.assemble(x, viscous());
+  layers_.assemble(x, viscous(), false);
   // Copies of x and volume, because RigidTractions keeps these functions for moment().
   const auto product = [this, x, volume](const Net& y, const Net& caused) { return traction_product(x, volume, y, caused); };
   const auto load = [this, x, volume, known = found.load](const Net& y) {

@@ -35,7 +35,8 @@ struct SolverOptions {
   std::shared_ptr<Teuchos::ParameterList> nox;    ///< parameter list of the nonlinear solver (Steady, Time/scheme), passed unchanged to NOX
   double tolerance = 1e-8;                        ///< relative residual of the systems for velocities or tractions
   std::string double_layer = "auto";  ///< double layer. assembled: once per velocity evaluation. matrix-free: summed in each iteration. auto:
-                                      ///< matrix-free if far sums use a treecode, unless there are rigid bodies and the matrix is small
+                                      ///< matrix-free if far sums use a treecode, unless there are rigid bodies and the matrix is small, or if
+                                      ///< few iterations are needed
   bool in_lattice = false;                        ///< true in a Domain without a tube, where the double layer is always matrix-free
   bool in_duct = true;                            ///< false in scenes without a tube or channel, where `tube` and `wall` have no effect
   std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values:
@@ -51,8 +52,8 @@ struct SolverOptions {
   std::array<const IterativeOptions*, 5> systems() const { return {&velocity, &traction, &implicit_step, &spectrum, &steady}; }
 
   /// Returns whether the layers of the system for the velocity are assembled if there is no lattice. On lattices, layers are never assembled.
-  /// `by_clusters`: true if the far-field sums are evaluated by a treecode (sums by clusters), false if they are evaluated directly.
-  bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
+  /// `sums_pay_off`: whether sums in each iteration are faster than assembly: if a treecode evaluates them, or if there are few iterations.
+  bool assembled(bool sums_pay_off) const { return double_layer == "assembled" || (double_layer == "auto" && !sums_pay_off); }
 
   /// Returns the options `system` of one kind of system, with missing options filled in. If `system` does not set a solver, the solver is `krylov`.
   /// If it sets neither a solver nor a parameter list, the parameter list is `belos`.

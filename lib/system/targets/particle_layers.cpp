@@ -64,11 +64,11 @@ Net ParticleLayers::apply_double(const Net& x, const Net& v) {
   return u;
 }
 
-void ParticleLayers::assemble(const Net& x, bool single) {
+void ParticleLayers::assemble(const Net& x, bool single, bool few) {
   const auto n = static_cast<double>(x.rows());
   constexpr double most_bytes = 1e9;
-  const auto assemble_or_clear = [&](stokes::Layer& layer, bool by_clusters, stokes::Rows<double>& rows) {
-    if (!repeats_ && parameters_.solvers.assembled(by_clusters)) layer.assemble(targets_.own(), rows);
+  const auto assemble_or_clear = [&](stokes::Layer& layer, bool cheap_products, stokes::Rows<double>& rows) {
+    if (!repeats_ && parameters_.solvers.assembled(cheap_products || few)) layer.assemble(targets_.own(), rows);
     else rows.resize(0, 0);
   };
   // With rigid bodies, the solver may take many iterations, because films between them are thin. Assembling the matrix (72 n^2 bytes) is then faster.

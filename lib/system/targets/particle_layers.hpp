@@ -73,8 +73,9 @@ class ParticleLayers {
 
   Net apply_double(const Net& x, const Net& v);  ///< returns D v on the surface x
 
-  /// Assembles the rows of the layers on the surface x for apply() if the options ask for it. `single`: whether apply() will need A.
-  void assemble(const Net& x, bool single);
+  /// Assembles the rows of the layers on the surface x for apply() if the options ask for it. `single`: whether apply() will need A. `few`: whether
+  /// only a few products are needed, for which assembly does not pay off.
+  void assemble(const Net& x, bool single, bool few);
 
   /// Returns D v - (1/mu) A f, with the double layer D and the single layer A on the surface x, which must have been passed to assemble(). An empty f
   /// is treated as zero.

@@ -187,16 +187,18 @@ Net Tube::frozen_response(const Net& f, const Net& v) {
     of.apply(strength, part);
     to += factor * part;
   };
-  const bool loads = f.size() > 0, has_velocity = v.size() > 0 && particle_->sources.has_double();
-  const Net on_wall = wall_->points().ranks().filled(wall_->points().sites().rows(), [&](Net& u) {
-    if (loads) add(-1 / viscosity(), frozen.single, f, u);
-    if (has_velocity) add(1, frozen.dual, particle_->sources.strength(v), u);
-  });
+  const bool has_velocity = v.size() > 0 && particle_->sources.has_double();
+  const auto add_layers = [&](const FrozenOperator& single, const FrozenOperator& dual, Net& u) {
+    if (f.size() > 0) add(-1 / viscosity(), single, f, u);
+    if (has_velocity) add(1, dual, particle_->sources.strength(v), u);
+  };
+  const Net on_wall = wall_->points().ranks().filled(wall_->points().sites().rows(), [&](Net& u) { add_layers(frozen.single, frozen.dual, u); });
   const Net traction = solve_wall(on_wall) + pressure * wall_->traction_per_pressure_drop();
   const Net u = particle_->ranks.filled(particle_->sites().rows(), [&](Net& own) {
-    frozen.wall.apply(traction, own);
+    add(-1 / viscosity(), frozen.wall, traction, own);
+    if (cell()) add_layers(frozen.single_of_images, frozen.dual_of_images, own);
   });
-  return -u / viscosity() + pressure * frozen.inlet - flow_rate_reduction(pressure) * frozen.ambient;
+  return u + pressure * frozen.inlet - flow_rate_reduction(pressure) * frozen.ambient;
 }
 
 }  // namespace tanktread::coupling

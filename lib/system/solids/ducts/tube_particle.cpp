@@ -136,6 +136,11 @@ void Tube::ParticleData::freeze(Wall& wall, const Net& pressure_of_wall) {
         for (int c = 0; c < 3; ++c) sum += pressure_of_wall(targets[k], c) * rows.row(static_cast<Eigen::Index>(3 * k) + c).cast<double>();
     });
   });
+  const auto of_images = [&](Layer& layer) {
+    return [&](Targets targets, stokes::Rows<float>& rows) { layer.assemble_images(sites(), targets, rows); };
+  };
+  if (periodic) frozen.single_of_images.assemble(own, space.n_points, of_images(sources.single_layer));
+  if (periodic && sources.has_double()) frozen.dual_of_images.assemble(own, space.n_points, of_images(*sources.double_layer));
   frozen.wall.assemble(own, static_cast<int>(wall.points().sites().rows()), [&](Targets targets, stokes::Rows<float>& rows) {
     wall.layer().assemble(sites(), targets, rows);
     wall.from_space(rows);

@@ -63,8 +63,10 @@ struct Tube::ParticleData {
   SourceTargets prepared_targets;              ///< see ParticleSources::prepared
   std::optional<stokes::Layer::Near> wall_on_sites;  ///< corrections of the wall's layer at the particle's sites; set if lambda != 1
 
+  /// Operators of the Jacobian: layers of the particle at the wall and, due to its images in a periodic duct, at its own sites; layer of the wall at
+  /// these sites.
   struct Frozen {
-    FrozenOperator single, dual, wall;
+    FrozenOperator single, dual, single_of_images, dual_of_images, wall;
     Net inlet, ambient, weights_of_load, weights_of_velocity;
   };
   Frozen frozen;
