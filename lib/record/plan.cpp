@@ -84,13 +84,14 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
 }
 
 /// Returns the line of the plan about the time scheme and the size of the frozen operator (the single layer in the Jacobian of implicit steps).
-/// `pairs`: number of pairs of control points in the frozen operator.
-std::string time_line(const Scene& scene, double pairs, int ranks) {
+/// `n`: number of control points. `rows`: number of control points whose rows are assembled.
+std::string time_line(const Scene& scene, double n, double rows, int ranks) {
   const bool chosen = scene.time.scheme == "auto";
   const std::string scheme = scene.time.scheme + (chosen ? ", bs3 or tr-bdf2 by the measured stiffness" : "");
   if (!scene.time.assembles() && !chosen) return scheme + ", explicit in the fluid: nothing is assembled";
-  if (scene.solvers.frozen_operator == "nodal") return scheme + ", frozen single layer by one node per control point, not assembled";
-  return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * pairs) + on_ranks(ranks);
+  const bool contrast = std::ranges::any_of(scene.particle_scenes(), [](const ParticleScene& one) { return one.particle.viscosity_ratio != 1; });
+  if (!scene.solvers.assembles_frozen(contrast, n)) return scheme + ", frozen single layer by one node per control point, not assembled";
+  return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * n * rows) + on_ranks(ranks);
 }
 
 /// Adds the lines about steady shapes, periodic motions, branches and spectra, which replace the line `time` of the plan.
@@ -202,7 +203,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                                  scene.contact.limit));
   lines.emplace_back("volume", deck::word(coupling::volume_constraints, scene.volume.constraint) + (several ? ", of each" : ""));
   if (scene.runs_in_time())
-    lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
+    lines.emplace_back("time", time_line(scene, n, static_cast<double>(body.symmetry.fundamental().size()), ranks));
   else
     add_steady(lines, scene, body);
   lines.emplace_back("solvers", solvers_line(scene));

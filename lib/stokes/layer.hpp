@@ -117,7 +117,7 @@ class Layer {
   template <class Real>
   void assemble(const Net& at, std::span<const int> targets, Rows<Real>& a);
 
-  /// Assembles the rows as assemble(at, targets, a) does, but only of the near images of the surfaces on the lattice, without the surfaces themselves.
+  /// Assembles rows as assemble(at, targets, a) does, but only of the near images of the surfaces on the lattice, without the surfaces themselves.
   void assemble_images(const Net& at, std::span<const int> targets, Rows<float>& a);
 
   /// Assembles only the blocks A_iB of near control points of a single layer: entries[6 j + c], c = 11, 12, 13, 22, 23, 33, for near.point[j].

@@ -90,8 +90,8 @@ class VelocitySolver {
   /// SolvedShape.
   SolvedShape solve(const Net& shape, const Net& guess, double error);
 
-  /// Sets an approximate inverse of the operator B of (4.2), for all later solves without rigid bodies. A few products with B then suffice, so that no
-  /// rows are assembled for them.
+  /// Sets an approximate inverse of the operator B of (4.2), for all later solves without rigid bodies. A few products with B then suffice, so that
+  /// no rows are assembled for them.
   void use_inverse(std::function<Net(const Net&)> inverse) { inverse_ = std::move(inverse); }
 
   /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14), where B v = w is the linear system for the velocity v at the shape, and P

@@ -45,8 +45,8 @@ Net VelocitySolver::velocity_product(const Net& x, const Net& v, const Net& load
   return bv;
 }
 
-/// Returns the preconditioner of the velocity system at x: with rigid bodies, from inverses for isolated bodies and for the thin films between bodies,
-/// otherwise the inverse of use_inverse(). Empty if there are no such inverses. Valid until the particles move.
+/// Returns the preconditioner of the velocity system at x: with rigid bodies, from inverses for isolated bodies and for the thin films between
+/// bodies, otherwise the inverse of use_inverse(). Empty if there are no such inverses. Valid until the particles move.
 Apply VelocitySolver::velocity_preconditioner(const Net& x) {
   if (bodies_.rigid.empty()) return inverse_ ? on_nets(x.rows(), inverse_) : Apply();
   if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, resting_, parameters_.quadrature);

@@ -1,5 +1,6 @@
 #include "system/frozen/frozen_layers.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -12,6 +13,11 @@ FrozenLayers::FrozenLayers(const spline::Space& space, const Net& unstressed, co
   nodal_.share(layout.ranks().rank(), layout.ranks().size(), parameters.symmetry.fundamental());
   if (targets.projection())
     at_sites_.emplace(space, space.collocation, unstressed, parameters.particles, parameters.quadrature, parameters.medium.get());
+}
+
+bool FrozenLayers::nodal() const {
+  const bool contrast = std::ranges::any_of(parameters_.particles, [](const Particle& one) { return !one.rigid && one.viscosity_ratio != 1; });
+  return !parameters_.solvers.assembles_frozen(contrast, static_cast<double>(unstressed_.rows()));
 }
 
 void FrozenLayers::assemble(const Net& at, const Net& x) {

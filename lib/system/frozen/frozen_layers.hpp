@@ -37,7 +37,7 @@ class FrozenLayers {
   stokes::Evaluations evaluations() const;  ///< kernel evaluations of the layers that this object has created
 
  private:
-  bool nodal() const { return parameters_.solvers.frozen_operator == "nodal"; }
+  bool nodal() const;
 
   const Net& unstressed_;
   const CapsuleParameters& parameters_;

@@ -6,6 +6,7 @@
 #include "stokes/kernels/far_kernel.hpp"
 #include "stokes/kernels/kernels.hpp"
 #include "stokes/sums/vicinity.hpp"
+#include "system/solvers/options.hpp"
 
 namespace tanktread::coupling {
 
@@ -13,8 +14,6 @@ namespace {
 
 /// Tolerance of the treecode: a tenth of the error of the trapezoidal rule. Chosen from measurements on capsules in shear flow.
 constexpr double cluster_tolerance = 1e-3;
-/// Number of nodes above which the treecode is faster than the direct sum. Chosen from measurements on capsules in shear flow.
-constexpr Eigen::Index nodes_worth_a_tree = 4000;
 
 using ByRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
@@ -51,7 +50,7 @@ void NodalOperator::assemble(const std::vector<int>& targets, const Surface& sur
   assemble(targets_, near_, entries_);
   subtract_rule(surface);
   tree_.reset();
-  if (far_sum == "dense" || (far_sum == "auto" && n < nodes_worth_a_tree)) return;
+  if (far_sum == "dense" || (far_sum == "auto" && n < SolverOptions::nodes_worth_a_tree)) return;
   tree_.emplace(cluster_tolerance);
   std::vector<Vec3> at;
   for (const auto site : surface.sites.rowwise()) at.emplace_back(site.transpose());

@@ -78,10 +78,11 @@ void SolverOptions::declare(deck::Section& section) {
               "projection of velocities onto the splines of the surface. `collocation`: one site per control point, error O(h^4) with the "
               "element length h. `least squares`: best fit at four sites per element, error O(h^6), four times the kernel evaluations; not "
               "in a tube, at a wall or with rigid bodies");
-  section.key("frozen operator", frozen_operator, deck::Choice{"nodal", "assembled"},
+  section.key("frozen operator", frozen_operator, deck::Choice{"auto", "nodal", "assembled"},
               "storage of the single-layer operator in the approximate Jacobian of implicit time steps, which is kept over several steps "
               "(4.3). `nodal`: matrix-free sums over one quadrature node per control point, with near-field corrections. `assembled`: a full "
-              "matrix, 12 bytes per pair of points");
+              "matrix, 12 bytes per pair of points. `auto`: `assembled` with a viscosity ratio other than 1 and fewer than 4000 control points "
+              "together, otherwise `nodal`");
   direct.declare(section);
 }
 

@@ -45,7 +45,7 @@ struct SolverOptions {
   bool eliminates_walls() const { return tube == "schur"; }  ///< returns whether the tractions on the wall of a tube are eliminated
   BodyEquation rigid_bodies = BodyEquation::automatic;
   std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
-  std::string frozen_operator = "nodal";          ///< single layer of the Jacobian: nodal (NodalOperator) or assembled (FrozenOperator)
+  std::string frozen_operator = "auto";           ///< single layer of the Jacobian: nodal (NodalOperator), assembled (FrozenOperator), or auto
   membrane::DirectSolverOptions direct;
 
   /// Returns the options of all kinds of systems.
@@ -54,6 +54,16 @@ struct SolverOptions {
   /// Returns whether the layers of the system for the velocity are assembled if there is no lattice. On lattices, layers are never assembled.
   /// `sums_pay_off`: whether sums in each iteration are faster than assembly: if a treecode evaluates them, or if there are few iterations.
   bool assembled(bool sums_pay_off) const { return double_layer == "assembled" || (double_layer == "auto" && !sums_pay_off); }
+
+  static constexpr int nodes_worth_a_tree = 4000;  ///< number of nodes above which the treecode of NodalOperator is faster than its direct sum;
+                                                   ///< chosen from measurements on capsules in shear flow
+
+  /// Returns whether the single layer of the Jacobian is assembled for n control points. `contrast`: whether a deformable particle has a viscosity
+  /// ratio other than 1. The double layer of the Jacobian is then assembled in any case, and with `auto` the single layer is assembled with it if
+  /// there are too few points for a treecode.
+  bool assembles_frozen(bool contrast, double n) const {
+    return frozen_operator == "assembled" || (frozen_operator == "auto" && contrast && n < nodes_worth_a_tree);
+  }
 
   /// Returns the options `system` of one kind of system, with missing options filled in. If `system` does not set a solver, the solver is `krylov`.
   /// If it sets neither a solver nor a parameter list, the parameter list is `belos`.

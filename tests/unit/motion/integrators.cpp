@@ -226,7 +226,7 @@ TEST(QuasiNewton, TheErrorOfAStageIsMeasuredAndBounded) {
     options.tolerance = 1e-3, options.secants = 0, options.newton_iterations = 50;
     const double shift = 0.4;
     const Net rhs = Net::Ones(1, 3), exact = rhs / (1 + shift);
-    for (const double start : {1.0, 1e-3, 1e-5}) {  // distance of the start to the solution
+    for (const double start : {1.0, 1e-3, 1e-4, 1e-5}) {  // distance of the start to the solution
       Stage stage;
       stage.y = exact + start * rhs;
       coupling::Secants secants;
@@ -234,7 +234,7 @@ TEST(QuasiNewton, TheErrorOfAStageIsMeasuredAndBounded) {
       ASSERT_TRUE(stage.solved);
       EXPECT_LE(model.norm(stage.y - exact), stage.error * (1 + 1e-9) + 1e-15) << known << " " << start;
       EXPECT_LT(stage.error, options.newton_tolerance * options.tolerance);
-      EXPECT_EQ(stage.iterations > 1, start > 1e-4) << "one iteration is enough only if the first correction is below the tolerance by itself";
+      EXPECT_EQ(stage.iterations > 1, start > 2e-5) << "one iteration is enough only if the first correction is below a tenth of the allowed error";
     }
   }
 }

@@ -94,6 +94,25 @@ TEST(PeriodicLayer, AssembledRowsOfTargetsAtFarNodesAreTheSum) {
   EXPECT_LT((product - Eigen::Map<const Eigen::VectorXd>(u.data(), u.size())).cwiseAbs().maxCoeff(), 1e-11);
 }
 
+TEST(PeriodicLayer, RowsOfImagesAreThoseOfTheSurfaceAtTwoPeriodsOnEitherSide) {
+  const auto& [space, x, field, all] = ellipsoid();
+  for (const Layer::Kernel kernel : {Layer::Kernel::single_layer, Layer::Kernel::double_layer}) {
+    Layer layer(kernel, space, {}, {.tolerance = 1e-6}), images(kernel, space, {}, {.tolerance = 1e-6});
+    images.repeat(cell(1), {.assembled = true});
+    layer.set_shape(x), images.set_shape(x);
+    Rows<float> rows;
+    images.assemble_images(x, all, rows);  // at the control points; images are close to some of them
+    const Net product = as_net(rows.cast<double>() * flat(field));
+    Net sum = Net::Zero(x.rows(), 3);
+    for (const double shift : {-2., -1., 1., 2.}) {
+      Net u(x.rows(), 3);
+      layer.apply(field, x.rowwise() - Eigen::RowVector3d(shift, 0, 0), all, u);
+      sum += u;
+    }
+    EXPECT_LT(difference(product, sum), 1e-5);  // the tolerance, and rounding to single precision
+  }
+}
+
 TEST(PeriodicLayer, SurfacesThatCrossTheFacesOfACellGiveTheSameResult) {
   const auto& [space, x, field, all] = ellipsoid();
   for (const int n : {1, 2, 3}) {

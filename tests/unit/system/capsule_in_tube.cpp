@@ -27,7 +27,8 @@ struct Confined {
   std::optional<surface::TubeWall> wall;
   std::unique_ptr<Capsule> capsule;
 
-  Confined(double viscosity_ratio, const std::string& form, std::optional<MeshMotion> interface = {}) {
+  /// `period`: period of the tube; 0 if it has ends.
+  Confined(double viscosity_ratio, const std::string& form, std::optional<MeshMotion> interface = {}, double period = 0) {
     const spline::TMesh mesh = spline::cube(3);
     space = spline::space(mesh, spline::ExtraordinaryRule::g1);
     const surface::LeastSquaresFit fit(space);
@@ -40,7 +41,8 @@ struct Confined {
     options.azimuthal_elements = 8;
     options.axial_elements = 6;
     duct = std::make_shared<const stokes::DuctFlow>(options, 1.3, 1.0);
-    wall.emplace(surface::tube_wall(duct->outline(), options, 2 * std::numbers::pi));
+    wall.emplace(period > 0 ? surface::periodic_tube_wall(duct->outline(), options, period, 6)
+                            : surface::tube_wall(duct->outline(), options, 2 * std::numbers::pi));
     stokes::FlowOptions flow;
     flow.type = "duct";
     flow.viscosity = 1.3;
@@ -136,6 +138,29 @@ TEST(CapsuleInTube, ARoughVelocityHasTheAllowedErrorAndIsNotCachedAsExact) {
   const long evaluations = rough.capsule->counts().evaluations;
   rough.capsule->evaluate(rough.x, {}, 1e-3);
   EXPECT_EQ(rough.capsule->counts().evaluations, evaluations);  // the exact velocity also serves as a rough one
+}
+
+// A particle of length 1.2 in a period of 1.4.
+TEST(CapsuleInTube, TheFrozenResponseOfAPeriodicTubeContainsTheImagesOfTheParticle) {
+  for (const double ratio : {1.0, 4.0}) {
+    Confined scene(ratio, "schur", {}, 1.4);
+    const Net v = scene.capsule->velocity(scene.x), f = scene.capsule->evaluate(scene.x)->load();
+    scene.capsule->freeze(scene.x);
+    const Net exact = scene.capsule->tube()->respond(f, v).velocity, images = scene.capsule->tube()->images_on_particle(f, v);
+    const double error = (scene.capsule->tube()->frozen_response(f, v) - exact).norm();
+    EXPECT_LT(error, 0.15 * exact.norm()) << ratio;  // images beyond the second are omitted, of the particle and of the wall
+    EXPECT_GT(images.norm(), exact.norm()) << ratio;
+  }
+}
+
+TEST(CapsuleInTube, TheFrozenOperatorSavesIterationsOfTheVelocity) {
+  Confined plain(4, "schur"), helped(4, "schur");
+  const double error = 1e-5;
+  const Net v = plain.capsule->velocity(plain.x);
+  helped.capsule->freeze(helped.unstressed);
+  helped.capsule->linearise(helped.unstressed);
+  EXPECT_LT(helped.capsule->norm(helped.capsule->evaluate(helped.x, {}, error)->velocity() - v), error);
+  EXPECT_LT(3 * helped.capsule->counts().velocity_iterations, plain.capsule->counts().velocity_iterations);
 }
 
 TEST(CapsuleInTube, TheJacobianContainsTheResponseOfTheWall) {
