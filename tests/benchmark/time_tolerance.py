@@ -3,12 +3,13 @@
 
     time_tolerance.py ratios     # error / tolerance of each implicit scheme at viscosity ratios from 0.05 to 50
     time_tolerance.py scenes     # error / tolerance of the default scheme in other scenes
+    time_tolerance.py positions  # error of positions / tolerance of the default scheme for particles that travel
     time_tolerance.py schemes    # evaluations and seconds that every scheme needs for an error below 1e-4
     time_tolerance.py figure     # error against cost at four viscosity ratios, viscosity_ratio.png
 
 The error is the largest difference of the Taylor parameter D (`taylor_inertia`) over the run from a reference with the
 same mesh and quadrature. If there are several particles, the one with the largest error counts. Two references are made
-by different schemes, and their difference is printed. Runs are kept under results/time_tolerance and are not repeated.
+by different schemes, and their difference is printed. The error of positions is that of the centroids, divided by R_C. Runs are kept under results/time_tolerance and are not repeated.
 """
 
 
@@ -34,6 +35,7 @@ def scene(given):
 
 GIVEN = scenes_of(__file__)
 SCENES = {name: scene(given) for name, given in GIVEN["scenes"].items()}
+TRAVELLING = {name: scene(given) for name, given in GIVEN["travelling"].items()}
 SCHEMES = {f"ratio {ratio:g}": shear(ratio) for ratio in RATIOS} | {
     name: shear(1, **given) for name, given in GIVEN["sheared"].items()} | {
     name: SCENES[name] for name in GIVEN["compared"]}
@@ -58,6 +60,20 @@ def error(outcome, reference):
     """Returns the largest |D - D of the reference| over the run; for several particles, the largest of their errors."""
     return max(interpolation.difference(outcome.series["time"], outcome.series[name], reference.series["time"], values)
                for name, values in reference.series.items() if name.split("/")[-1] == "taylor_inertia")
+
+
+def error_of_positions(outcome, reference):
+    """Returns the largest distance of a centroid over the run from that of the reference, along an axis, divided by
+    R_C."""
+    errors = []
+    for name, values in reference.series.items():
+        particle, _, quantity = name.rpartition("/")
+        if not quantity.startswith("centroid_x"):
+            continue
+        volume = reference.series[f"{particle}/volume" if particle else "volume"][0]
+        errors.append(interpolation.difference(outcome.series["time"], outcome.series[name], reference.series["time"], values)
+                      / numpy.cbrt(3 * volume / (4 * numpy.pi)))
+    return max(errors)
 
 
 def cheapest(outcomes, reference, level=1e-4):
@@ -92,6 +108,20 @@ def scenes(study, parsed):
     table(["scene", "error/tolerance (evaluations) at 1e-4", "at 1e-5", "references differ by"], map(row, SCENES))
 
 
+def positions(study, parsed):
+    tolerances = (1e-3, 1e-4)
+
+    def row(name):
+        sharp = {"Time/newton tolerance": 0.02, "Time/tolerance": 1e-6}
+        first, second = many(study, TRAVELLING[name], [sharp, sharp | {"Time/scheme": "bdf3", "Time/newton iterations": 20}])
+        expect(first.done and second.done, f"a reference of {name} fails: {first.message} {second.message}")
+        made = many(study, TRAVELLING[name], [{"Time/tolerance": one} for one in tolerances])
+        return [name, *(f"{error_of_positions(one, first) / tolerance:.2f} ({one.counts['evaluations']})"
+                        for one, tolerance in zip(made, tolerances)), f"{error_of_positions(second, first):.0e}"]
+
+    table(["scene", "error/tolerance (evaluations) at 1e-3", "at 1e-4", "references differ by"], map(row, TRAVELLING))
+
+
 def schemes(study, parsed):
     def row(name):
         reference, _ = reference_of(study, SCHEMES[name], 1e-7)
@@ -122,7 +152,7 @@ def figure(study, parsed):
 
 
 def main():
-    tables = {one.__name__: one for one in (ratios, scenes, schemes, figure)}
+    tables = {one.__name__: one for one in (ratios, scenes, positions, schemes, figure)}
     parser = command_line(__doc__)
     parser.add_argument("what", choices=tables)
     studies.arguments(parser, "results/time_tolerance", limit=900, jobs=1)
