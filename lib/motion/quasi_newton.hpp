@@ -34,8 +34,8 @@ struct Stage {
 /// The iteration ends if the error is below `Time/newton tolerance` times the tolerance. If an earlier stage of the same step has observed a rate,
 /// this rate is used from the first iteration on, because the stages have the same frozen Jacobian and shift. Otherwise the first rate is assumed
 /// to be 1/2, and the error must be ten times smaller, so that a second evaluation is made unless the first correction is very small. Errors of
-/// stages that end after one evaluation point the same way in all steps and add up: with viscosity ratio 5, they were 4 times the error of the
-/// scheme. The rate is never taken below the relative residual of the linear solves.
+/// stages that end after one evaluation point the same way in all steps and add up: they were four fifths of the error of four red cells in a tube.
+/// The rate is never taken below the relative residual of the linear solves.
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage);
 
 /// Decision on an attempted step.

@@ -15,10 +15,12 @@ std::uint16_t narrowed(float value) {
 
 }  // namespace
 
-void FrozenOperator::assemble(const std::vector<int>& targets, int n, const Assemble& assemble) {
+void FrozenOperator::assemble(const std::vector<int>& targets, int n, const Assemble& assemble, double unit) {
   constexpr size_t at_a_time = 64;
   targets_ = targets;
   n_ = n;
+  unit_ = unit;
+  const auto half = static_cast<float>(0.5 / unit);
   entries_.resize(6 * static_cast<size_t>(n) * targets.size());
   stokes::Rows<float> rows;
   for (size_t first = 0; first < targets.size(); first += at_a_time) {
@@ -29,7 +31,7 @@ void FrozenOperator::assemble(const std::vector<int>& targets, int n, const Asse
       const auto first_row = 3 * static_cast<Eigen::Index>(k);
       for (int i = 0; i < 3; ++i)
         for (int j = i; j < 3; ++j, out += n)
-          for (int b = 0; b < n; ++b) out[b] = narrowed((rows(first_row + i, 3 * b + j) + rows(first_row + j, 3 * b + i)) / 2);
+          for (int b = 0; b < n; ++b) out[b] = narrowed(half * (rows(first_row + i, 3 * b + j) + rows(first_row + j, 3 * b + i)));
     }
   }
 }
@@ -44,7 +46,7 @@ void FrozenOperator::apply(const Net& f, Net& u) const {
   for (size_t k = 0; k < targets_.size(); ++k) {
     double sum[3] = {0, 0, 0};
     symmetric_block_row(n_, entries_.data() + 6 * static_cast<size_t>(n_) * k, f1_.data(), f2_.data(), f3_.data(), sum);
-    u.row(targets_[k]) << sum[0], sum[1], sum[2];
+    u.row(targets_[k]) << unit_ * sum[0], unit_ * sum[1], unit_ * sum[2];
   }
 }
 

@@ -21,9 +21,10 @@ class FrozenOperator {
   static constexpr double bytes_a_pair = 12;  ///< bytes per pair of control points
 
   /// Function that computes the rows of the operator for these targets: three rows per target and three columns per control point, in float.
-  /// assemble() calls it several times, each time for a few of the rank-owned `targets`. `n`: number of control points.
+  /// assemble() calls it several times, each time for a few of the rank-owned `targets`. `n`: number of control points. `unit`: unit of the entries
+  /// in which they are rounded; with a length of the scene for a single layer, rounding does not depend on the units of the deck.
   using Assemble = std::function<void(std::span<const int> targets, stokes::Rows<float>& rows)>;
-  void assemble(const std::vector<int>& targets, int n, const Assemble& assemble);
+  void assemble(const std::vector<int>& targets, int n, const Assemble& assemble, double unit = 1);
 
   /// Computes the rows of u = A f at the rank-owned targets; other rows are unchanged.
   void apply(const Net& f, Net& u) const;
@@ -31,6 +32,7 @@ class FrozenOperator {
  private:
   std::vector<int> targets_;
   int n_ = 0;
+  double unit_ = 1;
   std::vector<std::uint16_t> entries_;       // six entries (11, 12, 13, 22, 23, 33) of each symmetric 3 x 3 block. Entry e = 0 .. 5 of the block for
                                              // row `target` and control point p of n is at (6 target + e) n + p
   mutable std::vector<double> f1_, f2_, f3_;

@@ -120,13 +120,14 @@ Net Tube::ParticleData::ambient_of(const stokes::DuctFlow& flow) const {
 
 void Tube::ParticleData::freeze(Wall& wall, const Net& pressure_of_wall) {
   using Targets = std::span<const int>;
+  const double length = wall.surface().radius();
   const auto on_wall = [&](Layer& layer) {
     return [&](Targets targets, stokes::Rows<float>& rows) {
       const WallPoints& points = wall.points();
       points.collocate<float>(targets, [&](Targets at, stokes::Rows<float>& some) { layer.assemble(points.targets(), at, some); }, rows);
     };
   };
-  frozen.single.assemble(wall.points().own(), space.n_points, on_wall(sources.single_layer));
+  frozen.single.assemble(wall.points().own(), space.n_points, on_wall(sources.single_layer), length);
   const Net weights = ranks.assembled<Net>(space.n_points, 3, [&](Net& sums) {
     if (!sources.has_double()) return;
     frozen.dual.assemble(wall.points().own(), space.n_points, [&](Targets targets, stokes::Rows<float>& rows) {
@@ -139,12 +140,12 @@ void Tube::ParticleData::freeze(Wall& wall, const Net& pressure_of_wall) {
   const auto of_images = [&](Layer& layer) {
     return [&](Targets targets, stokes::Rows<float>& rows) { layer.assemble_images(sites(), targets, rows); };
   };
-  if (periodic) frozen.single_of_images.assemble(own, space.n_points, of_images(sources.single_layer));
+  if (periodic) frozen.single_of_images.assemble(own, space.n_points, of_images(sources.single_layer), length);
   if (periodic && sources.has_double()) frozen.dual_of_images.assemble(own, space.n_points, of_images(*sources.double_layer));
   frozen.wall.assemble(own, static_cast<int>(wall.points().sites().rows()), [&](Targets targets, stokes::Rows<float>& rows) {
     wall.layer().assemble(sites(), targets, rows);
     wall.from_space(rows);
-  });
+  }, length);
   frozen.inlet = inlet, frozen.ambient = ambient, frozen.weights_of_load = weights_of_load, frozen.weights_of_velocity = weights_of_velocity;
   if (pressure_of_wall.size() > 0) frozen.weights_of_velocity = sources.contrasts().asDiagonal() * weights;
 }
