@@ -9,7 +9,7 @@ namespace tanktread::motion {
 
 namespace {
 constexpr double worth_assembling = 0.3;  // least deformation since the last assembly, divided by R_C, for which a new assembly pays off
-constexpr double trust = 0.1;             // factor of the allowed error where the contraction rate is assumed, not observed
+constexpr double without_rate = 0.1;      // factor of the allowed error where the contraction rate is assumed, not observed
 }  // namespace
 
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage) {
@@ -34,7 +34,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     const double rate = stage.rate_or_assumed();
     if (rate >= 1) return;
     stage.error = rate / (1 - rate) * size;
-    if (stage.error < (stage.rate > 0 ? 1 : trust) * options.newton_tolerance * options.tolerance) {
+    if (stage.error < (stage.rate > 0 ? 1 : without_rate) * options.newton_tolerance * options.tolerance) {
       stage.slope = dynamics.symmetric((stage.y - rhs) / shift);
       stage.y = rhs + shift * stage.slope;
       stage.solved = true;

@@ -15,8 +15,7 @@ using Lines = output::Entries<std::string>;
 std::string viscosity_line(const ParticleScene& particle_scene, int n_points, bool tree) {
   const bool on_lattice = particle_scene.domain.present && !particle_scene.tube.present;
   const bool assembled = particle_scene.solvers.assembled(tree) && !on_lattice;
-  const bool with_inverse = particle_scene.solvers.double_layer == "auto" && particle_scene.time.assembles();
-  const char* const how = !assembled ? "matrix-free" : with_inverse ? "assembled where a solve needs many iterations" : "assembled";
+  const char* const how = assembled ? "assembled" : "matrix-free";
   if (particle_scene.particle.viscosity_ratio == 1 && particle_scene.kelvin_voigt_membrane())
     return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns per velocity",
                      how, 3 * n_points);

@@ -33,7 +33,7 @@ class CapsuleJacobian {
   /// at x. `slip`: slip at x, required only if control points slide; empty if it is unknown.
   void linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums, const Slip& slip);
 
-  /// Returns an approximation of B^-1 rhs with the operator B of (4.2). The relative residual is at most 0.05.
+  /// Returns an approximation of B^-1 rhs with the operator B of (4.2), solved to the relative residual 0.05.
   Net inverse_product(const Net& rhs) { return fluid_velocity(rhs, 0.05); }
 
   /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.

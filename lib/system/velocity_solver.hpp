@@ -90,8 +90,9 @@ class VelocitySolver {
   /// SolvedShape.
   SolvedShape solve(const Net& shape, const Net& guess, double error);
 
-  /// Sets an approximate inverse of the operator B of (4.2), for all later solves without rigid bodies. A few products with B then suffice, so that
-  /// no rows are assembled for them.
+  /// Sets an approximate inverse of the operator B of (4.2). Later calls of solve() that allow an error (`error` > 0) use it if there are no rigid
+  /// bodies. They need only a few products with B, so that no rows are assembled for them. Exact solves do not use the inverse, because it belongs to
+  /// the latest implicit step, which a resumed run does not know.
   void use_inverse(std::function<Net(const Net&)> inverse) { inverse_ = std::move(inverse); }
 
   /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14), where B v = w is the linear system for the velocity v at the shape, and P
@@ -185,6 +186,7 @@ class VelocitySolver {
   // Linear systems (velocity_solver_systems.cpp).
   Net velocity_load(const Net& x, const Net& v);
   Net velocity_product(const Net& x, const Net& v, const Net& load);
+  bool uses_inverse(double error, double tolerance) const;
   Apply velocity_preconditioner(const Net& x);
   Net solve_velocity(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs, const Net& guess, double error);
   Net solve_blocks(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs);
@@ -202,6 +204,7 @@ class VelocitySolver {
   //   interface_          velocities: each call with its shape; derivative: CapsuleJacobian::linearise()
   //   bodies_.rigid       solve() and Capsule::restore_constraints()
   //   bodies_.tractions   solve_tractions()
+  //   inverse_            CapsuleJacobian::linearise()
   //   layers_             each call with its shape; rows that are stored, by assemble() in solve_velocity() and solve_tractions()
   const spline::Space& space_;
   Net resting_;

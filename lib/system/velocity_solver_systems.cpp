@@ -14,7 +14,7 @@
 namespace tanktread::coupling {
 
 namespace {
-constexpr double few_iterations = 1e-5;  // relative residual above which a solve with an approximate inverse takes at most some three iterations
+constexpr double few_iterations = 1e-5;  // relative residual above which a solve with an approximate inverse takes about three iterations
 }  // namespace
 
 /// Adds an iterative solve to the counts. Throws RunFailure if it did not converge although its solution is finite (`finite`).
@@ -45,10 +45,16 @@ Net VelocitySolver::velocity_product(const Net& x, const Net& v, const Net& load
   return bv;
 }
 
-/// Returns the preconditioner of the velocity system at x: with rigid bodies, from inverses for isolated bodies and for the thin films between
-/// bodies, otherwise the inverse of use_inverse(). Empty if there are no such inverses. Valid until the particles move.
+/// Returns whether the inverse of use_inverse() is the preconditioner of a solve that allows the error `error`, with the relative residual
+/// `tolerance`. It is the result of an iteration, so that the solver must admit preconditioners that are not linear.
+bool VelocitySolver::uses_inverse(double error, double tolerance) const {
+  const bool suitable = inverse_ && bodies_.rigid.empty() && eliminates_walls() && krylov_.uses_own_preconditioner() && krylov_.flexible();
+  return suitable && error > 0 && tolerance > few_iterations;
+}
+
+/// Returns the preconditioner of the velocity system at x, from inverses for isolated rigid bodies and for the thin films between bodies. Empty if no
+/// such inverses are stored. Valid until the bodies move.
 Apply VelocitySolver::velocity_preconditioner(const Net& x) {
-  if (bodies_.rigid.empty()) return inverse_ ? on_nets(x.rows(), inverse_) : Apply();
   if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, resting_, parameters_.quadrature);
   if (bodies_.isolated->empty()) return {};
   const auto films = std::make_shared<FilmInverses>(particles(), *bodies_.isolated, bodies_.rigid, x,
@@ -70,7 +76,8 @@ Net VelocitySolver::solve_velocity(const Net& x, const Net& f, const VolumeProje
   const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
   const Eigen::VectorXd right = flat(rhs);
   const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
-  layers_.assemble(x, viscous(), inverse_ && bodies_.rigid.empty() && eliminates_walls() && tolerance > few_iterations);
+  const bool by_inverse = uses_inverse(error, tolerance);
+  layers_.assemble(x, viscous(), by_inverse);
   if (!eliminates_walls()) return solve_blocks(x, f, volume, rhs);
   const auto apply = [&](Net v) {
     volume.apply(v);
@@ -85,7 +92,8 @@ Net VelocitySolver::solve_velocity(const Net& x, const Net& f, const VolumeProje
     return bv;
   };
   Eigen::VectorXd v = flat(guess.size() > 0 && bodies_.rigid.empty() ? guess : rhs);
-  const LinearSystem system{velocity_blocks(particles()), on_nets(x.rows(), apply), velocity_preconditioner(x)};
+  const LinearSystem system{velocity_blocks(particles()), on_nets(x.rows(), apply),
+                            by_inverse ? on_nets(x.rows(), inverse_) : velocity_preconditioner(x)};
   const SolveReport report = krylov_.solve(system, right, v, tolerance);
   record_solve(report, v.allFinite(), tolerance);
   Net solution = as_net(v);

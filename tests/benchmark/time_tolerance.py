@@ -9,7 +9,8 @@
 
 The error is the largest difference of the Taylor parameter D (`taylor_inertia`) over the run from a reference with the
 same mesh and quadrature. If there are several particles, the one with the largest error counts. Two references are made
-by different schemes, and their difference is printed. The error of positions is that of the centroids, divided by R_C. Runs are kept under results/time_tolerance and are not repeated.
+by different schemes, and their difference is printed. The error of positions is that of the centroids, divided by
+R_C. Runs are kept under results/time_tolerance and are not repeated.
 """
 
 

@@ -33,7 +33,7 @@ void FrozenLayers::assemble(const Net& at, const Net& x) {
     const NodalOperator::Surface surface{sites * x, sites, mass_.row_sums(unstressed_), mass_.row_sums(x), parameters_.symmetry};
     nodal_.assemble(own, surface, 3, parameters_.quadrature.far_sum, assemble);
   } else {
-    single_.assemble(own, n, assemble, parameters_.particles.front().radius);
+    single_.assemble(own, n, assemble, std::ranges::max_element(parameters_.particles, {}, &Particle::radius)->radius);
   }
   if (!has_double()) return;
   stokes::Layer& layer = at_sites_ ? *at_sites_->double_layer : *layers_.double_layer();

@@ -21,8 +21,9 @@ class FrozenOperator {
   static constexpr double bytes_a_pair = 12;  ///< bytes per pair of control points
 
   /// Function that computes the rows of the operator for these targets: three rows per target and three columns per control point, in float.
-  /// assemble() calls it several times, each time for a few of the rank-owned `targets`. `n`: number of control points. `unit`: unit of the entries
-  /// in which they are rounded; with a length of the scene for a single layer, rounding does not depend on the units of the deck.
+  /// assemble() calls it several times, each time for a few of the rank-owned `targets`. `n`: number of control points. `unit`: entries are
+  /// divided by it before they are rounded. For a single layer it should be a length of the scene, so that rounding does not depend on the units of
+  /// the deck.
   using Assemble = std::function<void(std::span<const int> targets, stokes::Rows<float>& rows)>;
   void assemble(const std::vector<int>& targets, int n, const Assemble& assemble, double unit = 1);
 

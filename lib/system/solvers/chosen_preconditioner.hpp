@@ -47,6 +47,9 @@ class ChosenPreconditioner {
   /// Returns `system` with the chosen preconditioner. The result keeps references to `system` and to this object.
   LinearSystem join(const LinearSystem& system);
 
+  /// Returns whether the result of join() contains the preconditioner of `system` unchanged.
+  bool keeps_own() const { return kind_ == "own"; }
+
   void refresh() { recycled_.refresh(); }  ///< ends a solve
   void forget() { recycled_ = {}; }        ///< discards the products y = A z recorded in earlier solves
 

@@ -141,6 +141,10 @@ Krylov::Krylov(const IterativeOptions& options) : impl_(std::make_unique<Impl>()
 
 Krylov::~Krylov() = default;
 
+bool Krylov::flexible() const { return impl_->belos.flexible; }
+
+bool Krylov::uses_own_preconditioner() const { return impl_->chosen.keeps_own(); }
+
 void Krylov::forget() const { impl_->chosen.forget(); }
 
 SolveReport Krylov::solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const {

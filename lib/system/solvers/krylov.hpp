@@ -64,6 +64,8 @@ class Krylov {
   /// solver stops early or breaks down (x is NaN after a breakdown); check the report.
   SolveReport solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
 
+  bool flexible() const;                 ///< whether the solver admits preconditioners that are not linear
+  bool uses_own_preconditioner() const;  ///< whether the solver uses the preconditioner that a LinearSystem contains
   /// Discards the products that a preconditioner of the type `recycled` has stored in earlier solves. Checkpoints do not contain these products.
   void forget() const;
 

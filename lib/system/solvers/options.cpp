@@ -55,7 +55,7 @@ void SolverOptions::declare(deck::Section& section) {
               "treatment of the double-layer operator in the linear systems for velocities with a viscosity ratio other than 1. `assembled`: a "
               "matrix, assembled once per velocity. `matrix-free`: summed in every iteration of the solver, which needs less memory. `auto`: "
               "`matrix-free` if far sums are evaluated by `tree` (Quadrature/far sum), unless there are rigid bodies and the matrix takes less "
-              "than 1 GB. In a Domain without a tube it is always `matrix-free`");
+              "than 1 GB, and for velocities that are needed only roughly. In a Domain without a tube it is always `matrix-free`");
   if (in_lattice && double_layer == "assembled") section.without_effect({"double layer"}, "in a Domain without a tube");
   section.key("tube", tube, deck::Choice{"schur", "block triangular", "block diagonal", "block"},
               "form of the linear system for the velocity in a tube. `schur`: only the particle's velocity is unknown; the wall traction and "

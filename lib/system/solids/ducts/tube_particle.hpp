@@ -12,6 +12,7 @@
 #include "system/solids/ducts/tube.hpp"
 #include "system/solids/ducts/wall.hpp"
 #include "system/frozen/frozen_operator.hpp"
+#include "system/solvers/options.hpp"
 
 namespace tanktread::coupling {
 
@@ -67,6 +68,7 @@ struct Tube::ParticleData {
   /// these sites.
   struct Frozen {
     FrozenOperator single, dual, single_of_images, dual_of_images, wall;
+    bool images = false;  ///< whether the operators of images are set: in a periodic duct, unless they would be large
     Net inlet, ambient, weights_of_load, weights_of_velocity;
   };
   Frozen frozen;
