@@ -204,7 +204,7 @@ class VelocitySolver {
   //   interface_          velocities: each call with its shape; derivative: CapsuleJacobian::linearise()
   //   bodies_.rigid       solve() and Capsule::restore_constraints()
   //   bodies_.tractions   solve_tractions()
-  //   inverse_            CapsuleJacobian::linearise()
+  //   inverse_            Capsule::linearise()
   //   layers_             each call with its shape; rows that are stored, by assemble() in solve_velocity() and solve_tractions()
   const spline::Space& space_;
   Net resting_;
