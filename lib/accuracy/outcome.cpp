@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "base/text_file.hpp"
+#include "deck/expectation.hpp"
 #include "record/files/summary.hpp"
 
 namespace tanktread::accuracy {
@@ -44,14 +45,11 @@ double magnitude(const Curve& whole) {
   return most;
 }
 
-/// Returns the period of the values of a series: 180 degrees for the inclination of an axis; 0 for series that are not periodic.
-double period_of(const std::string& series) { return series.ends_with("inclination") ? 180 : 0; }
-
 /// Returns the differences of a series between successive levels, coarse to fine.
 std::vector<Curve> differences(const std::string& series, Of of, const std::vector<Outcome>& levels) {
   std::vector<Curve> found;
   for (std::size_t k = 1; k < levels.size(); ++k)
-    found.push_back(difference(part(curve(levels[k].record, series), of), part(curve(levels[k - 1].record, series), of), period_of(series)));
+    found.push_back(difference(part(curve(levels[k].record, series), of), part(curve(levels[k - 1].record, series), of), deck::period_of(series)));
   return found;
 }
 
@@ -145,7 +143,7 @@ Curve curve(const output::RunRecord& record, const std::string& series) {
 
 double part_error(const Request& request, const Outcome& level, const Outcome& looser, double ratio) {
   const auto of = [&](const Outcome& one) { return part(curve(one.record, request.series), request.of); };
-  return largest(difference(of(level), of(looser), period_of(request.series)).values) / (ratio - 1);
+  return largest(difference(of(level), of(looser), deck::period_of(request.series)).values) / (ratio - 1);
 }
 
 std::string obstacle(const std::vector<Outcome>& levels) {

@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
 #include <set>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include <Eigen/LU>
 
@@ -26,14 +30,14 @@ struct Lagrange {
 
   Lagrange(int p, double x) {
     for (int k = 0; k <= p; ++k) {
-      double product = 1, derivative = 0;
+      double product = 1, derivative = 0, denominator = 1;
       for (int i = 0; i <= p; ++i) {
         if (i == k) continue;
-        const double step = static_cast<double>(k - i) / p, factor = (x - static_cast<double>(i) / p) / step;
-        derivative = derivative * factor + product / step;
-        product *= factor;
+        const double factor = x * p - i;
+        derivative = derivative * factor + product * p;
+        product *= factor, denominator *= k - i;
       }
-      value[static_cast<std::size_t>(k)] = product, slope[static_cast<std::size_t>(k)] = derivative;
+      value[static_cast<std::size_t>(k)] = product / denominator, slope[static_cast<std::size_t>(k)] = derivative / denominator;
     }
   }
 };
@@ -66,9 +70,9 @@ struct FromCell {
   bool inside = false;
 };
 
-FromCell distance_from_cell(const StoredSurface& surface, const std::vector<int>& cell, const Vec3& x) {
+/// Returns the distance of x from a cell. The iteration starts at the parameters s and t.
+FromCell distance_from_cell(const StoredSurface& surface, const std::vector<int>& cell, const Vec3& x, double s = 0.5, double t = 0.5) {
   FromCell found;
-  double s = 0.5, t = 0.5;
   for (int iteration = 0; iteration < 8; ++iteration) {
     const auto [y, along_s, along_t] = evaluated(surface, cell, s, t);
     const Vec3 off = x - y;
@@ -81,7 +85,7 @@ FromCell distance_from_cell(const StoredSurface& surface, const std::vector<int>
     found.inside = new_s == s + step[0] && new_t == t + step[1];
     const double change = std::abs(new_s - s) + std::abs(new_t - t);
     s = new_s, t = new_t;
-    if (change < 1e-10) break;
+    if (change < 1e-8) break;  // the distance then errs by about 1e-16 of the cell's size squared, divided by the distance
   }
   return found;
 }
@@ -90,44 +94,68 @@ FromCell distance_from_cell(const StoredSurface& surface, const std::vector<int>
 class Cubes {
  public:
   explicit Cubes(const StoredSurface& surface) : surface_(surface), cells_of_(static_cast<std::size_t>(surface.points.rows())) {
+    double diameter = 0;  // largest distance of a node from the first node of its cell
     for (std::size_t c = 0; c < surface.cells.size(); ++c)
       for (const int node : surface.cells[c]) {
         cells_of_[static_cast<std::size_t>(node)].push_back(c);
-        size_ = std::max(size_, (surface.points.row(node) - surface.points.row(surface.cells[c].front())).norm());
+        diameter = std::max(diameter, (surface.points.row(node) - surface.points.row(surface.cells[c].front())).norm());
       }
-    for (Eigen::Index k = 0; k < surface.points.rows(); ++k) nodes_[cube(surface.points.row(k).transpose())].push_back(static_cast<int>(k));
+    size_ = std::max(diameter / cubes_per_cell, std::numeric_limits<double>::min());
+    for (Eigen::Index k = 0; k < surface.points.rows(); ++k) nodes_[key(cube(surface.points.row(k).transpose()))].push_back(static_cast<int>(k));
   }
 
   double distance(const Vec3& x) const {
-    const std::array<long, 3> here = cube(x);
-    int nearest = -1;
-    double least = std::numeric_limits<double>::infinity();
-    for (long i = -1; i <= 1; ++i)
-      for (long j = -1; j <= 1; ++j)
-        for (long k = -1; k <= 1; ++k)
-          if (const auto found = nodes_.find({here[0] + i, here[1] + j, here[2] + k}); found != nodes_.end())
-            for (const int node : found->second)
-              if (const double off = (surface_.points.row(node).transpose() - x).norm(); off < least) least = off, nearest = node;
-    if (nearest < 0) return std::numeric_limits<double>::quiet_NaN();
+    Nearest nearest = nearest_within(x, 1);
+    if (!(nearest.distance <= size_)) nearest = nearest_within(x, cubes_per_cell);
+    if (nearest.node < 0) return std::numeric_limits<double>::quiet_NaN();
+    double least = nearest.distance;
     std::set<std::size_t> around;  // cells that share a node with the cells at the nearest node
-    for (const std::size_t c : cells_at(nearest)) {
-      const FromCell found = distance_from_cell(surface_, surface_.cells[c], x);
+    for (const std::size_t c : cells_at(nearest.node)) {
+      const std::vector<int>& cell = surface_.cells[c];
+      const auto p = static_cast<int>(std::lround(std::sqrt(static_cast<double>(cell.size())))) - 1;
+      const auto& [i, j] = order_of(p)[static_cast<std::size_t>(std::ranges::find(cell, nearest.node) - cell.begin())];
+      const FromCell found = distance_from_cell(surface_, cell, x, static_cast<double>(i) / p, static_cast<double>(j) / p);
       least = std::min(least, found.distance);
       if (found.inside) return least;
-      for (const int node : surface_.cells[c]) around.insert(cells_at(node).begin(), cells_at(node).end());
+      for (const int node : cell) around.insert(cells_at(node).begin(), cells_at(node).end());
     }
     for (const std::size_t c : around) least = std::min(least, distance_from_cell(surface_, surface_.cells[c], x).distance);
     return least;
   }
 
  private:
+  static constexpr int cubes_per_cell = 3;  // number of cubes along the largest diameter of a cell
+  using Cube = std::array<std::int64_t, 3>;
+  struct Nearest {
+    int node = -1;
+    double distance = std::numeric_limits<double>::infinity();
+  };
+
+  /// Returns the nearest node in the cube of x and in its neighbours up to `n` cubes away; the node -1 if there is none.
+  Nearest nearest_within(const Vec3& x, std::int64_t n) const {
+    const Cube here = cube(x);
+    Nearest nearest;
+    for (std::int64_t i = -n; i <= n; ++i)
+      for (std::int64_t j = -n; j <= n; ++j)
+        for (std::int64_t k = -n; k <= n; ++k)
+          if (const auto found = nodes_.find(key({here[0] + i, here[1] + j, here[2] + k})); found != nodes_.end())
+            for (const int node : found->second)
+              if (const double off = (surface_.points.row(node).transpose() - x).norm(); off < nearest.distance) nearest = {node, off};
+    return nearest;
+  }
+
+  /// Returns one number for a cube. Different cubes may have the same number if they are 2^21 cubes apart; both are then searched.
+  static std::int64_t key(const Cube& cube) {
+    constexpr std::int64_t most = std::int64_t{1} << 21;
+    return ((cube[0] & (most - 1)) * most + (cube[1] & (most - 1))) * most + (cube[2] & (most - 1));
+  }
   const std::vector<std::size_t>& cells_at(int node) const { return cells_of_[static_cast<std::size_t>(node)]; }
-  std::array<long, 3> cube(const Vec3& x) const { return {std::lround(x[0] / size_), std::lround(x[1] / size_), std::lround(x[2] / size_)}; }
+  Cube cube(const Vec3& x) const { return {std::llround(x[0] / size_), std::llround(x[1] / size_), std::llround(x[2] / size_)}; }
 
   const StoredSurface& surface_;
   std::vector<std::vector<std::size_t>> cells_of_;  // for each node, the cells that contain it
-  std::map<std::array<long, 3>, std::vector<int>> nodes_;
-  double size_ = std::numeric_limits<double>::min();  // edge length of the cubes of the search: largest distance of a node from the first of its cell
+  std::unordered_map<std::int64_t, std::vector<int>> nodes_;
+  double size_ = 0;  // edge length of the cubes
 };
 
 }  // namespace
@@ -141,13 +169,15 @@ std::vector<double> distances(const StoredSurface& fine, const StoredSurface& co
 
 void write_position_errors(const std::array<std::filesystem::path, 3>& levels, const std::vector<double>& expected, const std::filesystem::path& to) {
   const auto& [coarsest, coarse, fine] = levels;
-  const auto surface_at = [](const std::filesystem::path& level, double time) -> std::optional<StoredSurface> {
-    for (const auto& [name, other] : output::snapshot_times(level))
+  using Snapshots = std::vector<std::pair<std::string, double>>;
+  const Snapshots of_coarsest = output::snapshot_times(coarsest), of_coarse = output::snapshot_times(coarse);
+  const auto surface_at = [](const std::filesystem::path& level, const Snapshots& snapshots, double time) -> std::optional<StoredSurface> {
+    for (const auto& [name, other] : snapshots)
       if (std::abs(other - time) <= 1e-9 * std::max(1., time)) return output::read_surface(level / name);
     return {};
   };
   for (const auto& [name, time] : output::snapshot_times(fine)) {
-    const auto before = surface_at(coarse, time), first = surface_at(coarsest, time);
+    const auto before = surface_at(coarse, of_coarse, time), first = surface_at(coarsest, of_coarsest, time);
     if (!before || !first) continue;
     const StoredSurface surface = output::read_surface(fine / name);
     std::vector<double> errors = distances(surface, *before);

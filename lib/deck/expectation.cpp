@@ -9,6 +9,8 @@
 
 namespace tanktread::deck {
 
+double period_of(const std::string& series) { return series.ends_with("inclination") ? 180 : 0; }
+
 void Expectation::declare(Section& section) {
   if (name.front() != '<')  // `<name>` is no expectation but a placeholder in the manual
     for (const char* key : {"value", "tolerance"})
@@ -61,7 +63,7 @@ Verdict verdict(const Expectation& e, const SeriesTable& series, const Undefined
   Verdict out{e.name,       std::numeric_limits<double>::quiet_NaN(), e.value, std::numeric_limits<double>::quiet_NaN(), false, {},
               e.not_binding};
   const auto values = series.find(e.series), times = series.find("time");
-  const double period = e.series.ends_with("inclination") ? 180 : 0;  // of the angle of an axis, in degrees
+  const double period = period_of(e.series);
   if (values == series.end() || values->second.empty()) {
     out.reason = "the results hold no series " + e.series;
     return out;

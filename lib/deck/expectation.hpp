@@ -11,6 +11,9 @@
 
 namespace tanktread::deck {
 
+/// Returns the period of the values of a series: 180 degrees for the inclination of an axis; 0 for series that are not periodic.
+double period_of(const std::string& series);
+
 /// An expected value of a series.
 struct Expectation {
   std::string name;               ///< name of the section, chosen by the user
