@@ -33,7 +33,7 @@ std::string surface_line(const Body& body) {
 /// Returns the line of the plan that describes how the unknown tractions on the wall of a tube are computed.
 std::string wall_solver(const Scene& scene) {
   if (!scene.in_system()) return "eliminated from the system of the traction";
-  if (!scene.solvers.eliminates_walls()) return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
+  if (!scene.solvers.eliminates_walls()) return "in the system of the velocity, with the preconditioner `" + scene.solvers.tube + "`";
   const bool system = std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system);
   return system ? "eliminated from the system of the velocity" : "solved for directly";
 }
@@ -136,11 +136,30 @@ std::string solvers_line(const Scene& scene) {
     return line.empty() ? "no iterative solver" : line;
   }
   const bool blocks = scene.tube.present && !solvers.eliminates_walls();
-  if (blocks || std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system)) add("velocity", solvers.velocity);
+  if (blocks || solvers.volume == "multipliers" || std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system)) add("velocity", solvers.velocity);
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
   if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);
   return line.empty() ? "no iterative solver" : line;
+}
+
+/// Returns the line of the plan that names the blocks of unknowns of a velocity (BlockSystem), and those that are eliminated.
+std::string blocks_line(const Scene& scene) {
+  std::string unknown, eliminated;
+  const auto add = [](std::string& list, const std::string& block) { list += (list.empty() ? "" : ", ") + block; };
+  const bool walls = scene.tube.present && !scene.solvers.eliminates_walls(), tractions = scene.by_tractions();
+  const bool constrained = scene.volume.constraint != coupling::VolumeConservation::none;
+  const auto bodies = std::ranges::count_if(scene.particles, [](const ParticleKind& kind) { return kind.particle.rigid(); });
+  const bool deforms = bodies < std::ssize(scene.particles);
+  const bool multipliers = !tractions && constrained && deforms && scene.solvers.keeps_multipliers(walls);
+  const bool system = walls || multipliers || std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system);
+  if (deforms) add(system ? unknown : eliminated, system ? "velocities" : "velocities (explicit)");
+  if (bodies > 0) add(unknown, tractions ? "tractions of rigid bodies" : "double-layer densities of rigid bodies");
+  if (bodies > 0 && tractions) add(eliminated, "motions of rigid bodies (unit motions)");
+  if (scene.tube.present) add(walls ? unknown : eliminated, walls ? "wall traction, pressure drop" : "wall traction and pressure drop (response)");
+  if (scene.wall.solid || !scene.posts.empty()) add(eliminated, "tractions of plates and posts (response)");
+  if (constrained && deforms) add(multipliers ? unknown : eliminated, multipliers ? "volume multipliers" : "volume multipliers (projection)");
+  return (unknown.empty() ? "none" : unknown) + (eliminated.empty() ? "" : "; eliminated: " + eliminated);
 }
 
 /// Returns the line of the plan about a rigid particle: that its motion is prescribed, or how its free motion is computed.
@@ -206,6 +225,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
     lines.emplace_back("time", time_line(scene, n, static_cast<double>(body.symmetry.fundamental().size()), ranks));
   else
     add_steady(lines, scene, body);
+  lines.emplace_back("blocks", blocks_line(scene));
   lines.emplace_back("solvers", solvers_line(scene));
   lines.emplace_back("symmetry", several ? "not searched for among several particles" : symmetry_line(scene, body));
   add_particles(lines, alone, n, tree);

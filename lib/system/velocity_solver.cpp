@@ -73,7 +73,7 @@ Net VelocitySolver::solve_in_cell(const Net& x, const Net& guess, SolvedShape& f
 }
 
 /// Computes the fluid velocity of (4.2) step by step: the load of membranes and rigid bodies, the velocity that this load causes plus the ambient
-/// velocity, the projection onto constant volumes, and the solution of the linear system for the velocity, if one is needed. The unknowns of rigid
+/// velocity, and the solution of the linear system for the velocity or, without one, the projection onto constant volumes. The unknowns of rigid
 /// bodies are the densities w of (2.23), which are replaced by the velocities of the bodies at the end. Sets `volume`, and
 /// loads, unknowns and the response of a tube in `found`.
 Net VelocitySolver::solve_second_kind(const Net& x, const Net& guess, VolumeProjection& volume, SolvedShape& found) {
@@ -84,8 +84,8 @@ Net VelocitySolver::solve_second_kind(const Net& x, const Net& guess, VolumeProj
   Net v = explicit_velocity(x, f, {}, &found.response);
   rigid.add_load_correction(v);
   rigid.subtract_prescribed(v);
-  volume.apply(v);
   if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, found.error);
+  else volume.apply(v);
   found.unknowns = v;
   if (viscous()) found.load += membranes_.viscous_load(x, symmetric(v));
   if (rigid.empty()) return v;

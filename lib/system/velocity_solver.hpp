@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "stokes/flow/ambient_flow.hpp"
+#include "system/block_system.hpp"
 #include "system/capsule_parameters.hpp"
 #include "system/membranes.hpp"
 #include "system/parallel/layout.hpp"
@@ -36,8 +37,8 @@ class RigidTractions;
 /// ratio lambda. Each particle has its own condition b.v = 0, and P is the product of the projections of all particles.
 ///
 /// Solution: if lambda = 1, then D = 0, and the velocity needs no assembly and no linear solve. Otherwise Belos solves P B P v = P rhs, where rhs is
-/// the right-hand side of the equation above. This system results from the block system of v and the Lagrange multipliers of b.v = 0 if the
-/// multipliers are eliminated. P removes the mode for which B becomes singular as lambda -> 0.
+/// the right-hand side of the equation above. P removes the mode for which B becomes singular as lambda -> 0. BlockSystem describes this system, and
+/// the choices of further unknowns: the multipliers of b.v = 0, the wall traction and the pressure drop of a tube.
 ///
 /// Viscous membranes and interfaces: B includes the velocity caused by the load M0^{-1} C v (3.10), where v is the fluid velocity:
 ///
@@ -56,8 +57,8 @@ class RigidTractions;
 /// ambient velocities at the two positions.
 ///
 /// Tube: the velocity caused by the wall and by the pressure drop (2.5)-(2.7) is added. This velocity is linear in the load and, for lambda != 1,
-/// in v. The part due to known loads is added to the right-hand side, and the part due to v to B. Alternatively v, the wall traction and the
-/// pressure drop are solved for in one linear system (TubeSystem).
+/// in v. The part due to known loads is added to the right-hand side, and the part due to v to B. Alternatively the wall traction and the pressure
+/// drop are unknowns.
 ///
 /// Plates and posts: the velocity (2.47) that they cause is added to the right-hand side and to B in the same way.
 ///
@@ -170,7 +171,8 @@ class VelocitySolver {
     std::unique_ptr<RigidTractions> tractions;
     std::optional<OneBodyInverses> isolated;
   };
-  bool has_velocity_system() const { return has_system() || !eliminates_walls(); }
+  bool keeps_multipliers() const { return parameters_.solvers.keeps_multipliers(!eliminates_walls()); }
+  bool has_velocity_system() const { return has_system() || !eliminates_walls() || keeps_multipliers(); }
   // In the functions below, x is a shape whose particles are in the cell (place), if there is a lattice.
   // Stages (velocity_solver.cpp).
   Net solve_in_cell(const Net& x, const Net& guess, SolvedShape& found);
@@ -184,15 +186,13 @@ class VelocitySolver {
   Vec3 cell_origin(const Net& x) const;
   Tube::Response add_walls(const Net& f, const Net& v, bool with_empty, Net& u);
   // Linear systems (velocity_solver_systems.cpp).
-  Net velocity_load(const Net& x, const Net& v);
-  Net velocity_product(const Net& x, const Net& v, const Net& load);
+  Net velocities_in(const Net& y) const;
+  Net dependent_load(const Net& x, const Net& y);
+  Net particle_rows(const Net& x, const Net& y, const Net& load, const Net& caused);
+  BlockSystem block_system(const Net& x, const VolumeProjection& volume);
   bool uses_inverse(double error, double tolerance) const;
   Apply velocity_preconditioner(const Net& x);
   Net solve_velocity(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs, const Net& guess, double error);
-  Net solve_blocks(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs);
-  Net deformable_velocity(const VolumeProjection& volume, const Net& y) const;
-  Net traction_load(const Net& x, const Net& y, const Net& v);
-  Net traction_product(const Net& x, const VolumeProjection& volume, const Net& y, const Net& caused);
   Net solve_tractions(const Net& x, const VolumeProjection& volume, const Net& flow, SolvedShape& found);
   void record_solve(const SolveReport& report, bool finite, double tolerance);
 

@@ -9,7 +9,6 @@
 #include "base/formatted.hpp"
 #include "system/velocity_solver.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
-#include "system/solids/ducts/tube_system.hpp"
 
 namespace tanktread::coupling {
 
@@ -29,20 +28,63 @@ void VelocitySolver::record_solve(const SolveReport& report, bool finite, double
   if (finite) require_convergence(report, system, tolerance);
 }
 
-/// Returns the load that depends on the velocity v: viscous stresses of membranes, and loads of bodies with prescribed motion. No rows if there is no
-/// such load.
-Net VelocitySolver::velocity_load(const Net& x, const Net& v) {
-  Net load = bodies_.rigid.prescribed() ? bodies_.rigid.completing_load(v) : Net();
-  if (viscous()) load = load.size() > 0 ? Net(load + membranes_.viscous_load(x, v)) : membranes_.viscous_load(x, v);
+/// Returns the velocities in the unknowns y of the particles: y, with zero in the rows of bodies whose unknown is the traction.
+Net VelocitySolver::velocities_in(const Net& y) const {
+  Net v = y;
+  if (bodies_.tractions) clear_rigid(particles(), v);
+  return v;
+}
+
+/// Returns the load that depends on the unknowns y of the particles: viscous stresses of membranes, loads of bodies with prescribed motion (2.23),
+/// and tractions on bodies (2.40). No rows if there is no such load.
+Net VelocitySolver::dependent_load(const Net& x, const Net& y) {
+  Net load;
+  const auto add = [&load](Net part) { load = load.size() > 0 ? Net(load + part) : std::move(part); };
+  if (viscous()) add(membranes_.viscous_load(x, velocities_in(y)));
+  if (bodies_.rigid.prescribed() && !bodies_.tractions) add(bodies_.rigid.completing_load(y));
+  if (!bodies_.tractions) return load;
+  if (load.size() == 0) load = Net::Zero(y.rows(), 3);
+  for (const Particle& one : particles())
+    if (one.rigid) one.block.rows(load) = -one.block.rows(y);
   return load;
 }
 
-/// Returns B v with the operator B of (4.2), without the response of walls. `load`: velocity_load(x, v).
-Net VelocitySolver::velocity_product(const Net& x, const Net& v, const Net& load) {
-  if (!has_system()) return v;
-  Net bv = v - targets_.serial_control_values(layers_.apply(x, v, load));
-  bodies_.rigid.complete(v, bv);
-  return bv;
+/// Returns B y for the unknowns y of all particles and the load dependent_load(x, y). A row is an equation of one of three kinds:
+///
+///   deformable particle                  v - R^-1 u       (4.2)
+///   body whose unknown is w              (2.23), see RigidParticles::complete
+///   body whose unknown is the traction   u at the sites   (2.40)
+///
+/// u is the velocity that y and its load cause, including the response of walls that are eliminated. `caused`: the part of u due to the tractions on
+/// bodies, if it is known already; otherwise empty.
+Net VelocitySolver::particle_rows(const Net& x, const Net& y, const Net& load, const Net& caused) {
+  const Net v = velocities_in(y);
+  Net other = load;  // load whose velocity is not contained in `caused`
+  if (caused.size() > 0) clear_rigid(particles(), other);
+  Net u = layers_.apply(x, v, other.isZero(0) ? Net() : other);
+  if (caused.size() > 0) u += caused;
+  add_walls(load, v, false, u);
+  if (bodies_.tractions && bodies_.tractions->all_rigid()) return u;
+  Net rows = v - targets_.serial_control_values(u);
+  if (!bodies_.tractions) {
+    bodies_.rigid.complete(v, rows);
+    return rows;
+  }
+  for (const Particle& one : particles())
+    if (one.rigid) one.block.rows(rows) = one.block.rows(u);
+  return rows;
+}
+
+/// Returns the system for the unknowns of all particles at the shape x and, unless they are eliminated, those of the wall and of the volumes. The
+/// result refers to this object and holds copies of x and `volume`.
+BlockSystem VelocitySolver::block_system(const Net& x, const VolumeProjection& volume) {
+  BlockSystem system{.load = [this, x](const Net& y) { return dependent_load(x, y); },
+                     .particles = [this, x](const Net& y, const Net& load) { return particle_rows(x, y, load, {}); },
+                     .control_values = [this](const Net& at_sites) { return targets_.collocation().solve(at_sites); },
+                     .volume = std::make_shared<const VolumeProjection>(volume),
+                     .multipliers = keeps_multipliers() && volume.active()};
+  if (!eliminates_walls()) system.tube = tube_.get(), system.unit = tube_->wall().radius() / parameters_.viscosity;
+  return system;
 }
 
 /// Returns whether the inverse of use_inverse() is the preconditioner of a solve that allows the error `error`, with the relative residual
@@ -67,90 +109,28 @@ Apply VelocitySolver::velocity_preconditioner(const Net& x) {
   });
 }
 
-/// Solves P B P v = rhs for v, with the operator B of (4.2), the projection P (2.8) of `volume`, and P rhs = rhs. In a tube, B includes the response
-/// of the wall to v if the option Solvers/tube is `schur`. With other values of this option, solve_blocks() solves for v and the wall tractions
-/// together. The initial guess is rhs if `guess` is empty or there are rigid bodies, and otherwise `guess`. `error`: see Evaluation::solve.
+/// Solves the BlockSystem for the velocities at x and returns the velocity of the particles. `rhs`: v_inf - (1/mu) R^-1 A f, which
+/// includes the response to the load f of walls that are eliminated. The initial guess is rhs if `guess` is empty or there are rigid bodies, and
+/// otherwise `guess`. `error`: see Evaluation::solve.
 Net VelocitySolver::solve_velocity(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs, const Net& guess, double error) {
   const auto clock = phases_.time("velocity system");
   const auto least = [](const Particle& one) { return one.radius * std::sqrt(static_cast<double>(one.block.n_points)); };
   const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
-  const Eigen::VectorXd right = flat(rhs);
-  const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
+  BlockSystem system = block_system(x, volume);
+  const Eigen::VectorXd right = system.right_hand_side(rhs, f);
+  const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.head(rhs.size()).norm()));
   const bool by_inverse = uses_inverse(error, tolerance);
   layers_.assemble(x, viscous(), by_inverse);
-  if (!eliminates_walls()) return solve_blocks(x, f, volume, rhs);
-  const auto apply = [&](Net v) {
-    volume.apply(v);
-    const Net load = velocity_load(x, v);
-    Net bv = velocity_product(x, v, load);
-    if (walls_.any()) {
-      Net u = targets_.zero();
-      add_walls(load, v, false, u);
-      bv -= targets_.serial_control_values(u);
-    }
-    volume.apply(bv);
-    return bv;
-  };
-  Eigen::VectorXd v = flat(guess.size() > 0 && bodies_.rigid.empty() ? guess : rhs);
-  const LinearSystem system{velocity_blocks(particles()), on_nets(x.rows(), apply),
-                            by_inverse ? on_nets(x.rows(), inverse_) : velocity_preconditioner(x)};
-  const SolveReport report = krylov_.solve(system, right, v, tolerance);
-  record_solve(report, v.allFinite(), tolerance);
-  Net solution = as_net(v);
-  volume.apply(solution);
-  return solution;
-}
-
-/// Solves for the velocity v, the wall traction f^D, the pressure drop dp (2.5)-(2.7) and the volume multipliers (2.8) in one system. The right-hand
-/// side rhs = v_inf - (1/mu) R^-1 A f is also the initial guess of v.
-Net VelocitySolver::solve_blocks(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs) {
-  const auto load = [&](const Net& v) { return velocity_load(x, v); };
-  const auto unbounded = [&](const Net& v, const Net& load_of_v) { return velocity_product(x, v, load_of_v); };
-  const auto control_values = [&](const Net& at_sites) { return targets_.collocation().solve(at_sites); };
-  const double unit = tube_->wall().radius() / parameters_.viscosity;
-  const TubeSystem system{*tube_, load, unbounded, control_values, volume, unit};
-  const Eigen::VectorXd right = system.right_hand_side(rhs, f);
+  if (by_inverse) system.of_particles = on_nets(x.rows(), inverse_);
+  else if (eliminates_walls()) system.of_particles = velocity_preconditioner(x);
   Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(right.size());
-  unknowns.head(rhs.size()) = right.head(rhs.size());
-  const LinearSystem linear = system.linear_system(velocity_blocks(particles()), parameters_.solvers.tube);
-  const SolveReport report = krylov_.solve(linear, right, unknowns, parameters_.solvers.tolerance);
-  record_solve(report, unknowns.allFinite(), parameters_.solvers.tolerance);
+  unknowns.head(rhs.size()) = flat(guess.size() > 0 && bodies_.rigid.empty() ? guess : as_net(right.head(rhs.size())));
+  const SolveReport report =
+      krylov_.solve(system.linear_system(velocity_blocks(particles()), parameters_.solvers.tube), right, unknowns, tolerance);
+  record_solve(report, unknowns.allFinite(), tolerance);
   Net v = as_net(unknowns.head(rhs.size()));
   volume.apply(v);
   return v;
-}
-
-/// Returns the velocity of deformable particles for the unknowns y of solve_tractions(); 0 in the rows of bodies.
-Net VelocitySolver::deformable_velocity(const VolumeProjection& volume, const Net& y) const {
-  Net v = y;
-  clear_rigid(particles(), v);
-  volume.apply(v);
-  return v;
-}
-
-/// Returns the load that depends on the unknowns y of solve_tractions(): tractions on bodies, and viscous loads of membranes. `v`:
-/// deformable_velocity() for y.
-Net VelocitySolver::traction_load(const Net& x, const Net& y, const Net& v) {
-  Net load = viscous() ? membranes_.viscous_load(x, v) : Net::Zero(y.rows(), 3);
-  for (const Particle& one : particles())
-    if (one.rigid) one.block.rows(load) = -one.block.rows(y);
-  return load;
-}
-
-/// Returns the product of the operator of solve_tractions() and the unknowns y, see RigidTractions::Surroundings.
-Net VelocitySolver::traction_product(const Net& x, const VolumeProjection& volume, const Net& y, const Net& caused) {
-  const Net v = deformable_velocity(volume, y), load = traction_load(x, y, v);
-  Net other = viscous() || caused.size() == 0 ? load : Net();  // load whose induced velocity is not contained in `caused`
-  if (viscous() && caused.size() > 0) clear_rigid(particles(), other);
-  Net u = layers_.apply(x, v, other);
-  if (caused.size() > 0) u += caused;
-  add_walls(load, v, false, u);
-  if (bodies_.tractions->all_rigid()) return u;
-  Net all = v - targets_.serial_control_values(u);
-  volume.apply(all);
-  for (const Particle& one : particles())
-    if (one.rigid) one.block.rows(all) = one.block.rows(u);
-  return all;
 }
 
 /// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). Returns the velocity of all particles. `flow`:
@@ -159,11 +139,16 @@ Net VelocitySolver::traction_product(const Net& x, const VolumeProjection& volum
 Net VelocitySolver::solve_tractions(const Net& x, const VolumeProjection& volume, const Net& flow, SolvedShape& found) {
   const auto clock = phases_.time("tractions");
   layers_.assemble(x, viscous(), false);
-  // Copies of x and volume, because RigidTractions keeps these functions for moment().
-  const auto product = [this, x, volume](const Net& y, const Net& caused) { return traction_product(x, volume, y, caused); };
-  const auto load = [this, x, volume, known = found.load](const Net& y) {
-    return Net(known + traction_load(x, y, deformable_velocity(volume, y)));
+  // The functions contain copies of x and volume, because RigidTractions keeps them for moment().
+  const auto projected = [volume](Net y) {
+    volume.apply(y);
+    return y;
   };
+  const auto product = [this, x, projected](const Net& given, const Net& caused) {
+    const Net y = projected(given);
+    return projected(particle_rows(x, y, dependent_load(x, y), caused));
+  };
+  const auto load = [this, x, projected, known = found.load](const Net& y) { return Net(known + dependent_load(x, projected(y))); };
   std::vector<Vec3> centres;
   std::vector<RigidDrive> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
@@ -171,7 +156,7 @@ Net VelocitySolver::solve_tractions(const Net& x, const VolumeProjection& volume
   const bool responds = layers_.repeats() || walls_.any() || has_system();
   const RigidTractions::Solution& solution =
       bodies_.tractions->solve(x, centres, driven, flow_, RigidTractions::Surroundings{flow, responds, product, load});
-  Net v = deformable_velocity(volume, solution.unknowns);
+  Net v = velocities_in(projected(solution.unknowns));
   auto body = solution.bodies.begin();
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) bodies_.rigid.set_motion(p, body->motion, body->force, body->torque, v), ++body;

@@ -62,6 +62,11 @@ void SolverOptions::declare(deck::Section& section) {
               "pressure drop are eliminated with the LU factors of the wall, so that no system remains to be solved at viscosity ratio 1. "
               "`block triangular`, `block diagonal`, `block`: all blocks (2.5)-(2.8) are unknown; the LU factors of the wall are the "
               "preconditioner, except for `block`, which has none");
+  section.key("volume", volume, deck::Choice{"auto", "projection", "multipliers"},
+              "constant volumes in the linear system for the velocity (2.8). `projection`: the volume constraints are eliminated by a projection of "
+              "the velocities. `multipliers`: one Lagrange multiplier per deformable particle is an unknown of the system, which is then solved "
+              "even at viscosity ratio 1. `auto`: `multipliers` only with Solvers/tube other than `schur`. With the tractions on rigid bodies as "
+              "unknowns (Solvers/rigid bodies `first kind`), the volumes are always eliminated");
   section.key("wall", wall, deck::Choice{"auto", "factored", "iterative"},
               "solver of the linear system for the traction on the wall of a Channel. `factored`: LU factors, computed once. `iterative`: "
               "GMRES for each velocity, with sums over clusters of nodes; the wall is then neglected in the Jacobian. `auto`: `iterative` if "

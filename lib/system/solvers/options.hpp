@@ -40,9 +40,14 @@ struct SolverOptions {
   bool in_lattice = false;                        ///< true in a Domain without a tube, where the double layer is always matrix-free
   bool in_duct = true;                            ///< false in scenes without a tube or channel, where `tube` and `wall` have no effect
   std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values:
-                                                  ///< preconditioner of one system for all unknowns (TubeSystem)
+                                                  ///< preconditioner of one system for all unknowns (BlockSystem)
+  std::string volume = "auto";                    ///< constant volumes in the system for velocities: projection, or multipliers as unknowns. auto:
+                                                  ///< multipliers only if the wall tractions are unknowns
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (see WallSolver)
   bool eliminates_walls() const { return tube == "schur"; }  ///< returns whether the tractions on the wall of a tube are eliminated
+
+  /// Returns whether the multipliers of the volume constraints are unknowns. `walls`: whether the wall tractions are unknowns.
+  bool keeps_multipliers(bool walls) const { return volume == "multipliers" || (volume == "auto" && walls); }
   BodyEquation rigid_bodies = BodyEquation::automatic;
   std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
   std::string frozen_operator = "auto";           ///< single layer of the Jacobian: nodal (NodalOperator), assembled (FrozenOperator), or auto

@@ -75,7 +75,7 @@ struct TubeParameters {
 ///   images of the particle    none                              in the kernels of one period
 ///
 /// A new kind of duct also needs decisions in: ParticleData and pressure_correction() (v_inf in the weights of f), checks(), gap(), inside();
-/// VelocitySolver::move_into_cell(), cell_origin() and Capsule::evaluated_about() (origin of the frame); TubeSystem (known velocity of images).
+/// VelocitySolver::move_into_cell(), cell_origin() and Capsule::evaluated_about() (origin of the frame); BlockSystem (known velocity of images).
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
