@@ -13,7 +13,41 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
+constexpr double second_order = 6 / 4.25;  // q of (9.2): errors of the orders 4.25 and 6 in the length of the elements
+constexpr double of_mean = 0.7;            // factor of (9.2), fitted with q to 205 errors of requested series in 30 scenes
+constexpr double least_part = 0.1, most_part = 3;  // limits of e'/e in (9.2)
+
+/// Returns the value of a curve at an abscissa, interpolated by cubics between its points; NaN outside of their range.
+double value_at(const Curve& curve, double at) {
+  if (curve.at.empty()) return unknown;
+  const double slack = 1e-9 * std::max(std::abs(curve.at.front()), std::abs(curve.at.back()));
+  if (at < curve.at.front() - slack || at > curve.at.back() + slack) return unknown;
+  return deck::interpolated(curve.at, curve.values, std::clamp(at, curve.at.front(), curve.at.back()));
+}
+
 }  // namespace
+
+double two_order_error(const Curve& before, const Curve& last, const std::array<double, 3>& expected) {
+  const auto second = [](double error) { return std::pow(error, second_order); };
+  const auto [coarsest, coarse, fine] = expected;
+  const double a1 = coarsest - coarse, b1 = second(coarsest) - second(coarse), a2 = coarse - fine, b2 = second(coarse) - second(fine);
+  const double determinant = a1 * b2 - b1 * a2;
+  const double of_before = (fine * b2 - second(fine) * a2) / determinant, of_last = (second(fine) * a1 - fine * b1) / determinant;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < last.at.size(); ++i) errors.push_back(of_last * last.values[i] + of_before * value_at(before, last.at[i]));
+  return largest(errors);
+}
+
+Estimate estimated(const std::vector<Curve>& changes, double scale, const std::vector<double>& expected) {
+  std::vector<double> differences;
+  for (const Curve& one : changes) differences.push_back(largest(one.values));
+  Estimate found = estimated(differences, scale, expected);
+  const std::size_t n = changes.size();
+  if (n < 2 || std::isnan(found.ratio)) return found;
+  const double two = two_order_error(changes[n - 2], changes[n - 1], {expected[n - 2], expected[n - 1], expected[n]});
+  if (!std::isnan(two)) found.error = of_mean * std::sqrt(found.error * std::clamp(two, least_part * found.error, most_part * found.error));
+  return found;
+}
 
 Estimate estimated(const std::vector<double>& differences, double scale, const std::vector<double>& expected) {
   const std::size_t n = differences.size();
@@ -42,7 +76,7 @@ double range_of(const std::vector<double>& values) {
   return high >= low ? high - low : -1;
 }
 
-double distance(double a, double b, double period) { return std::abs(period > 0 ? std::remainder(a - b, period) : a - b); }
+double change(double a, double b, double period) { return period > 0 ? std::remainder(a - b, period) : a - b; }
 
 }  // namespace
 
@@ -53,7 +87,7 @@ Curve difference(const Curve& a, const Curve& b, double period) {
   std::vector<double> common;  // values of a at the common abscissas
   for (std::size_t i = 0, j = 0; i < a.at.size() && j < b.at.size();) {
     if (std::abs(a.at[i] - b.at[j]) <= slack)
-      found.at.push_back(a.at[i]), found.values.push_back(distance(a.values[i], b.values[j], period)), common.push_back(a.values[i]), ++i, ++j;
+      found.at.push_back(a.at[i]), found.values.push_back(change(a.values[i], b.values[j], period)), common.push_back(a.values[i]), ++i, ++j;
     else
       a.at[i] < b.at[j] ? ++i : ++j;
   }
@@ -61,14 +95,14 @@ Curve difference(const Curve& a, const Curve& b, double period) {
   found = {};
   for (std::size_t i = 0; i < a.at.size(); ++i)
     if (a.at[i] >= b.at.front() && a.at[i] <= b.at.back())
-      found.at.push_back(a.at[i]), found.values.push_back(distance(a.values[i], deck::interpolated(b.at, b.values, a.at[i]), period));
+      found.at.push_back(a.at[i]), found.values.push_back(change(a.values[i], deck::interpolated(b.at, b.values, a.at[i]), period));
   return found;
 }
 
 double largest(const std::vector<double>& values) {
   double most = unknown;
   for (const double value : values)
-    if (!std::isnan(value) && !(value <= most)) most = value;
+    if (!std::isnan(value) && !(std::abs(value) <= most)) most = std::abs(value);
   return most;
 }
 
@@ -143,7 +177,7 @@ std::vector<double> envelope(const Curve& curve, const std::vector<double>& at) 
   for (std::size_t k = 0; k < at.size(); ++k) {
     const std::ptrdiff_t above = std::lower_bound(curve.at.begin(), curve.at.end(), at[k]) - curve.at.begin();
     for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, std::min(above, n - 1) - 2); i < std::min(n, above + 2); ++i)
-      if (const double value = curve.values[static_cast<std::size_t>(i)]; !std::isnan(value) && !(value <= found[k])) found[k] = value;
+      if (const double value = std::abs(curve.values[static_cast<std::size_t>(i)]); !std::isnan(value) && !(value <= found[k])) found[k] = value;
   }
   return found;
 }

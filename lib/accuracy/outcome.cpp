@@ -45,17 +45,18 @@ double magnitude(const Curve& whole) {
   return most;
 }
 
-/// Returns the differences of a series between successive levels, coarse to fine.
-std::vector<Curve> differences(const std::string& series, Of of, const std::vector<Outcome>& levels) {
+/// Returns the changes of a series from each level to the next finer one, coarse to fine.
+std::vector<Curve> changes(const std::string& series, Of of, const std::vector<Outcome>& levels) {
   std::vector<Curve> found;
   for (std::size_t k = 1; k < levels.size(); ++k)
     found.push_back(difference(part(curve(levels[k].record, series), of), part(curve(levels[k - 1].record, series), of), deck::period_of(series)));
   return found;
 }
 
-std::vector<double> norms(const std::vector<Curve>& differences) {
+/// Returns the largest magnitude of each curve.
+std::vector<double> norms(const std::vector<Curve>& curves) {
   std::vector<double> found;
-  for (const Curve& one : differences) found.push_back(largest(one.values));
+  for (const Curve& one : curves) found.push_back(largest(one.values));
   return found;
 }
 
@@ -67,7 +68,7 @@ std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Re
   std::vector<double> sizes;
   for (const Outcome& one : levels) sizes.push_back(expected_error(one.level));
   if (!looser || levels.size() < 4) return sizes;
-  const std::vector<double> first = norms(differences(request.series, request.of, {levels.begin(), levels.begin() + 3}));
+  const std::vector<double> first = norms(changes(request.series, request.of, {levels.begin(), levels.begin() + 3}));
   const double whole = estimated(first, scale, {sizes.begin(), sizes.begin() + 3}).error, size = sizes[2];
   const double share = part_error(request, levels[2], *looser, time_ratio) / whole;
   if (!(share > 0)) return sizes;
@@ -171,12 +172,13 @@ double cancelled(const Request& request, const std::vector<Outcome>& levels, dou
   return predicted_error(last + change, expected_error(coarse), expected_error(fine), expected_error(fine)) + of_time(fine);
 }
 
-/// Returns the estimated error of the series of a request. `differences`: largest differences between successive levels, coarse to fine. `tiny`: true
-/// if the last two of them are much smaller than the request allows; the larger one is then an estimate even if they do not fall regularly.
+/// Returns the estimated error of the series of a request. `from_level_to_level`: result of changes(). `tiny`: true if the last two of them are much
+/// smaller than the request allows; the larger one is then an estimate even if they do not fall regularly.
 Estimate estimate(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser,
-                  const std::vector<double>& differences, bool tiny = false) {
+                  const std::vector<Curve>& from_level_to_level, bool tiny = false) {
   const double scale = scale_of(levels.back().record, request.series);
-  Estimate found = estimated(differences, scale, expected_errors(levels, request, scale, looser));
+  const std::vector<double> differences = norms(from_level_to_level);
+  Estimate found = estimated(from_level_to_level, scale, expected_errors(levels, request, scale, looser));
   if (tiny && !found.trusted()) {
     const double before = differences[differences.size() - 2];
     found = {std::max(differences.back(), found.ratio > most_ratio ? before / most_ratio : before), found.ratio, ""};
@@ -194,12 +196,13 @@ RequestResult answer(const Request& request, const std::vector<Outcome>& levels,
   found.value = request.of == Of::run ? magnitude(whole) : of_part.values.back();
   const double scale = scale_of(levels.back().record, request.series);
   found.allowed = request.relative ? std::max(request.value * magnitude(whole), round_off * scale) : request.value;
-  const std::vector<double> sizes = norms(differences(request.series, request.of, levels));
+  const std::vector<Curve> from_level_to_level = changes(request.series, request.of, levels);
+  const std::vector<double> sizes = norms(from_level_to_level);
   const bool tiny = sizes.size() > 1 && sizes.back() <= found.allowed / 10 && sizes[sizes.size() - 2] <= found.allowed / 10;
-  found.estimate = estimate(request, levels, looser, sizes, tiny);
+  found.estimate = estimate(request, levels, looser, from_level_to_level, tiny);
   if (request.of == Of::mean) found.estimate.error += average(whole).error;
   if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
-  const std::vector<double> noise = norms(differences(request.series, Of::run, levels));
+  const std::vector<double> noise = norms(changes(request.series, Of::run, levels));
   found.vanishes = request.relative && !tiny && noise.size() > 1 && std::min(noise.back(), noise[noise.size() - 2]) > magnitude(whole) / 2 &&
                    is_noise(levels, request.series);
   if (found.vanishes) found.estimate.untrusted = "the series is not larger than its differences between levels: request an absolute accuracy";
@@ -215,9 +218,9 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
   for (const output::Series& series : finest.series()) {
     if (!has_error(series.name)) continue;
     SeriesError one{series.name, series.unit, series.si, {}, {}};
-    const std::vector<Curve> pairs = differences(series.name, Of::run, levels);
+    const std::vector<Curve> pairs = changes(series.name, Of::run, levels);
     const Curve whole = curve(finest, series.name);
-    Estimate whole_run = estimate({series.name, Of::run, 0, false}, levels, looser, norms(pairs));
+    Estimate whole_run = estimate({series.name, Of::run, 0, false}, levels, looser, pairs);
     for (bool requested = false; const RequestResult& answer : answers) {
       if (answer.request.series != series.name || answer.request.of != Of::run || (requested && !answer.estimate.trusted())) continue;
       whole_run = answer.estimate, requested = true;

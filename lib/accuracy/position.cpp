@@ -84,8 +84,11 @@ FromCell distance_from_cell(const StoredSurface& surface, const std::vector<int>
     const double new_s = std::clamp(s + step[0], 0., 1.), new_t = std::clamp(t + step[1], 0., 1.);
     found.inside = new_s == s + step[0] && new_t == t + step[1];
     const double change = std::abs(new_s - s) + std::abs(new_t - t);
+    if (change < 1e-6) {  // off minus the tangential displacement of the last step errs by about 1e-12 of the cell's size
+      found.distance = std::min(found.distance, (off - (new_s - s) * along_s - (new_t - t) * along_t).norm());
+      break;
+    }
     s = new_s, t = new_t;
-    if (change < 1e-8) break;  // the distance then errs by about 1e-16 of the cell's size squared, divided by the distance
   }
   return found;
 }

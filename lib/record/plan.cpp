@@ -135,8 +135,9 @@ std::string solvers_line(const Scene& scene) {
     if (scene.tube.present) add("traction", solvers.traction);
     return line.empty() ? "no iterative solver" : line;
   }
-  const bool blocks = scene.tube.present && !solvers.eliminates_walls();
-  if (blocks || solvers.volume == "multipliers" || std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system)) add("velocity", solvers.velocity);
+  const bool walls = scene.tube.present && !solvers.eliminates_walls();
+  const bool blocks = walls || solvers.keeps_multipliers(walls);
+  if (blocks || std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system)) add("velocity", solvers.velocity);
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
   if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);

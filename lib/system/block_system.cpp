@@ -19,8 +19,8 @@ struct Sizes {
   Eigen::Index all() const { return 3 * particles + (wall < 0 ? 0 : 3 * wall + 1) + multipliers; }
 };
 
-/// Access to the blocks of an array of unknowns or residuals. If the wall is no unknown, the wall traction has no rows, and the pressure drop must not
-/// be used.
+/// Access to the blocks of an array of unknowns or residuals. If the wall is no unknown, the wall traction has no rows, and the pressure drop must
+/// not be used.
 template <class Number>
 struct Parts {
   using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;

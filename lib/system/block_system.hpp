@@ -47,8 +47,8 @@ struct BlockSystem {
   Net eliminated(const Net& y) const;
 
   /// Returns the system. The preconditioner uses `of_particles` for B, or the identity if it is not set. It solves for y and pi, then for dp, then
-  /// for f^D by the LU factors of the wall. With `form` = `block triangular`, each right-hand side includes the unknowns found before. `block diagonal`
-  /// omits these contributions. With `block`, there is no preconditioner. Without a wall among the unknowns, `form` has no effect. `names`: names and
+  /// for f^D by the LU factors of the wall. With `form` = `block triangular`, each right-hand side includes the unknowns found before. `block
+  /// diagonal` omits these contributions. With `block`, there is no preconditioner. Without a wall among the unknowns, `form` has no effect. `names`: names and
   /// sizes of the particles' unknowns. The result refers to the functions and the tube of this object.
   LinearSystem linear_system(Blocks names, const std::string& form) const;
 

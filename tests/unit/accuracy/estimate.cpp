@@ -1,6 +1,9 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -50,6 +53,55 @@ TEST(Estimate, IsWithinAFactorOfThreeIfErrorsHaveAnotherOrder) {
     }
 }
 
+/// Changes between three levels of a curve with the errors a(t) E + b(t) E^(6/4.25), and the largest error on the finest level. `sign`: factor of b.
+struct TwoOrders {
+  std::array<double, 3> expected{1, 0.28, 0.09};
+  std::vector<Curve> changes{2};
+  double error = 0;
+
+  explicit TwoOrders(double sign) {
+    const auto at_level = [&](double t, std::size_t level) {
+      return std::cos(t) * expected[level] + sign * (2 + std::sin(t)) * std::pow(expected[level], 6 / 4.25);
+    };
+    for (int k = 0; k <= 20; ++k) {
+      const double t = 0.1 * k;
+      for (std::size_t level : {1, 2})
+        changes[level - 1].at.push_back(t), changes[level - 1].values.push_back(at_level(t, level) - at_level(t, level - 1));
+      error = std::max(error, std::abs(at_level(t, 2)));
+    }
+  }
+  std::vector<double> sizes() const { return {expected.begin(), expected.end()}; }
+};
+
+TEST(TwoOrderError, IsTheErrorIfErrorsHaveTheTwoOrders) {
+  for (const double sign : {1., 0., -0.8}) {
+    const TwoOrders errors(sign);
+    EXPECT_NEAR(two_order_error(errors.changes[0], errors.changes[1], errors.expected), errors.error, 1e-14) << sign;
+  }
+}
+
+TEST(TwoOrderError, InterpolatesTheChangeOfTheCoarserLevels) {
+  TwoOrders errors(-0.8);
+  Curve& before = errors.changes[0];
+  before.at.erase(before.at.begin() + 7), before.values.erase(before.values.begin() + 7);
+  EXPECT_NEAR(two_order_error(before, errors.changes[1], errors.expected), errors.error, 1e-6);  // cubic interpolation over 0.2
+  EXPECT_TRUE(std::isnan(two_order_error({{7}, {1}}, errors.changes[1], errors.expected)));
+}
+
+// With a second order of opposite sign, errors fall faster than expected, so that the estimate (9.1) from the last difference is too large.
+TEST(Estimate, UsesTheSignsOfChanges) {
+  const TwoOrders errors(-0.8);
+  const Estimate with_signs = estimated(errors.changes, 1, errors.sizes());
+  const Estimate without = estimated({largest(errors.changes[0].values), largest(errors.changes[1].values)}, 1, errors.sizes());
+  EXPECT_GT(std::abs(std::log(without.error / errors.error)), std::abs(std::log(with_signs.error / errors.error)));
+  EXPECT_EQ(with_signs.ratio, without.ratio);
+}
+
+TEST(Estimate, MeetsARequestOnlyIfTheErrorDoesWhenErrorsAreProportionalToTheExpectedOnes) {
+  const TwoOrders errors(0);
+  EXPECT_GE(margin * estimated(errors.changes, 1, errors.sizes()).error, errors.error);
+}
+
 TEST(Estimate, NeedsThreeLevels) {
   EXPECT_FALSE(of({}).trusted());
   EXPECT_FALSE(of({1e-2}).trusted());
@@ -81,7 +133,7 @@ TEST(Difference, IsTakenAtTimesThatBothCurvesHave) {
   for (int k = 0; k <= 18; ++k) b.at.push_back(k / 18.), b.values.push_back(std::exp(k / 18.) + 0.1);
   const Curve found = difference(a, b);
   ASSERT_EQ(found.at.size(), 7u);
-  for (const double value : found.values) EXPECT_NEAR(value, 0.1, 1e-14);  // no error of interpolation
+  for (const double value : found.values) EXPECT_NEAR(value, -0.1, 1e-14);  // no error of interpolation
 }
 
 TEST(Difference, InterpolatesIfThereAreTooFewSuchTimes) {
@@ -90,7 +142,7 @@ TEST(Difference, InterpolatesIfThereAreTooFewSuchTimes) {
   for (int k = 0; k <= 13; ++k) b.at.push_back(k / 12.), b.values.push_back(std::pow(b.at.back(), 3) + 0.1);
   const Curve found = difference(a, b);
   ASSERT_EQ(found.at.size(), 11u);
-  for (const double value : found.values) EXPECT_NEAR(value, 0.1, 1e-12);  // cubics are exact
+  for (const double value : found.values) EXPECT_NEAR(value, -0.1, 1e-12);  // cubics are exact
 }
 
 TEST(Difference, InterpolatesIfTheCommonTimesMissTheValues) {
