@@ -33,9 +33,10 @@ std::string surface_line(const Body& body) {
 /// Returns the line of the plan that describes how the unknown tractions on the wall of a tube are computed.
 std::string wall_solver(const Scene& scene) {
   if (!scene.in_system()) return "eliminated from the system of the traction";
-  if (!scene.solvers.eliminates_walls()) return "in the system of the velocity, with the preconditioner `" + scene.solvers.tube + "`";
-  const bool system = std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system);
-  return system ? "eliminated from the system of the velocity" : "solved for directly";
+  const VelocityUnknowns unknowns = velocity_unknowns(scene);
+  if (unknowns.walls) return "in the system of the velocity, with the preconditioner `" + scene.solvers.tube + "`";
+  if (unknowns.tractions) return "eliminated from the system of the tractions";
+  return unknowns.iterates ? "eliminated from the system of the velocity" : "solved for directly";
 }
 
 void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
@@ -135,9 +136,7 @@ std::string solvers_line(const Scene& scene) {
     if (scene.tube.present) add("traction", solvers.traction);
     return line.empty() ? "no iterative solver" : line;
   }
-  const bool walls = scene.tube.present && !solvers.eliminates_walls();
-  const bool blocks = walls || solvers.keeps_multipliers(walls);
-  if (blocks || std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system)) add("velocity", solvers.velocity);
+  if (velocity_unknowns(scene).iterates) add("velocity", solvers.velocity);
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
   if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);
@@ -146,21 +145,22 @@ std::string solvers_line(const Scene& scene) {
 
 /// Returns the line of the plan that names the blocks of unknowns of a velocity (BlockSystem), and those that are eliminated.
 std::string blocks_line(const Scene& scene) {
+  const VelocityUnknowns unknowns = velocity_unknowns(scene);
+  const bool constrained = unknowns.deforms && scene.volume.constraint != coupling::VolumeConservation::none;
   std::string unknown, eliminated;
-  const auto add = [](std::string& list, const std::string& block) { list += (list.empty() ? "" : ", ") + block; };
-  const bool walls = scene.tube.present && !scene.solvers.eliminates_walls(), tractions = scene.by_tractions();
-  const bool constrained = scene.volume.constraint != coupling::VolumeConservation::none;
-  const auto bodies = std::ranges::count_if(scene.particles, [](const ParticleKind& kind) { return kind.particle.rigid(); });
-  const bool deforms = bodies < std::ssize(scene.particles);
-  const bool multipliers = !tractions && constrained && deforms && scene.solvers.keeps_multipliers(walls);
-  const bool system = walls || multipliers || std::ranges::any_of(scene.particle_scenes(), &ParticleScene::has_velocity_system);
-  if (deforms) add(system ? unknown : eliminated, system ? "velocities" : "velocities (explicit)");
-  if (bodies > 0) add(unknown, tractions ? "tractions of rigid bodies" : "double-layer densities of rigid bodies");
-  if (bodies > 0 && tractions) add(eliminated, "motions of rigid bodies (unit motions)");
-  if (scene.tube.present) add(walls ? unknown : eliminated, walls ? "wall traction, pressure drop" : "wall traction and pressure drop (response)");
-  if (scene.wall.solid || !scene.posts.empty()) add(eliminated, "tractions of plates and posts (response)");
-  if (constrained && deforms) add(multipliers ? unknown : eliminated, multipliers ? "volume multipliers" : "volume multipliers (projection)");
-  return (unknown.empty() ? "none" : unknown) + (eliminated.empty() ? "" : "; eliminated: " + eliminated);
+  const auto add = [](bool present, std::string& list, const std::string& block) {
+    if (present) list += (list.empty() ? "" : ", ") + block;
+  };
+  add(unknowns.system, unknown, "velocities");
+  add(unknowns.bodies, unknown, unknowns.tractions ? "tractions of rigid bodies" : "double-layer densities of rigid bodies");
+  add(unknowns.walls, unknown, "wall traction, pressure drop");
+  add(unknowns.multipliers, unknown, "volume multipliers");
+  add(unknowns.tractions, eliminated, "motions of rigid bodies (unit motions)");
+  add(scene.tube.present && !unknowns.walls, eliminated, "wall traction and pressure drop (response)");
+  add(scene.wall.solid || !scene.posts.empty(), eliminated, "tractions of plates and posts (response)");
+  add(constrained && !unknowns.multipliers, eliminated, "volume multipliers (projection)");
+  if (unknowns.deforms && !unknowns.system) unknown += (unknown.empty() ? "" : "; ") + std::string("velocities computed without a system");
+  return unknown + (eliminated.empty() ? "" : "; eliminated: " + eliminated);
 }
 
 /// Returns the line of the plan about a rigid particle: that its motion is prescribed, or how its free motion is computed.
@@ -229,7 +229,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   lines.emplace_back("blocks", blocks_line(scene));
   lines.emplace_back("solvers", solvers_line(scene));
   lines.emplace_back("symmetry", several ? "not searched for among several particles" : symmetry_line(scene, body));
-  add_particles(lines, alone, n, tree);
+  add_particles(lines, alone, velocity_unknowns(scene), n, tree);
   return lines;
 }
 

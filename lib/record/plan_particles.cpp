@@ -12,14 +12,17 @@ namespace {
 
 using Lines = output::Entries<std::string>;
 
-std::string viscosity_line(const ParticleScene& particle_scene, int n_points, bool tree) {
+/// `system`: whether the velocity is an unknown of a linear system.
+std::string viscosity_line(const ParticleScene& particle_scene, bool system, int n_points, bool tree) {
   const bool on_lattice = particle_scene.domain.present && !particle_scene.tube.present;
   const bool assembled = particle_scene.solvers.assembled(tree) && !on_lattice;
   const char* const how = assembled ? "assembled" : "matrix-free";
   if (particle_scene.particle.viscosity_ratio == 1 && particle_scene.kelvin_voigt_membrane())
     return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns per velocity",
                      how, 3 * n_points);
-  if (particle_scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
+  if (particle_scene.particle.viscosity_ratio == 1)
+    return system ? formatted("ratio 1: no double layer; a system of %d unknowns per velocity", 3 * n_points)
+                  : "ratio 1: no double layer, no system for the velocity";
   return formatted("ratio %g: double layer %s, a system of %d unknowns per velocity", particle_scene.particle.viscosity_ratio, how, 3 * n_points);
 }
 
@@ -52,32 +55,46 @@ std::string mesh_line(const ParticleScene& particle_scene) {
 }
 
 /// Returns the lines of the plan about one particle. `n_points`: number of control points of all particles. `tree`: true if far-field sums use
-/// clusters. `responds`: true if the tractions of rigid bodies are found by GMRES, because the scene has a tube, a periodic domain, or a deforming
-/// particle whose velocity is found from a linear system.
-Lines particle_lines(const ParticleScene& particle_scene, int n_points, bool tree, bool responds) {
+/// clusters.
+Lines particle_lines(const ParticleScene& particle_scene, const VelocityUnknowns& unknowns, int n_points, bool tree) {
   if (!particle_scene.particle.rigid()) {
-    Lines lines = {{"viscosity", viscosity_line(particle_scene, n_points, tree)}, {"membrane", membrane_line(particle_scene)}};
+    Lines lines = {{"viscosity", viscosity_line(particle_scene, unknowns.system, n_points, tree)}, {"membrane", membrane_line(particle_scene)}};
     if (particle_scene.surfactant) lines.emplace_back("surfactant", surfactant_line(particle_scene));
     lines.emplace_back("mesh", mesh_line(particle_scene));
     return lines;
   }
-  const bool first_kind = particle_scene.solvers.rigid_bodies == coupling::BodyEquation::first_kind;
-  const char* by_traction = responds ? "its traction, by GMRES preconditioned with factors of the bodies, for each velocity (2.40)"
-                                     : "its traction, in a factored system for each velocity (2.40)";
+  const char* by_traction = unknowns.iterates ? "its traction, by GMRES preconditioned with factors of the bodies, for each velocity (2.40)"
+                                               : "its traction, in a factored system for each velocity (2.40)";
   const char* motion = particle_scene.particle.motion == Motion::free ? "free" : "with prescribed motion";
   return {{"body", formatted("rigid, %s: no membrane, no moving mesh; ", motion) +
-                       (first_kind ? by_traction : formatted("a double layer, in a system of %d unknowns per velocity (2.23)", 3 * n_points))}};
+                       (unknowns.tractions ? by_traction
+                                           : formatted("a double layer, in a system of %d unknowns per velocity (2.23)", 3 * n_points))}};
 }
 
 }  // namespace
 
-void add_particles(output::Entries<std::string>& lines, const std::vector<ParticleScene>& alone, int n_points, bool tree) {
+VelocityUnknowns velocity_unknowns(const Scene& scene) {
+  VelocityUnknowns found;
+  bool layers = false;  // whether a deformable particle has a double layer or a viscous membrane
+  for (const ParticleScene& one : scene.particle_scenes()) {
+    found.bodies |= one.particle.rigid(), found.deforms |= !one.particle.rigid();
+    layers |= !one.particle.rigid() && one.has_velocity_system();
+  }
+  found.tractions = found.bodies && scene.by_tractions();
+  found.walls = scene.tube.present && !scene.solvers.eliminates_walls() && !found.tractions;
+  const bool constrained = scene.volume.constraint != coupling::VolumeConservation::none;
+  found.multipliers = found.deforms && !found.tractions && constrained && scene.solvers.keeps_multipliers(found.walls);
+  const bool other = found.tractions ? scene.tube.present || scene.domain.present : found.bodies || found.walls || found.multipliers;
+  found.iterates = layers || other;
+  found.system = found.deforms && found.iterates;
+  return found;
+}
+
+void add_particles(output::Entries<std::string>& lines, const std::vector<ParticleScene>& alone, const VelocityUnknowns& unknowns, int n_points,
+                   bool tree) {
   std::string last;
-  const bool responds = std::ranges::any_of(alone, [](const ParticleScene& one) {
-    return one.tube.present || one.domain.present || (!one.particle.rigid() && one.has_velocity_system());
-  });
   for (const ParticleScene& one : alone) {
-    const Lines own = particle_lines(one, n_points, tree, responds);
+    const Lines own = particle_lines(one, unknowns, n_points, tree);
     if (alone.size() == 1) {
       lines.insert(lines.end(), own.begin(), own.end());
       return;

@@ -76,6 +76,8 @@ void list_idle_keys(Scene& scene) {
   const bool tractions = scene.by_tractions(), unconstrained = scene.volume.constraint == coupling::VolumeConservation::none;
   add(scene.solvers.volume != "auto" && (all_rigid || tractions || unconstrained), "Solvers/volume",
       all_rigid ? "on rigid bodies" : unconstrained ? "with Volume/constraint `none`" : "with the tractions on rigid bodies as unknowns");
+  add(scene.solvers.tube != "schur" && scene.tube.present && tractions && scene.in_system(), "Solvers/tube",
+      "with the tractions on rigid bodies as unknowns");
   add(scene.only_solids && scene.output.power_balance, "Output/power balance", "in a scene of posts only");
   add(scene.only_solids && !scene.series.empty(), "Output/series", "in a scene of posts only");
   add(scene.solvers.rigid_bodies == coupling::BodyEquation::second_kind && !scene.in_system(), "Solvers/rigid bodies `second kind`",

@@ -29,8 +29,9 @@ namespace tanktread::coupling {
 /// effect of loads that depend on y. G_W, f^D and c are defined at Tube, b = dV/dx, and n = M0^-1 b. In the system, f^D, dp and the row of dp are
 /// multiplied by `unit`, so that all unknowns are velocities.
 ///
-/// Each optional block that is left out has been eliminated: the wall by its factors, which makes its response a part of B, and the multipliers by
-/// the projection P of (2.8), which replaces B by P B P. An eliminated block costs no unknowns, but each product with B includes its response. If
+/// In a periodic duct the left-hand side of (2.5) also contains the velocity due to the images of the particles. If a scene has a wall or constrained
+/// volumes whose block is left out, this block has been eliminated: the wall by its factors, which makes its response a part of B, and the
+/// multipliers by the projection P of (2.8), which replaces B by P B P. An eliminated block costs no unknowns, but each product with B includes its response. If
 /// the wall is an unknown, the flow rate of the duct must be prescribed: the system does not contain the reduction of the flow rate at a prescribed
 /// pressure drop.
 struct BlockSystem {
@@ -41,15 +42,15 @@ struct BlockSystem {
   bool multipliers = false;                                      ///< whether the multipliers are unknowns; otherwise P eliminates them
   Tube* tube = nullptr;                                          ///< duct whose wall traction and pressure drop are unknowns; null if there is none
   double unit = 1;                                               ///< duct radius divided by mu: converts f^D and dp to velocities
-  Apply of_particles{};                                          ///< optional: approximate inverse of B
+  Apply of_particles{};                                          ///< optional: approximate inverse of B, or of P B P + 1 - P
 
   /// Returns P B P y, the left-hand side for the particles alone, with all other blocks eliminated.
   Net eliminated(const Net& y) const;
 
   /// Returns the system. The preconditioner uses `of_particles` for B, or the identity if it is not set. It solves for y and pi, then for dp, then
   /// for f^D by the LU factors of the wall. With `form` = `block triangular`, each right-hand side includes the unknowns found before. `block
-  /// diagonal` omits these contributions. With `block`, there is no preconditioner. Without a wall among the unknowns, `form` has no effect. `names`: names and
-  /// sizes of the particles' unknowns. The result refers to the functions and the tube of this object.
+  /// diagonal` omits these contributions. With `block`, there is no preconditioner. Without a wall among the unknowns, `form` has no effect.
+  /// `names`: names and sizes of the particles' unknowns. The result holds a copy of this object, which refers to the tube.
   LinearSystem linear_system(Blocks names, const std::string& form) const;
 
   /// Returns the right-hand side for the load f. `velocity`: right-hand side r_v of (2.5) without P; in a periodic duct whose wall is an unknown,

@@ -29,7 +29,7 @@ class Capsule : public Dynamics {
           const CapsuleParameters& parameters, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
 
   /// Evaluates the shape x: loads, unknowns and velocities. Returns the cached result if x is the shape evaluated last and forces and flow have not
-  /// changed. `guess`: initial guess of the velocity; used if the velocity is the only unknown of the linear solve. `error`: see Evaluation::solve.
+  /// changed. `guess`: initial guess of the velocity for the linear solve; not used if there are rigid bodies. `error`: see Evaluation::solve.
   std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {}, double error = 0);
 
   /// Returns an evaluation of the shape x that computes each quantity at its first use. `velocity`: velocity of the control points; no rows if

@@ -87,7 +87,7 @@ class VelocitySolver {
     return std::ranges::any_of(forces_.all(), [](const Net* work) { return work->size() > 0; });
   }
 
-  /// Solves (4.2) at a shape. `guess`: initial guess of the velocity; used if the velocity is the only unknown of the linear solve. `error`: see
+  /// Solves (4.2) at a shape. `guess`: initial guess of the velocity for the linear solve; not used if there are rigid bodies. `error`: see
   /// SolvedShape.
   SolvedShape solve(const Net& shape, const Net& guess, double error);
 
@@ -171,7 +171,7 @@ class VelocitySolver {
     std::unique_ptr<RigidTractions> tractions;
     std::optional<OneBodyInverses> isolated;
   };
-  bool keeps_multipliers() const { return parameters_.solvers.keeps_multipliers(!eliminates_walls()); }
+  bool keeps_multipliers() const { return parameters_.constrained() && parameters_.solvers.keeps_multipliers(!eliminates_walls()); }
   bool has_velocity_system() const { return has_system() || !eliminates_walls() || keeps_multipliers(); }
   // In the functions below, x is a shape whose particles are in the cell (place), if there is a lattice.
   // Stages (velocity_solver.cpp).

@@ -58,6 +58,7 @@ Net VelocitySolver::dependent_load(const Net& x, const Net& y) {
 /// u is the velocity that y and its load cause, including the response of walls that are eliminated. `caused`: the part of u due to the tractions on
 /// bodies, if it is known already; otherwise empty.
 Net VelocitySolver::particle_rows(const Net& x, const Net& y, const Net& load, const Net& caused) {
+  if (!has_system() && !bodies_.tractions) return y;  // y causes no velocity
   const Net v = velocities_in(y);
   Net other = load;  // load whose velocity is not contained in `caused`
   if (caused.size() > 0) clear_rigid(particles(), other);
@@ -82,7 +83,7 @@ BlockSystem VelocitySolver::block_system(const Net& x, const VolumeProjection& v
                      .particles = [this, x](const Net& y, const Net& load) { return particle_rows(x, y, load, {}); },
                      .control_values = [this](const Net& at_sites) { return targets_.collocation().solve(at_sites); },
                      .volume = std::make_shared<const VolumeProjection>(volume),
-                     .multipliers = keeps_multipliers() && volume.active()};
+                     .multipliers = keeps_multipliers()};
   if (!eliminates_walls()) system.tube = tube_.get(), system.unit = tube_->wall().radius() / parameters_.viscosity;
   return system;
 }
@@ -118,7 +119,7 @@ Net VelocitySolver::solve_velocity(const Net& x, const Net& f, const VolumeProje
   const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
   BlockSystem system = block_system(x, volume);
   const Eigen::VectorXd right = system.right_hand_side(rhs, f);
-  const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.head(rhs.size()).norm()));
+  const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
   const bool by_inverse = uses_inverse(error, tolerance);
   layers_.assemble(x, viscous(), by_inverse);
   if (by_inverse) system.of_particles = on_nets(x.rows(), inverse_);

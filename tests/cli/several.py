@@ -78,6 +78,31 @@ def a_mixture_resumes_on_other_ranks():
         check(numpy.abs(series("whole", f"{name}/volume_error")).max() < 1e-13, name, "lost volume")
 
 
+def volumes_as_multipliers_give_the_same_run():
+    sharp = ["--set", "Time/final time=0.04", "--set", "Time/tolerance=1e-9", "--set", "Time/newton tolerance=0.1"]
+    run(deck(MIXED), *sharp, "--output", "projection", "--quiet")
+    for ranks in (1, 2):
+        run(deck(MIXED), *sharp, "--set", "Solvers/volume=multipliers", "--output", f"multipliers_{ranks}", "--quiet", ranks=ranks)
+        _same("projection", f"multipliers_{ranks}", 1e-7)  # steps are solved to 1e-10, and series contain differences of velocities
+
+
+def the_plan_names_unknown_and_eliminated_blocks():
+    def blocks(text, *settings):
+        words = [word for setting in settings for word in ("--set", setting)]
+        plan = run(deck(text, "plan.yaml"), *words, "--check").stdout
+        return re.search(r"^ *blocks +(.*)$", plan, re.MULTILINE)[1]
+
+    check(blocks(REFINED) == "velocities computed without a system; eliminated: volume multipliers (projection)", blocks(REFINED))
+    kept = blocks(REFINED, "Solvers/volume=multipliers")
+    check(kept == "velocities, volume multipliers", kept)
+    free = blocks(REFINED, "Solvers/volume=multipliers", "Volume/constraint=none")
+    check(free == "velocities computed without a system", free)
+    mixed = blocks(MIXED)
+    check(mixed == "velocities, double-layer densities of rigid bodies; eliminated: volume multipliers (projection)", mixed)
+    tractions = blocks(CONFINED, "Solvers/rigid bodies=first kind", "Solvers/tube=block")
+    check("tractions of rigid bodies; eliminated:" in tractions and "wall traction and pressure drop (response)" in tractions, tractions)
+
+
 def meshes_that_change_resume_on_other_ranks():
     _resumes_on_other_ranks(REFINED)
     for name in ("left", "right"):

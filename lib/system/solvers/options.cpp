@@ -38,8 +38,8 @@ void SolverOptions::declare(deck::Section& section) {
                   "parameters that are passed unchanged to the iterative solver of Belos, a package of Trilinos. Verbosity, Output Style and Output "
                   "Frequency cannot be set");
   section.section("velocity", velocity,
-                  "linear system for the velocity: with a viscosity ratio other than 1, rigid bodies among other particles, or the blocks in a "
-                  "tube");
+                  "linear system for the velocity: with a viscosity ratio other than 1, rigid bodies among other particles, Solvers/tube other than "
+                  "`schur`, or Solvers/volume `multipliers`");
   section.section("traction", traction, "linear system for the traction on a single rigid particle in a tube");
   section.section("implicit step", implicit_step, "linear system of an implicit time step");
   section.section("spectrum", spectrum, "shift-inverted linear system of Spectrum/method `krylov`");
@@ -60,8 +60,8 @@ void SolverOptions::declare(deck::Section& section) {
   section.key("tube", tube, deck::Choice{"schur", "block triangular", "block diagonal", "block"},
               "form of the linear system for the velocity in a tube. `schur`: only the particle's velocity is unknown; the wall traction and "
               "pressure drop are eliminated with the LU factors of the wall, so that no system remains to be solved at viscosity ratio 1. "
-              "`block triangular`, `block diagonal`, `block`: all blocks (2.5)-(2.8) are unknown; the LU factors of the wall are the "
-              "preconditioner, except for `block`, which has none");
+              "`block triangular`, `block diagonal`, `block`: wall traction and pressure drop are unknown, too, and, unless Solvers/volume says "
+              "otherwise, the multipliers of the volumes; the LU factors of the wall are the preconditioner, except for `block`, which has none");
   section.key("volume", volume, deck::Choice{"auto", "projection", "multipliers"},
               "constant volumes in the linear system for the velocity (2.8). `projection`: the volume constraints are eliminated by a projection of "
               "the velocities. `multipliers`: one Lagrange multiplier per deformable particle is an unknown of the system, which is then solved "
