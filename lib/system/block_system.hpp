@@ -31,9 +31,9 @@ namespace tanktread::coupling {
 ///
 /// In a periodic duct the left-hand side of (2.5) also contains the velocity due to the images of the particles. If a scene has a wall or constrained
 /// volumes whose block is left out, this block has been eliminated: the wall by its factors, which makes its response a part of B, and the
-/// multipliers by the projection P of (2.8), which replaces B by P B P. An eliminated block costs no unknowns, but each product with B includes its response. If
-/// the wall is an unknown, the flow rate of the duct must be prescribed: the system does not contain the reduction of the flow rate at a prescribed
-/// pressure drop.
+/// multipliers by the projection P of (2.8), which replaces B by P B P. An eliminated block costs no unknowns, but each product with B includes its
+/// response. If the wall is an unknown, the flow rate of the duct must be prescribed: the system does not contain the reduction of the flow rate at a
+/// prescribed pressure drop.
 struct BlockSystem {
   std::function<Net(const Net& y)> load;                         ///< returns the load that depends on y; no rows if there is none
   std::function<Net(const Net& y, const Net& load)> particles;  ///< returns B y for load(y), without P; includes the response of eliminated walls
