@@ -40,7 +40,7 @@ int needed(const RequestResult& answer, const std::vector<Outcome>& pilots, int 
     return predicted_error(answer.estimate.error, expected_error(pilots[0].level), expected_error(pilots[1].level), expected_error(at));
   };
   int level = std::min(pilots[1].level.mesh + 1, levels);
-  while (level < levels && margin * error({level, level, level}) > answer.allowed) ++level;
+  while (level < levels && margin * error(same(level)) > answer.allowed) ++level;
   return level;
 }
 
@@ -55,7 +55,7 @@ std::vector<std::string> forecast(const LadderRequest& task, const Program& prog
   std::string failure;
   std::size_t n = 0;
   for (int k = 0; k <= last_pilot && n < enough; ++k) {
-    const Level level{k, k, k};
+    const Level level = same(k);
     const std::string text = program.deck(settings(task.values, level));
     const fs::path place = directory.path / ("level_" + std::to_string(k));
     try {

@@ -128,7 +128,7 @@ class Ladder {
     return 0;
   }
 
-  Level level_at(int k) const { return k < balanced_from ? Level{k, k, k} : balanced(k, shares_[0], shares_[1]); }
+  Level level_at(int k) const { return k < balanced_from ? same(k) : balanced(k, shares_[0], shares_[1]); }
 
   /// Returns whether level k is expected to meet all requests. If so, the additional runs of balance() would cost more than they save.
   bool within_reach(int k) const {

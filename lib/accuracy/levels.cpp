@@ -166,7 +166,7 @@ double expected_error(const Level& level) {
 }
 
 Level balanced(int k, double time, double quadrature) {
-  const double whole = expected_error({k, k, k}) / expected_error({2, 2, 2});
+  const double whole = expected_error(same(k)) / expected_error(same(2));
   const auto level = [&](double share, double ratio) {
     const double part = share * std::pow(ratio, 2 - k);
     const double looser = part > 0 ? std::floor(std::log(whole / (4 * part)) / std::log(ratio) + 1e-9) : 2;

@@ -17,6 +17,10 @@ struct Level {
 
   bool operator==(const Level&) const = default;
 };
+static_assert(sizeof(Level) == 3 * sizeof(int), "a new part must be set in same(), balanced(), settings(), expected_error() and ladder.cpp");
+
+/// Returns the level k of all parts.
+constexpr Level same(int k) { return {k, k, k}; }
 
 /// Largest level that has settings.
 constexpr int last_level = 11;

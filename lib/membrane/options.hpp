@@ -13,8 +13,19 @@ namespace tanktread::membrane {
 
 class StrainEnergy;
 
+/// Options of the bending resistance among the keys `Membrane/*`.
+struct BendingOptions {
+  double leaf_modulus = 0;                  ///< modulus kbar of the area difference of a bilayer's leaflets (3.27) divided by the bending modulus E_b
+  std::optional<double> leaf_difference;    ///< stress-free area difference of the leaflets, divided by the area difference of a sphere of equal area
+  std::optional<double> bending_modulus;   ///< bending modulus E_b, force x length; no bending if neither E_b nor bending_number is given
+  std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or E_b/(sigma R_C^2)
+  std::string bending_reference = "unstressed";  ///< surface without bending moment: `unstressed` (curved as the unstressed surface) or `flat`
+                                                 ///< (curvature c0 everywhere)
+  std::optional<double> spontaneous_curvature;   ///< spontaneous curvature c0 if the bending reference is flat, 1/length
+};
+
 /// Options of the membrane: the keys `Membrane/*`.
-struct Options {
+struct Options : BendingOptions {
   std::string law = "neo-Hookean";         ///< neo-Hookean, Skalak, Mooney-Rivlin, Evans-Skalak (all 3.3), expression, surface tension (3.4)
   std::optional<double> capillary_number;  ///< Ca = mu rate R_C/G_s, for a drop mu rate R_C/sigma (see modulus()); 0.3 if the deck gives none of Ca,
                                            ///< G_s and sigma
@@ -23,8 +34,6 @@ struct Options {
   std::optional<double> area_dilatation;   ///< area dilatation C of the laws Skalak and Evans-Skalak, 1 if the deck does not give it; not set for
                                            ///< other laws
   double global_area_dilatation = 0;        ///< modulus K that keeps the total area (3.26), divided by the shear modulus G_s
-  double leaf_modulus = 0;                  ///< modulus kbar of the area difference of a bilayer's leaflets (3.27) divided by the bending modulus E_b
-  std::optional<double> leaf_difference;    ///< stress-free area difference of the leaflets, divided by the area difference of a sphere of equal area
   std::optional<double> neo_hookean_share;  ///< fraction m of the neo-Hookean term; only for the law Mooney-Rivlin
   std::optional<std::string> energy;        ///< strain energy Psi/G_s as an expression in I1, I2 and J; only for the law `expression`
   std::map<std::string, double> constants;  ///< named constants in `energy`
@@ -36,11 +45,6 @@ struct Options {
                                            ///< `stress_free`
   std::string load = "weak";               ///< form of the load: weak (virtual work, 3.5) or strong (-div_s tau)
   std::string load_measure = "reference";  ///< area to which the load per area refers: reference (unstressed, 3.7) or current (3.6)
-  std::optional<double> bending_modulus;   ///< bending modulus E_b, force x length; no bending if neither E_b nor bending_number is given
-  std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or E_b/(sigma R_C^2)
-  std::string bending_reference = "unstressed";  ///< surface without bending moment: `unstressed` (curved as the unstressed surface) or `flat`
-                                                 ///< (curvature c0 everywhere)
-  std::optional<double> spontaneous_curvature;   ///< spontaneous curvature c0 if the bending reference is flat, 1/length
   SurfaceViscosity viscosity;                            ///< eta_s, kappa_s (3.10)
   std::optional<double> relaxation_time;                 ///< relaxation time T of a Maxwell element (3.23), whose viscosities are `viscosity`
   PatchForces forces;                            ///< forces that hold or pull the membrane

@@ -34,7 +34,7 @@ std::optional<ExactBody> exact_body(const ParticleScene& particle_scene) {
   if (particle_scene.wall.present || particle_scene.medium()) return {};
   const surface::ParticleShape& shape = particle_scene.particle.shape;
   const coupling::RigidMotion motion = prescribed_motion(particle_scene);
-  if (particle_scene.tube.present || (shape.shape != "sphere" && shape.shape != "spheroid" && shape.shape != "ellipsoid")) return {};
+  if (particle_scene.tube.present || !shape.ellipsoidal()) return {};
   const stokes::AmbientFlow flow(particle_scene.flow);
   if (!flow.affine()) return {};
   const Mat3 l = flow.gradient(shape.center);

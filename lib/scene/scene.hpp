@@ -52,8 +52,16 @@ class Units;
 /// initial shape; that of a shape that is searched for belongs to the other searches.
 enum class Search { none, steady, periodic, spectrum };
 
+/// Options of the searches for shapes and motions, with one section of the deck each.
+struct SearchOptions {
+  motion::SteadyOptions steady;
+  motion::ContinuationOptions continuation;
+  motion::SpectrumOptions spectrum;
+  motion::PeriodicOptions periodic;
+};
+
 /// Options of a deck that all particles share, with one section of the deck each.
-struct SharedOptions {
+struct SharedOptions : SearchOptions {
   const Registry* registry = &no_parts;  ///< user-defined loads, fields, flows, media and series
   stokes::FlowOptions flow;
   std::shared_ptr<const deck::Units> units;  ///< units of the deck's values; null if the deck does not set them
@@ -66,10 +74,6 @@ struct SharedOptions {
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;
   motion::TimeOptions time;
-  motion::SteadyOptions steady;
-  motion::ContinuationOptions continuation;
-  motion::SpectrumOptions spectrum;
-  motion::PeriodicOptions periodic;
   coupling::SymmetryOptions symmetry;
   coupling::SolverOptions solvers;
   output::Options output;

@@ -86,6 +86,9 @@ struct ParticleShape {
   /// Returns whether the particle is a sphere or a red cell, which are determined by `radius` and have the axis of revolution x3.
   bool round() const { return shape == "sphere" || shape == "red cell"; }
 
+  /// Returns whether the shape is a linear image of the unit sphere.
+  bool ellipsoidal() const { return shape == "sphere" || shape == "spheroid" || shape == "ellipsoid"; }
+
   /// Surface read from the file, without `center` and `orientation` applied; null for the other shapes.
   std::shared_ptr<const spline::SplineSurface> imported;
 

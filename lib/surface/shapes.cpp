@@ -118,7 +118,7 @@ Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const Part
 }
 
 Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape) {
-  if (shape.shape == "red cell" || shape.shape == "file") return net;
+  if (!shape.ellipsoidal()) return net;
   const LeastSquaresFit fit(space);
   Net sphere = (net.rowwise() - shape.center.transpose()) * map_of(shape).inverse().transpose();
   for (int k = 0; k < 3; ++k) sphere = fit.fit_image(sphere, [](const Vec3& x) -> Vec3 { return x.normalized(); });

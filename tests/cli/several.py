@@ -95,7 +95,8 @@ def the_plan_names_unknown_and_eliminated_blocks():
     check(blocks(REFINED) == "velocities computed without a system; eliminated: volume multipliers (projection)", blocks(REFINED))
     kept = blocks(REFINED, "Solvers/volume=multipliers")
     check(kept == "velocities, volume multipliers", kept)
-    free = blocks(REFINED, "Solvers/volume=multipliers", "Volume/constraint=none")
+    free = blocks(REFINED, "Solvers/volume=multipliers", "Volume/constraint=none",
+                  "Particles/defaults/Membrane/load measure=current")
     check(free == "velocities computed without a system", free)
     mixed = blocks(MIXED)
     check(mixed == "velocities, double-layer densities of rigid bodies; eliminated: volume multipliers (projection)", mixed)

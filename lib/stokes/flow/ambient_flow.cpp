@@ -1,7 +1,10 @@
 #include "stokes/flow/ambient_flow.hpp"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 
 #include "base/small_matrices.hpp"
 
@@ -14,14 +17,17 @@ Mat3 four_roll(double a) {
   return gradient / 2;
 }
 
+/// Returns the velocity gradient of the flow for the shear rate 1; 0 for flows that are set elsewhere.
 Mat3 unit_gradient(const FlowOptions& options) {
-  Mat3 gradient = Mat3::Zero();
-  if (options.type == "simple shear") gradient(0, 2) = 1;
+  constexpr std::array<std::string_view, 4> elsewhere{"quiescent", "uniform", "parabolic", "duct"};
+  if (options.type == "simple shear") return Vec3::UnitX() * Vec3::UnitZ().transpose();
   if (options.type == "four-roll") return four_roll(options.roll_parameter.value());
   if (options.type == "planar hyperbolic") return four_roll(1);
-  if (options.type == "uniaxial extension") gradient.diagonal() << -0.5, -0.5, 1;
+  if (options.type == "uniaxial extension") return Vec3(-0.5, -0.5, 1).asDiagonal();
   if (options.type == "linear") return options.gradient.value();
-  return gradient;
+  if (!options.user && std::ranges::find(elsewhere, options.type) == elsewhere.end())
+    throw std::logic_error("no velocity is defined for Flow/type " + options.type);
+  return Mat3::Zero();
 }
 
 }  // namespace
