@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "accuracy/levels.hpp"
 #include "base/formatted.hpp"
 #include "deck/expectation.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-constexpr double second_order = 6 / 4.25;  // q of (9.2): errors of the orders 4.25 and 6 in the length of the elements
+constexpr double second_order = 6 / mesh_order;  // q of (9.2): errors of the orders 4.25 and 6 in the length of the elements
 constexpr double of_mean = 0.7;            // factor of (9.2), fitted with q to 205 errors of requested series in 30 scenes
 constexpr double least_part = 0.1, most_part = 3;  // limits of e'/e in (9.2)
 

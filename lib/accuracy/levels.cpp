@@ -16,7 +16,6 @@ namespace tanktread::accuracy {
 namespace {
 
 constexpr std::array<int, last_level + 1> sides{3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 50, 66};
-constexpr double order = 4.25;             // order of the errors of a mesh: 4 for bicubic surfaces, a little more on coarse meshes
 constexpr double least_quadrature = 1e-6;  // smallest error of far-field sums in single precision and near-singular quadrature
 
 /// Collects the settings `Section/key=value` of a level in `all`, computed from the values of the deck.
@@ -162,7 +161,7 @@ double tolerance(int level) { return 2e-3 / std::pow(4., level); }
 int elements_per_side(int level) { return sides.at(static_cast<std::size_t>(level)); }
 
 double expected_error(const Level& level) {
-  return std::pow(static_cast<double>(elements_per_side(level.mesh)) / elements_per_side(0), -order);
+  return std::pow(static_cast<double>(elements_per_side(level.mesh)) / elements_per_side(0), -mesh_order);
 }
 
 Level balanced(int k, double time, double quadrature) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <vector>
 
 #include <Eigen/LU>
@@ -112,6 +113,7 @@ Mat3 map_of(const ParticleShape& shape) {
 Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape) {
   Net net = unit_sphere;
   if (shape.shape == "red cell") net = fit.fit_image(net, [](const Vec3& x) { return red_cell(x.normalized()); });
+  else if (!shape.ellipsoidal()) throw std::logic_error("no resting shape is defined for Particle/shape " + shape.shape);
   net = net * map_of(shape).transpose();
   net.rowwise() += shape.center.transpose();
   return net;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <stdexcept>
 
 #include "base/errors.hpp"
 #include "quadrature/gauss.hpp"
@@ -64,6 +65,7 @@ int axis_of(const ParticleShape& shape) {
 
 Meridian resting_meridian(const ParticleShape& shape, int axis) {
   if (shape.shape == "red cell") return red_cell_meridian(shape.radius.value_or(1));
+  if (!shape.ellipsoidal()) throw std::logic_error("no meridian is defined for Particle/shape " + shape.shape);
   const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value_or(1));
   return spheroid(semi_axes[(axis + 1) % 3], semi_axes[axis]);
 }

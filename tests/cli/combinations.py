@@ -46,7 +46,6 @@ RIGID, FLUID = ("free body", "prescribed body"), ("drop", "vesicle")
 LATTICES = ("lattice of 1", "lattice of 2", "lattice of 3")
 ELASTIC = ("neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "expression")
 ONE_IS_NOT_REPEATED = True
-AFFINE = ("simple shear", "quiescent", "uniform", "four-roll", "planar hyperbolic", "uniaxial extension", "linear")
 
 # Pairs of choices that the program rejects: words of the message, the choices that it names, and the reason.
 ANY = {factor: tuple(values) for factor, values in FACTORS.items()}

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -11,6 +12,15 @@
 #include "deck/section.hpp"
 
 namespace tanktread::stokes {
+
+namespace {
+
+/// Returns whether the key `shear rate` sets the magnitude of a flow of this type.
+bool has_shear_rate(const std::string& type) {
+  return type == "simple shear" || type == "four-roll" || type == "planar hyperbolic" || type == "uniaxial extension";
+}
+
+}  // namespace
 
 void FlowOptions::declare(deck::Section& section) {
   deck::Choice types{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "parabolic", "duct"};
@@ -88,8 +98,7 @@ void FlowOptions::check() const {
   belongs("maximum velocity", maximum_velocity.has_value(), "parabolic");
   belongs("half width", half_width.has_value(), "parabolic");
   refuse(held != "flow rate" && type != "duct", "Flow/held `" + held + "`", choice(), "it belongs to `duct`");
-  const bool has_rate = type == "simple shear" || type == "four-roll" || type == "planar hyperbolic" || type == "uniaxial extension";
-  refuse(shear_rate != 1.0 && !has_rate, "Flow/shear rate", choice(),
+  refuse(shear_rate != 1.0 && !has_shear_rate(type), "Flow/shear rate", choice(),
          user                  ? "the magnitude of that flow is set by its own keys, in Flow/" + type
          : type == "duct"      ? "give Flow/mean velocity"
          : type == "parabolic" ? "give Flow/maximum velocity"
@@ -119,6 +128,7 @@ double FlowOptions::rate() const {
   if (user) return user->rate();
   if (type == "linear") return largest_stretch(gradient.value());
   if (type == "parabolic") return *maximum_velocity / half_width.value();
+  if (!has_shear_rate(type)) throw std::logic_error("no rate is defined for Flow/type " + type);
   return shear_rate;
 }
 

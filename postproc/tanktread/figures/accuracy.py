@@ -17,7 +17,7 @@ from . import style
 from .register import figure
 
 PARTS = {"mesh": ("Surface/", "Particles/", "Adaptation/", "Tube/", "Channel/", "Wall/"),
-         "time": ("Time/", "Steady/", "Periodic/"), "quadrature": ("Quadrature/", "Solvers/")}
+         "time": ("Time/", "Steady/", "Periodic/", "Continuation/"), "quadrature": ("Quadrature/", "Solvers/")}
 COSTS = {"n_control_points": "control points", "wall_seconds": "wall time / s", "evaluations": "velocity evaluations"}
 SAMPLES = 400  # number of centroid positions at which extents are drawn
 

@@ -144,7 +144,9 @@ Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
 }
 
 void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around) {
-  if (!around && walls_.solids) throw std::logic_error("among plates and posts, a body needs the surroundings of its traction");
+  FluidWalls others = walls_;
+  others.tube = nullptr;
+  if (!around && others.any()) throw std::logic_error("among walls other than a tube, a body needs the surroundings of its traction");
   around_ = std::move(around);
   x_ = x, sites_ = collocation_ * x;
   centres_.assign(centres.begin(), centres.end());
