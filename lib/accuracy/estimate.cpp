@@ -14,9 +14,9 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-constexpr double second_order = 6 / mesh_order;  // q of (9.2): errors of the orders 4.25 and 6 in the length of the elements
-constexpr double of_mean = 0.7;            // factor of (9.2), fitted with q to 205 errors of requested series in 30 scenes
-constexpr double least_part = 0.1, most_part = 3;  // limits of e'/e in (9.2)
+constexpr double second_order = 6 / mesh_order;    // q of (9.2): errors of the orders 4.25 and 6 in the length of the elements
+constexpr double of_mean = 0.7;                    // factor of (9.2), fitted with q to 205 errors of requested series in 30 scenes
+constexpr double least_part = 0.1, most_part = 3;  // limits of e'_l/e_l in (9.2)
 
 /// Returns the value of a curve at an abscissa, interpolated by cubics between its points; NaN outside of their range.
 double value_at(const Curve& curve, double at) {
@@ -40,9 +40,7 @@ double two_order_error(const Curve& before, const Curve& last, const std::array<
 }
 
 Estimate estimated(const std::vector<Curve>& changes, double scale, const std::vector<double>& expected) {
-  std::vector<double> differences;
-  for (const Curve& one : changes) differences.push_back(largest(one.values));
-  Estimate found = estimated(differences, scale, expected);
+  Estimate found = estimated(norms(changes), scale, expected);
   const std::size_t n = changes.size();
   if (n < 2 || std::isnan(found.ratio)) return found;
   const double two = two_order_error(changes[n - 2], changes[n - 1], {expected[n - 2], expected[n - 1], expected[n]});
@@ -105,6 +103,12 @@ double largest(const std::vector<double>& values) {
   for (const double value : values)
     if (!std::isnan(value) && !(std::abs(value) <= most)) most = std::abs(value);
   return most;
+}
+
+std::vector<double> norms(const std::vector<Curve>& curves) {
+  std::vector<double> found;
+  for (const Curve& one : curves) found.push_back(largest(one.values));
+  return found;
 }
 
 namespace {

@@ -66,6 +66,9 @@ Curve difference(const Curve& a, const Curve& b, double period = 0);
 /// Returns the largest magnitude of the values that are not NaN; NaN if there are none.
 double largest(const std::vector<double>& values);
 
+/// Returns the largest magnitude of each curve.
+std::vector<double> norms(const std::vector<Curve>& curves);
+
 /// Time average of a curve, and the error of its quadrature.
 struct Average {
   double value, error;

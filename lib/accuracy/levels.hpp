@@ -35,9 +35,8 @@ double tolerance(int level);
 /// between levels in 28 scenes.
 constexpr double mesh_order = 4.25;
 
-/// Returns the expected error of a level divided by the error of level 0. It is approximated by the error of the mesh, (n/n_0)^-4.25, with n elements
-/// per side on this level and n_0 on level 0. The errors of time integration and quadrature are assumed to be small in comparison. The exponent was
-/// fitted to 222 differences between levels in 28 scenes.
+/// Returns the expected error of a level divided by the error of level 0. It is approximated by the error of the mesh, (n/n_0)^-mesh_order, with n
+/// elements per side on this level and n_0 on level 0. The errors of time integration and quadrature are assumed to be small in comparison.
 double expected_error(const Level& level);
 
 /// Factors by which one level reduces the errors of time integration and of quadrature. The time tolerance limits the local error of a step and falls

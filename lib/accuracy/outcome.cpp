@@ -53,13 +53,6 @@ std::vector<Curve> changes(const std::string& series, Of of, const std::vector<O
   return found;
 }
 
-/// Returns the largest magnitude of each curve.
-std::vector<double> norms(const std::vector<Curve>& curves) {
-  std::vector<double> found;
-  for (const Curve& one : curves) found.push_back(largest(one.values));
-  return found;
-}
-
 /// Returns the errors to expect at the levels, up to a common factor; estimated() uses them. By default these are expected_error() of each level. If
 /// there are at least 4 levels and level 2 was also computed with a looser time tolerance (`looser`), the part of the error due to time integration
 /// is measured. This part is assumed to decrease with the time tolerance, and the rest of the error like expected_error().

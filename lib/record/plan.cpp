@@ -31,15 +31,14 @@ std::string surface_line(const Body& body) {
 }
 
 /// Returns the line of the plan that describes how the unknown tractions on the wall of a tube are computed.
-std::string wall_solver(const Scene& scene) {
+std::string wall_solver(const Scene& scene, const VelocityUnknowns& unknowns) {
   if (!scene.in_system()) return "eliminated from the system of the traction";
-  const VelocityUnknowns unknowns = velocity_unknowns(scene);
   if (unknowns.walls) return "in the system of the velocity, with the preconditioner `" + scene.solvers.tube + "`";
   if (unknowns.tractions) return "eliminated from the system of the tractions";
   return unknowns.iterates ? "eliminated from the system of the velocity" : "solved for directly";
 }
 
-void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
+void add_fluid(Lines& lines, const Scene& scene, const VelocityUnknowns& of_velocity, const Body& body, int ranks) {
   if (scene.units) lines.emplace_back("units", scene.units->description());
   if (!body.wall) {
     const std::string history = scene.flow.history ? ", changing in time" : "";
@@ -81,7 +80,8 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
   const std::string how = iterates ? "found by GMRES and clusters in each velocity"
                                    : formatted("factored once%s: %.1f MB on each of %d rank%s", parities.c_str(), 1e-6 * bytes, ranks,
                                                ranks > 1 ? "s" : "");
-  lines.emplace_back("wall", formatted("%.0f unknowns of the traction and the pressure drop, %s; ", unknowns, wall_solver(scene).c_str()) + how);
+  lines.emplace_back("wall",
+                     formatted("%.0f unknowns of the traction and the pressure drop, %s; ", unknowns, wall_solver(scene, of_velocity).c_str()) + how);
 }
 
 /// Returns the line of the plan about the time scheme and the size of the frozen operator (the single layer in the Jacobian of implicit steps).
@@ -124,7 +124,7 @@ std::string symmetry_line(const Scene& scene, const Body& body) {
 }
 
 /// Returns the line of the plan that lists the linear systems that are solved iteratively, with their solvers.
-std::string solvers_line(const Scene& scene) {
+std::string solvers_line(const Scene& scene, const VelocityUnknowns& unknowns) {
   const coupling::SolverOptions& solvers = scene.solvers;
   std::string line;
   const auto add = [&](const char* system, const coupling::IterativeOptions& options) {
@@ -136,7 +136,7 @@ std::string solvers_line(const Scene& scene) {
     if (scene.tube.present) add("traction", solvers.traction);
     return line.empty() ? "no iterative solver" : line;
   }
-  if (velocity_unknowns(scene).iterates) add("velocity", solvers.velocity);
+  if (unknowns.iterates) add("velocity", solvers.velocity);
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
   if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);
@@ -144,8 +144,7 @@ std::string solvers_line(const Scene& scene) {
 }
 
 /// Returns the line of the plan that names the blocks of unknowns of a velocity (BlockSystem), and those that are eliminated.
-std::string blocks_line(const Scene& scene) {
-  const VelocityUnknowns unknowns = velocity_unknowns(scene);
+std::string blocks_line(const Scene& scene, const VelocityUnknowns& unknowns) {
   const bool constrained = unknowns.deforms && scene.volume.constraint != coupling::VolumeConservation::none;
   std::string unknown, eliminated;
   const auto add = [](bool present, std::string& list, const std::string& block) {
@@ -183,11 +182,11 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   const ParticleScene only = scene.first();
   Lines lines = {{"surface", std::to_string(n) + " control points: " + body.space.description},
                  {"unknowns", formatted("%d of the traction: single layer of the first kind, its null space made regular", 3 * n)}};
-  add_fluid(lines, scene, body, ranks);
+  add_fluid(lines, scene, {}, body, ranks);
   lines.emplace_back("particle", rigid_line(only, body));
   lines.emplace_back("forces", forces_line(only));
   lines.emplace_back("time", only.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
-  lines.emplace_back("solvers", solvers_line(scene));
+  lines.emplace_back("solvers", solvers_line(scene, {}));
   lines.emplace_back("assembled", formatted("%.1f MB on every rank, factored", (scene.tube.present ? 144e-6 : 72e-6) * n * n));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
@@ -203,13 +202,14 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   if (!scene.in_system()) return plan_of_rigid(scene, body, ranks);
   const bool tree = stokes::sums_by_tree(body.space, scene.quadrature, scene.domain.present && !scene.tube.present ? stokes::lattice_images : 1);
   const std::vector<ParticleScene> alone = scene.particle_scenes();
+  const VelocityUnknowns unknowns = velocity_unknowns(scene, alone);
   const bool several = alone.size() > 1;
   const int n = body.space.n_points;
   Lines lines;
   if (several) lines.emplace_back("particles", formatted("%zu, in one system", alone.size()));
   lines.emplace_back("surface", several ? formatted("%d control points, %zu elements in all", n, body.space.elements.size()) : surface_line(body));
   lines.emplace_back("unknowns", formatted("%d positions", 3 * n));
-  add_fluid(lines, scene, body, ranks);
+  add_fluid(lines, scene, unknowns, body, ranks);
   if (!several && !alone.front().particle.rigid()) {
     lines.emplace_back("deformation", body.plane.description());
     lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
@@ -226,17 +226,17 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
     lines.emplace_back("time", time_line(scene, n, static_cast<double>(body.symmetry.fundamental().size()), ranks));
   else
     add_steady(lines, scene, body);
-  lines.emplace_back("blocks", blocks_line(scene));
-  lines.emplace_back("solvers", solvers_line(scene));
+  lines.emplace_back("blocks", blocks_line(scene, unknowns));
+  lines.emplace_back("solvers", solvers_line(scene, unknowns));
   lines.emplace_back("symmetry", several ? "not searched for among several particles" : symmetry_line(scene, body));
-  add_particles(lines, alone, velocity_unknowns(scene), n, tree);
+  add_particles(lines, alone, unknowns, n, tree);
   return lines;
 }
 
 output::Entries<std::string> plan(const Scene& scene, int ranks) {
   if (scene.only_solids) {
     Lines lines;
-    add_fluid(lines, scene, Body(), ranks);
+    add_fluid(lines, scene, {}, Body(), ranks);
     lines.emplace_back("time", "steady: nothing moves");
     return lines;
   }

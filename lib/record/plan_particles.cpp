@@ -73,10 +73,10 @@ Lines particle_lines(const ParticleScene& particle_scene, const VelocityUnknowns
 
 }  // namespace
 
-VelocityUnknowns velocity_unknowns(const Scene& scene) {
+VelocityUnknowns velocity_unknowns(const Scene& scene, const std::vector<ParticleScene>& alone) {
   VelocityUnknowns found;
   bool layers = false;  // whether a deformable particle has a double layer or a viscous membrane
-  for (const ParticleScene& one : scene.particle_scenes()) {
+  for (const ParticleScene& one : alone) {
     found.bodies |= one.particle.rigid(), found.deforms |= !one.particle.rigid();
     layers |= !one.particle.rigid() && one.has_velocity_system();
   }

@@ -9,7 +9,7 @@
 
 namespace tanktread {
 
-/// What a velocity evaluation of a scene solves for (coupling::BlockSystem).
+/// Unknowns of the equations that are solved for each velocity of a scene (coupling::BlockSystem).
 struct VelocityUnknowns {
   bool deforms = false, bodies = false;  ///< whether there are deformable particles and rigid bodies
   bool tractions = false;                ///< whether the unknowns of rigid bodies are their tractions
@@ -18,7 +18,9 @@ struct VelocityUnknowns {
   bool system = false;                   ///< whether the velocities of deformable particles are unknowns of a linear system
   bool iterates = false;                 ///< whether there is a linear system for velocities or tractions that is solved by iteration
 };
-VelocityUnknowns velocity_unknowns(const Scene& scene);
+
+/// Returns the unknowns of a scene with the particles `alone`.
+VelocityUnknowns velocity_unknowns(const Scene& scene, const std::vector<ParticleScene>& alone);
 
 /// Adds the lines about all particles to the plan. A single particle has several lines. If there are several particles, the lines of each are joined
 /// into one, and consecutive particles with equal lines share one line. `n_points`: number of control points of all particles. `tree`: true if

@@ -1,12 +1,19 @@
 #include "system/block_system.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <span>
 #include <type_traits>
 #include <utility>
 
 namespace tanktread::coupling {
 
 namespace {
+
+/// Returns the particles whose volume constraint has a multiplier among the unknowns.
+std::span<const spline::Block> with_multiplier(const BlockSystem& s) {
+  return s.multipliers ? std::span(s.volume.blocks) : std::span<const spline::Block>();
+}
 
 /// Numbers of rows of the blocks. `wall`: -1 if the wall is no unknown.
 struct Sizes {
@@ -15,7 +22,7 @@ struct Sizes {
   Sizes(const BlockSystem& system, Eigen::Index n_particles)
       : particles(n_particles),
         wall(system.tube ? static_cast<Eigen::Index>(system.tube->wall().sites.size()) : -1),
-        multipliers(system.multipliers ? static_cast<Eigen::Index>(system.volume->blocks.size()) : 0) {}
+        multipliers(std::ssize(with_multiplier(system))) {}
   Eigen::Index all() const { return 3 * particles + (wall < 0 ? 0 : 3 * wall + 1) + multipliers; }
 };
 
@@ -38,23 +45,19 @@ using Out = Parts<double>;
 
 /// Returns b.v / (b.n) of one particle (2.8).
 double flux_of(const BlockSystem& s, const spline::Block& block, const Net& v) {
-  const auto product = [&](const Net& field) { return dot(block.rows(s.volume->gradient), block.rows(field)); };
-  return product(v) / product(s.volume->direction);
+  const auto product = [&](const Net& field) { return dot(block.rows(s.volume.gradient), block.rows(field)); };
+  return product(v) / product(s.volume.direction);
 }
 
 /// Adds `factor` times the normal field n = M0^-1 b on one particle to v.
 void add_normal(const BlockSystem& s, const spline::Block& block, double factor, Eigen::Map<Net>& v) {
-  v.middleRows(block.first_point, block.n_points) += factor * block.rows(s.volume->direction);
+  v.middleRows(block.first_point, block.n_points) += factor * block.rows(s.volume.direction);
 }
 
 /// Computes the product of the block matrix (2.5) to (2.8) with x.
 void product(const BlockSystem& s, const In& x, Out r) {
-  if (!s.tube && !s.multipliers) {
-    r.particles = s.eliminated(x.particles);
-    return;
-  }
   Net y = x.particles;
-  if (!s.multipliers) s.volume->apply(y);
+  if (!s.multipliers) s.volume.apply(y);
   const Net load = s.load(y);
   Net rows = s.particles(y, load);
   if (s.tube) {
@@ -67,12 +70,11 @@ void product(const BlockSystem& s, const In& x, Out r) {
     r.wall_traction = tube.wall_on_wall(traction) - drop * tube.inlet_on_wall() - tube.particle_on_wall(load, y);
     *r.pressure_drop = *x.pressure_drop - s.unit * tube.pressure_of(load, y);
   }
-  if (!s.multipliers) s.volume->apply(rows);
+  if (!s.multipliers) s.volume.apply(rows);
   r.particles = rows;
-  for (std::size_t k = 0; s.multipliers && k < s.volume->blocks.size(); ++k) {
-    const spline::Block& block = s.volume->blocks[k];
+  for (std::size_t k = 0; const spline::Block& block : with_multiplier(s)) {
     add_normal(s, block, x.multipliers[k], r.particles);
-    r.multipliers[k] = flux_of(s, block, y);
+    r.multipliers[k++] = flux_of(s, block, y);
   }
 }
 
@@ -80,10 +82,9 @@ void product(const BlockSystem& s, const In& x, Out r) {
 void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
   if (s.of_particles) s.of_particles(r.particles.data(), x.particles.data());
   else x.particles = r.particles;
-  for (std::size_t k = 0; s.multipliers && k < s.volume->blocks.size(); ++k) {
-    const spline::Block& block = s.volume->blocks[k];
+  for (std::size_t k = 0; const spline::Block& block : with_multiplier(s)) {
     x.multipliers[k] = flux_of(s, block, x.particles) - r.multipliers[k];
-    add_normal(s, block, -x.multipliers[k], x.particles);
+    add_normal(s, block, -x.multipliers[k++], x.particles);
   }
   if (!s.tube) return;
   *x.pressure_drop = *r.pressure_drop;
@@ -98,14 +99,6 @@ void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
 
 }  // namespace
 
-Net BlockSystem::eliminated(const Net& y) const {
-  Net projected = y;
-  volume->apply(projected);
-  Net rows = particles(projected, load(projected));
-  volume->apply(rows);
-  return rows;
-}
-
 LinearSystem BlockSystem::linear_system(Blocks names, const std::string& form) const {
   LinearSystem system{std::move(names), {}, {}};
   Eigen::Index components = 0;
@@ -113,11 +106,11 @@ LinearSystem BlockSystem::linear_system(Blocks names, const std::string& form) c
   const Sizes sizes(*this, components / 3);
   if (tube) system.blocks.push_back({"wall traction", 3 * sizes.wall}), system.blocks.push_back({"pressure drop", 1});
   if (sizes.multipliers > 0) system.blocks.push_back({"multipliers of the volumes", sizes.multipliers});
-  system.product = [s = *this, sizes](const double* in, double* out) { product(s, In(sizes, in), Out(sizes, out)); };
+  system.product = [this, sizes](const double* in, double* out) { coupling::product(*this, In(sizes, in), Out(sizes, out)); };
   const bool has_preconditioner = tube ? form != "block" : of_particles || sizes.multipliers > 0;
   if (has_preconditioner)
-    system.precondition = [s = *this, sizes, triangular = form == "block triangular"](const double* in, double* out) {
-      precondition(s, In(sizes, in), Out(sizes, out), triangular);
+    system.precondition = [this, sizes, triangular = form == "block triangular"](const double* in, double* out) {
+      coupling::precondition(*this, In(sizes, in), Out(sizes, out), triangular);
     };
   return system;
 }
@@ -128,7 +121,7 @@ Eigen::VectorXd BlockSystem::right_hand_side(const Net& velocity, const Net& f) 
   Out rows(sizes, all.data());
   Net known = velocity;
   if (tube && tube->cell()) known += control_values(tube->images_on_particle(f));
-  if (!multipliers) volume->apply(known);
+  if (!multipliers) volume.apply(known);
   rows.particles = known;
   if (!tube) return all;
   rows.wall_traction = tube->particle_on_wall(f);

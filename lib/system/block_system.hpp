@@ -2,7 +2,6 @@
 // Unknowns of the particles, of the wall of a duct and of the volume constraints as one linear system.
 
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "base/types.hpp"
@@ -38,19 +37,16 @@ struct BlockSystem {
   std::function<Net(const Net& y)> load;                         ///< returns the load that depends on y; no rows if there is none
   std::function<Net(const Net& y, const Net& load)> particles;  ///< returns B y for load(y), without P; includes the response of eliminated walls
   std::function<Net(const Net&)> control_values;                 ///< applies R^-1
-  std::shared_ptr<const VolumeProjection> volume;                ///< fields b and n of (2.8), and the particles whose volume is constrained
+  const VolumeProjection& volume;                                ///< fields b and n of (2.8), and the particles whose volume is constrained
   bool multipliers = false;                                      ///< whether the multipliers are unknowns; otherwise P eliminates them
   Tube* tube = nullptr;                                          ///< duct whose wall traction and pressure drop are unknowns; null if there is none
   double unit = 1;                                               ///< duct radius divided by mu: converts f^D and dp to velocities
   Apply of_particles{};                                          ///< optional: approximate inverse of B, or of P B P + 1 - P
 
-  /// Returns P B P y, the left-hand side for the particles alone, with all other blocks eliminated.
-  Net eliminated(const Net& y) const;
-
   /// Returns the system. The preconditioner uses `of_particles` for B, or the identity if it is not set. It solves for y and pi, then for dp, then
   /// for f^D by the LU factors of the wall. With `form` = `block triangular`, each right-hand side includes the unknowns found before. `block
   /// diagonal` omits these contributions. With `block`, there is no preconditioner. Without a wall among the unknowns, `form` has no effect.
-  /// `names`: names and sizes of the particles' unknowns. The result holds a copy of this object, which refers to the tube.
+  /// `names`: names and sizes of the particles' unknowns. The result refers to this object.
   LinearSystem linear_system(Blocks names, const std::string& form) const;
 
   /// Returns the right-hand side for the load f. `velocity`: right-hand side r_v of (2.5) without P; in a periodic duct whose wall is an unknown,

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "stokes/flow/ambient_flow.hpp"
-#include "system/block_system.hpp"
 #include "system/capsule_parameters.hpp"
 #include "system/membranes.hpp"
 #include "system/parallel/layout.hpp"
@@ -23,6 +22,7 @@
 namespace tanktread::coupling {
 
 class RigidTractions;
+struct BlockSystem;
 
 /// Solves for the velocity v(x) of all particles at a shape x, the stacked control nets. solve() is the entry point; solve_second_kind() lists its
 /// stages. The functions are in velocity_solver.cpp (stages), velocity_solver_systems.cpp (linear systems), velocity_solver_cell.cpp (lattices,

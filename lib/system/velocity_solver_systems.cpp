@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/formatted.hpp"
+#include "system/block_system.hpp"
 #include "system/velocity_solver.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
 
@@ -77,12 +78,12 @@ Net VelocitySolver::particle_rows(const Net& x, const Net& y, const Net& load, c
 }
 
 /// Returns the system for the unknowns of all particles at the shape x and, unless they are eliminated, those of the wall and of the volumes. The
-/// result refers to this object and holds copies of x and `volume`.
+/// result refers to this object, x and `volume`.
 BlockSystem VelocitySolver::block_system(const Net& x, const VolumeProjection& volume) {
-  BlockSystem system{.load = [this, x](const Net& y) { return dependent_load(x, y); },
-                     .particles = [this, x](const Net& y, const Net& load) { return particle_rows(x, y, load, {}); },
+  BlockSystem system{.load = [this, &x](const Net& y) { return dependent_load(x, y); },
+                     .particles = [this, &x](const Net& y, const Net& load) { return particle_rows(x, y, load, {}); },
                      .control_values = [this](const Net& at_sites) { return targets_.collocation().solve(at_sites); },
-                     .volume = std::make_shared<const VolumeProjection>(volume),
+                     .volume = volume,
                      .multipliers = keeps_multipliers()};
   if (!eliminates_walls()) system.tube = tube_.get(), system.unit = tube_->wall().radius() / parameters_.viscosity;
   return system;
