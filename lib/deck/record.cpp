@@ -70,6 +70,20 @@ std::vector<std::string> all_of(const Record& section, std::vector<std::string> 
 
 }  // namespace
 
+std::string numbers_text(const ValueType& type, const std::string& brackets) {
+  const bool several = type.count != 1;
+  const std::string size(type.kind == ValueType::whole ? "a whole number" : numbers_in_words.at(static_cast<std::size_t>(type.count)));
+  return size + (several ? brackets : "") + (type.rule.text == any().text ? "" : (several ? ", each " : ", ") + type.rule.text);
+}
+
+std::string values_text(const ValueType& type) {
+  if (type.kind == ValueType::truth) return "true or false";
+  if (type.kind != ValueType::text) return type.count != 1 ? numbers_text(type) : (type.kind == ValueType::whole ? "whole, " : "") + type.rule.text;
+  std::string words;
+  for (const std::string& word : type.words) words += (words.empty() ? "`" : ", `") + word + "`";
+  return words.empty() ? "text" : words;
+}
+
 std::vector<std::string> mistakes(const Record& section) { return all_of(section, &Record::mistakes); }
 
 std::vector<std::string> idle_keys(const Record& section) { return all_of(section, &Record::idle); }
@@ -116,7 +130,7 @@ std::string markdown_text(const Record& section) {
     out += "| key | default | values | unit | meaning |\n|---|---|---|---|---|\n";
     for (const Entry& e : section.entries) {
       const std::string fallback = e.fallback.empty() ? "" : "`" + e.fallback + "`";
-      out += "| `" + e.key + "` | " + cell(fallback) + " | " + cell(e.values) + " | " + cell(e.unit) + " | " + cell(e.meaning) + " |\n";
+      out += "| `" + e.key + "` | " + cell(fallback) + " | " + cell(values_text(e.type)) + " | " + cell(e.unit) + " | " + cell(e.meaning) + " |\n";
     }
     out += "\n";
   }

@@ -1,6 +1,8 @@
 #pragma once
 // Tree of all declared keys and sections of a deck. Section fills the tree; the effective deck, the manual and the schema are written from it.
+// schema.cpp contains schema_text and commented_text, record.cpp the other functions.
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,14 +11,33 @@
 
 namespace tanktread::deck {
 
-/// Declaration and value of one key, as text.
+/// Words for the size of a value that consists of numbers; empty if no value has this size. The index is ValueType::count.
+inline constexpr std::array<std::string_view, 10> numbers_in_words{
+    "one number or more", "a number", "two numbers", "three numbers", "", "", "", "", "", "nine numbers"};
+
+/// Type of the value of a key. Messages, the manual and the schema are written from it.
+struct ValueType {
+  enum Kind { number, whole, truth, text };
+  Kind kind;
+  Rule rule = {};     ///< rule for each number
+  int count = 1;      ///< how many numbers; 0 for one number or more
+  Choice words = {};  ///< allowed texts; empty if any text is allowed
+};
+
+/// Returns a type of numbers in words. `brackets` follows the size if there are several numbers: `three numbers in brackets, each positive`.
+std::string numbers_text(const ValueType& type, const std::string& brackets = {});
+
+/// Returns a type in words for the manual: `positive`, `whole, at least 1`, `three numbers, each positive`, `text`.
+std::string values_text(const ValueType& type);
+
+/// Declaration and value of one key. Values are YAML text.
 struct Entry {
   std::string key;
   std::string fallback;  ///< default value; empty if there is none
-  std::string values;    ///< rule for the allowed values, in words
+  ValueType type;
   std::string unit;
   std::string meaning;
-  std::string value;  ///< YAML text of the value that was read; empty if not set
+  std::string value;  ///< value that was read; empty if not set
 };
 
 /// Declaration of one section of the deck.

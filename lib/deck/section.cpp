@@ -26,26 +26,24 @@ namespace {
 /// Returns whether the number is 0, or finite and of moderate size, so that its powers do not overflow or underflow.
 bool computable(double number) { return std::isfinite(number) && (number == 0 || (std::abs(number) > 1e-75 && std::abs(number) < 1e75)); }
 
-/// Returns the description of numbers with their rule: `a number, positive`, or if `several`, `three numbers, each positive`.
-std::string with_rule(const std::string& numbers, const Rule& rule, bool several) {
-  return rule.text == any().text ? numbers : numbers + (several ? ", each " : ", ") + rule.text;
+/// Returns the type of a value that consists of one number or several.
+template <class Value>
+ValueType type_of(const Rule& rule) {
+  if constexpr (std::is_arithmetic_v<Value>) return {std::is_same_v<Value, int> ? ValueType::whole : ValueType::number, rule};
+  else if constexpr (std::is_same_v<Value, std::vector<double>>) return {ValueType::number, rule, 0};
+  else {
+    constexpr int count = Value::SizeAtCompileTime;
+    static_assert(count > 1 && !numbers_in_words.at(count).empty(), "numbers_in_words needs words for this size");
+    return {ValueType::number, rule, count};
+  }
 }
 
+/// Returns a value from its numbers; the numbers of a matrix are given row by row.
 template <class Value>
-constexpr bool is_whole = std::is_same_v<Value, int>;
-
-template <class Value>
-constexpr bool is_single = is_whole<Value> || std::is_same_v<Value, double>;
-
-template <class Value>
-constexpr bool is_row = std::is_same_v<Value, std::vector<double>>;
-
-/// Returns the kind of a value in words: `a whole number`, `three numbers`.
-template <class Value>
-std::string kind() {
-  if constexpr (is_single<Value>) return is_whole<Value> ? "a whole number" : "a number";
-  else if constexpr (is_row<Value>) return "one number or more";
-  else return std::string(Value::SizeAtCompileTime == 2 ? "two" : Value::SizeAtCompileTime == 3 ? "three" : "nine") + " numbers";
+Value value_of(const std::vector<double>& numbers) {
+  if constexpr (std::is_arithmetic_v<Value>) return static_cast<Value>(numbers.front());
+  else if constexpr (std::is_same_v<Value, std::vector<double>>) return numbers;
+  else return Eigen::Map<const Eigen::Matrix<double, Value::ColsAtCompileTime, Value::RowsAtCompileTime>>(numbers.data()).transpose();
 }
 
 /// Returns whether a text begins with a number followed by other characters, such as a unit, but not by a comma, as in a list without brackets.
@@ -71,26 +69,21 @@ std::vector<double> numbers_with_units(const std::string& path, const Teuchos::P
   return numbers;
 }
 
-/// Returns the value of an entry; the numbers of a matrix are given row by row. Throws UserError if the entry does not satisfy the rule.
-template <class Value>
-Value checked(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& rule, std::string_view unit, const Units* units) {
+/// Returns the numbers of an entry; the numbers of a matrix are given row by row. Throws UserError if the entry does not have the type `type`.
+std::vector<double> checked(const std::string& path, const Teuchos::ParameterEntry& entry, const ValueType& type, std::string_view unit,
+                            const Units* units) {
+  const bool whole = type.kind == ValueType::whole, single = type.count == 1;
   std::vector<double> numbers;
-  if constexpr (!is_whole<Value>) numbers = numbers_with_units(path, entry, unit, units);
-  if constexpr (is_single<Value>) {
-    if (const auto number = as_number(entry)) numbers = {*number};
-  } else {
-    numbers = as_numbers(entry).value_or(numbers);
-  }
-  bool good = !numbers.empty();
-  if constexpr (is_single<Value>) good = good && (as_number(entry) || as_text(entry));
-  else if constexpr (!is_row<Value>) good = numbers.size() == Value::SizeAtCompileTime;
+  if (!whole) numbers = numbers_with_units(path, entry, unit, units);
+  if (!single) numbers = as_numbers(entry).value_or(numbers);
+  else if (const auto number = as_number(entry)) numbers = {*number};
+  bool good = type.count == 0 ? !numbers.empty() : std::ssize(numbers) == type.count;
+  if (single) good = good && (as_number(entry) || as_text(entry));
   for (const double x : numbers)
-    good = good && std::isfinite(x) && rule.holds(x) && (!is_whole<Value> || (x == std::floor(x) && std::abs(x) <= std::numeric_limits<int>::max()));
-  if (!good) refuse(path, with_rule(kind<Value>() + (is_single<Value> ? "" : " in brackets"), rule, !is_single<Value>), unit, description(entry));
-  if (!is_whole<Value> && !std::ranges::all_of(numbers, computable)) refuse(path, "between 1e-75 and 1e75 in size", unit, description(entry));
-  if constexpr (is_single<Value>) return static_cast<Value>(numbers.front());
-  else if constexpr (is_row<Value>) return numbers;
-  else return Eigen::Map<const Eigen::Matrix<double, Value::ColsAtCompileTime, Value::RowsAtCompileTime>>(numbers.data()).transpose();
+    good = good && std::isfinite(x) && type.rule.holds(x) && (!whole || (x == std::floor(x) && std::abs(x) <= std::numeric_limits<int>::max()));
+  if (!good) refuse(path, numbers_text(type, " in brackets"), unit, description(entry));
+  if (!whole && !std::ranges::all_of(numbers, computable)) refuse(path, "between 1e-75 and 1e75 in size", unit, description(entry));
+  return numbers;
 }
 
 /// Returns a value as YAML text.
@@ -123,9 +116,9 @@ struct Held<std::optional<Field>> {
 
 /// Records the declaration of a key of any type. `read` converts the given entry to a value; if it throws UserError, the field keeps its default.
 template <class Field, class Read>
-void state(Record& record, std::string_view name, Field& field, const std::string& values, std::string_view unit, std::string_view meaning,
+void state(Record& record, std::string_view name, Field& field, const ValueType& type, std::string_view unit, std::string_view meaning,
            const Read& read) {
-  Entry entry{std::string(name), Held<Field>::text(field), values, std::string(unit), std::string(meaning), {}};
+  Entry entry{std::string(name), Held<Field>::text(field), type, std::string(unit), std::string(meaning), {}};
   if (const Teuchos::ParameterEntry* given = record.given ? record.given->getEntryPtr(entry.key) : nullptr) try {
       field = read(record.path_of(name), *given);
     } catch (const UserError& error) {
@@ -160,30 +153,20 @@ std::shared_ptr<Teuchos::ParameterList> with_shared(const Record& all, const std
 
 }  // namespace
 
-Rule any() {
-  return {"any number", [](double) { return true; }};
-}
-Rule positive() {
-  return {"positive", [](double x) { return x > 0.0; }};
-}
-Rule not_negative() {
-  return {"not negative", [](double x) { return x >= 0.0; }};
-}
-Rule at_least(double low) {
-  return {"at least " + number_text(low), [low](double x) { return x >= low; }};
-}
-Rule between(double low, double high) {
-  return {"between " + number_text(low) + " and " + number_text(high), [low, high](double x) { return x >= low && x <= high; }};
-}
+Rule any() { return {.text = "any number"}; }
+Rule positive() { return {.text = "positive", .low = 0, .open = true}; }
+Rule not_negative() { return {.text = "not negative", .low = 0}; }
+Rule at_least(double low) { return {.text = "at least " + number_text(low), .low = low}; }
+Rule between(double low, double high) { return {.text = "between " + number_text(low) + " and " + number_text(high), .low = low, .high = high}; }
 
 Section::Section(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
 template <class Field>
 void Section::key(std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
   using Value = typename Held<Field>::Value;
-  const std::string values = is_single<Value> ? (is_whole<Value> ? "whole, " : "") + rule.text : with_rule(kind<Value>(), rule, true);
-  state(*state_->record, name, field, values, unit, meaning,
-        [&](const std::string& path, const Teuchos::ParameterEntry& entry) { return checked<Value>(path, entry, rule, unit, state_->units.get()); });
+  const ValueType type = type_of<Value>(rule);
+  state(*state_->record, name, field, type, unit, meaning,
+        [&](const std::string& path, const auto& entry) { return value_of<Value>(checked(path, entry, type, unit, state_->units.get())); });
 }
 
 template void Section::key(std::string_view, double&, const Rule&, std::string_view, std::string_view);
@@ -198,7 +181,7 @@ template void Section::key(std::string_view, std::optional<Mat3>&, const Rule&, 
 template void Section::key(std::string_view, std::optional<std::vector<double>>&, const Rule&, std::string_view, std::string_view);
 
 void Section::key(std::string_view name, bool& field, std::string_view meaning) {
-  state(*state_->record, name, field, "true or false", "", meaning, [](const std::string& path, const Teuchos::ParameterEntry& entry) {
+  state(*state_->record, name, field, {ValueType::truth}, "", meaning, [](const std::string& path, const Teuchos::ParameterEntry& entry) {
     const auto truth = as_truth(entry);
     if (!truth) refuse(path, "true or false", "", description(entry));
     return *truth;
@@ -207,9 +190,7 @@ void Section::key(std::string_view name, bool& field, std::string_view meaning) 
 
 template <class Field>
 void Section::key(std::string_view name, Field& field, const Choice& choice, std::string_view meaning) {
-  std::string values;
-  for (const std::string& word : choice) values += (values.empty() ? "`" : ", `") + word + "`";
-  state(*state_->record, name, field, choice.empty() ? "text" : values, "", meaning,
+  state(*state_->record, name, field, {ValueType::text, {}, 1, choice}, "", meaning,
         [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
           const auto text = as_text(entry);
           if (!text && choice.empty()) refuse(path, "text (in quotes)", "", description(entry));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,10 +19,14 @@ namespace tanktread::deck {
 
 class Units;
 
-/// Rule for the values of a number: the test and its wording ("positive", "between 0 and 1").
+/// Rule for the values of a number: its wording ("positive", "between 0 and 1"), the bounds, which are also in the schema, and any other test.
 struct Rule {
   std::string text;
-  std::function<bool(double)> holds;
+  std::function<bool(double)> test = {};  ///< test in addition to the bounds; may be empty
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+  bool open = false;  ///< true if the number must not be equal to `low`
+
+  bool holds(double x) const { return (open ? x > low : x >= low) && x <= high && (!test || test(x)); }
 };
 Rule any();
 Rule positive();

@@ -1,5 +1,6 @@
 #pragma once
 // Readers that convert the text of a deck to parameter lists. Each error message is one sentence.
+// yaml.cpp contains yaml_list and setting_list, source.cpp the other functions.
 
 #include <memory>
 #include <string>

@@ -1,5 +1,6 @@
 #pragma once
 // Conversion of values and lists of names to text, for messages, decks and the manual.
+// synonyms.cpp contains synonym and missing_feature, words.cpp the other functions.
 
 #include <string>
 #include <vector>

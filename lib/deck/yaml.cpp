@@ -36,9 +36,10 @@ bool is_utf8(const std::string& text) {
   return true;
 }
 
+/// Reads a number, which may have the sign + (std::from_chars accepts only -). Returns false if `text` is not a number.
 template <class Number>
 bool reads(const std::string& text, Number& number) {
-  const char *begin = text.data() + (text.starts_with('+') ? 1 : 0), *end = text.data() + text.size();
+  const char *begin = text.data() + (text.starts_with('+') && !text.starts_with("+-") ? 1 : 0), *end = text.data() + text.size();
   const auto [last, error] = std::from_chars(begin, end, number);
   return error == std::errc() && last == end;
 }

@@ -225,12 +225,52 @@ TEST(ForeignLists, OverrideTheDefaultsOfTheirOwner) {
   EXPECT_EQ(defaults->get<int>("iterations"), 10) << "the defaults themselves stay";
 }
 
+TEST(Schemas, StateTheTypeOfEveryKey) {
+  const std::string text = schema(Sample{});
+  const std::string dimensional = R"({"type": ["number", "string"], "pattern": "^[-+.0-9]")";
+  for (const std::string& key :
+       {R"("shear rate": )" + dimensional + R"(, "exclusiveMinimum": 0, "description": "rate of the flow [1/time]; default 1.0"})",
+        std::string(R"("count": {"type": "integer", "minimum": 1, "maximum": 9, "description": "how many; default 3"})"),
+        std::string(R"("limit": {"type": "integer", "minimum": 0, "description")"), std::string(R"("enabled": {"type": "boolean", )"),
+        std::string(R"("law": {"enum": ["soft", "hard", "very hard"], )"), std::string(R"("note": {"type": "string", )"),
+        R"("axes": {"type": "array", "items": )" + dimensional + R"(, "exclusiveMinimum": 0}, "minItems": 3, "maxItems": 3, )",
+        R"("sides": {"type": "array", "items": )" + dimensional + R"(, "exclusiveMinimum": 0}, "minItems": 2, "maxItems": 2, )",
+        R"("gradient": {"type": "array", "items": )" + dimensional + R"(}, "minItems": 9, "maxItems": 9, )",
+        R"("heights": {"type": "array", "items": )" + dimensional + R"(, "minimum": 0}, "minItems": 1, )"})
+    EXPECT_NE(text.find(key), std::string::npos) << key;
+}
+
+TEST(Schemas, KeepTheInnerSectionsOfASectionThatMentionsAName) {
+  struct Mentioning {
+    Inner inner;
+    void declare(Section& s) {
+      s.mention("other");
+      s.section("Inner", inner, "a section");
+    }
+  };
+  const std::string text = schema(Mentioning{});
+  EXPECT_NE(text.find(R"("other": true)"), std::string::npos) << text;
+  EXPECT_NE(text.find(R"("Inner": {"type": "object", "description": "a section", "properties": {)"), std::string::npos) << text;
+}
+
+TEST(Schemas, AllowAllKeysInSectionsThatInheritKeys) {
+  struct Alike {
+    void declare(Section& s) { s.each("one of several", [](const std::string&, Section&) {}, true); }
+  };
+  const std::string text = schema(Alike{});
+  EXPECT_NE(text.find(R"("properties": {}, "additionalProperties": {"type": "object"}})"), std::string::npos) << text;
+}
+
 TEST(Manual, HasOneRowPerKey) {
   const std::string text = manual(Sample{});
   EXPECT_NE(text.find("## Kinds\n\nOne key of each type.\n"), std::string::npos);
   EXPECT_NE(text.find("| `shear rate` | `1.0` | positive | 1/time | rate of the flow |"), std::string::npos);
   EXPECT_NE(text.find("| `modulus` |  | positive | force/length | stiffness |"), std::string::npos);
   EXPECT_NE(text.find("| `law` | `soft` | `soft`, `hard`, `very hard` |  | which \\| law |"), std::string::npos);
+  for (const char* row : {"`count` | `3` | whole, between 1 and 9 |", "`enabled` | `false` | true or false |", "`note` | `none` | text |",
+                          "`center` | `[0.0, 0.0, 0.0]` | three numbers |", "`sides` |  | two numbers, each positive |",
+                          "`stress` |  | nine numbers |", "`heights` |  | one number or more, each not negative |"})
+    EXPECT_NE(text.find(row), std::string::npos) << row;
   EXPECT_NE(text.find("## Kinds/Inner"), std::string::npos);
   EXPECT_NE(text.find("## `Expect/<name>`"), std::string::npos);
 }

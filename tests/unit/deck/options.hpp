@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/errors.hpp"
 #include "deck/document.hpp"
@@ -29,6 +30,7 @@ struct Kinds {
   std::optional<Eigen::Vector2d> sides;
   Mat3 gradient = Mat3::Identity();
   std::optional<Mat3> stress;
+  std::optional<std::vector<double>> heights;
   Inner inner;
   std::shared_ptr<Teuchos::ParameterList> belos;
 
@@ -45,6 +47,7 @@ struct Kinds {
     s.key("sides", sides, positive(), "length", "two lengths");
     s.key("gradient", gradient, any(), "1/time", "nine numbers");
     s.key("stress", stress, any(), "stress", "nine numbers");
+    s.key("heights", heights, not_negative(), "length", "one length or more");
     s.section("Inner", inner, "a list in a list");
     s.foreign("Belos", belos, "as it is");
   }

@@ -22,7 +22,7 @@ TEST(Keys, OfEveryTypeAreRead) {
       "    center: [1, 2, 3]\n    axes: [1., 2, 3.5]\n    sides: [2, 0.5]\n    gradient: [1, 2, 3, 4, 5, 6, 7, 8, 9]\n    stress: [[1., "
       "2., 3.], [4., 5., 6.], "
       "[7., 8., 9.]]\n"
-      "    Inner: {depth: 0.25}\n");
+      "    heights: [0, 2.5]\n    Inner: {depth: 0.25}\n");
   EXPECT_EQ(k.rate, 2.5);
   EXPECT_EQ(k.modulus, 1e-3);
   EXPECT_EQ(k.count, 7);
@@ -35,6 +35,7 @@ TEST(Keys, OfEveryTypeAreRead) {
   EXPECT_EQ(k.sides.value(), Eigen::Vector2d(2, 0.5));
   EXPECT_EQ(k.gradient(0, 2), 3.0) << "row by row";
   EXPECT_EQ(k.stress.value(), k.gradient) << "a table is a row of rows";
+  EXPECT_EQ(k.heights.value(), (std::vector<double>{0, 2.5}));
   EXPECT_EQ(k.inner.depth, 0.25);
 }
 
@@ -51,6 +52,8 @@ TEST(Keys, RejectAValueOutsideTheirRangeWithPathRangeUnitAndValue) {
   EXPECT_EQ(refusal("    Inner:\n      depth: 2.5\n"), "Kinds/Inner/depth must be a number, between 0 and 1 (unit: length), but is 2.5.");
   EXPECT_EQ(refusal("    axes: [1, 0, 1]\n"),
             "Kinds/axes must be three numbers in brackets, each positive (unit: length), but is [1, 0, 1].");
+  EXPECT_EQ(refusal("    heights: [1, -1]\n"),
+            "Kinds/heights must be one number or more in brackets, each not negative (unit: length), but is [1, -1].");
   EXPECT_EQ(refusal("    sides: [1, 2, 3]\n"),
             "Kinds/sides must be two numbers in brackets, each positive (unit: length), but is [1, 2, 3].");
 }
@@ -66,6 +69,17 @@ TEST(Keys, RejectWrongTypes) {
   EXPECT_EQ(refusal("    count: 99999999999\n"), "Kinds/count must be a whole number, between 1 and 9, but is 99999999999.");
   EXPECT_NE(refusal("    shear rate: 1e999\n"), "") << "no infinity";
   EXPECT_NE(refusal("    shear rate: nan\n"), "");
+}
+
+TEST(Numbers, HaveAtMostOneSign) {
+  EXPECT_EQ(kinds("    shear rate: +5\n").rate, 5.0);
+  EXPECT_EQ(kinds("    center: [+1, -2, +.5]\n").center, Vec3(1, -2, 0.5));
+  for (const std::string text : {"+-5", "++5", "-+5", "--5", "+", "+-5.0"}) {
+    EXPECT_EQ(refusal("    limit: " + text + "\n"), "Kinds/limit must be a whole number, at least 0, but is \"" + text + "\" (text).");
+    EXPECT_EQ(refusal("    shear rate: " + text + "\n"),
+              "Kinds/shear rate must be a number, positive (unit: 1/time), but is \"" + text + "\" (text).");
+    EXPECT_EQ(kinds("    note: " + text + "\n").note, text);
+  }
 }
 
 TEST(Choices, RejectAnotherWordWithASuggestion) {
