@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -119,10 +120,21 @@ double allowed_length(const surface::MidLine& line, const AdaptationOptions& opt
   return options.reference_length.value() * factor;
 }
 
+/// Returns the ratio of an estimated error to its tolerance; 0 if the deck does not limit this error.
+double excess(surface::Criterion criterion, double error, const AdaptationOptions& options) {
+  switch (criterion) {
+    case surface::Criterion::surface: return error / options.surface_tolerance;
+    case surface::Criterion::load: return options.load_tolerance ? error / *options.load_tolerance : 0;
+    case surface::Criterion::fields: return error * options.radius / options.surface_tolerance;
+  }
+  throw std::logic_error("no criterion of refinement has the number " + std::to_string(static_cast<int>(criterion)));
+}
+
 /// Returns the largest ratio of an estimated error to its tolerance.
 double excess(const surface::Errors& errors, const AdaptationOptions& options) {
-  const double load = options.load_tolerance ? errors.load / *options.load_tolerance : 0;
-  return std::max({errors.surface / options.surface_tolerance, errors.fields * options.radius / options.surface_tolerance, load});
+  std::array<double, surface::n_criteria> ratios;
+  for (std::size_t k = 0; k < ratios.size(); ++k) ratios[k] = excess(static_cast<surface::Criterion>(k), errors.of[k], options);
+  return *std::ranges::max_element(ratios);
 }
 
 /// Returns the largest allowed length of an element next to a film of this width.

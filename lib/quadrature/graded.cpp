@@ -21,7 +21,7 @@ struct Bezier {
 
   /// x, x_,s, x_,t
   std::array<Vec3, 3> at(double s, double t) const {
-    constexpr int size = spline::max_degree + 1;
+    constexpr int size = spline::most_polynomial_degree + 1;
     double bs[size], bt[size], ds[size], dt[size];
     spline::bernstein(degree, s, bs, ds, nullptr);
     spline::bernstein(degree, t, bt, dt, nullptr);

@@ -4,7 +4,7 @@ namespace tanktread::spline {
 
 Basis basis(const Element& element, double s, double t, int derivatives) {
   const int p = element.degree, n = p + 1;
-  double bs[3][max_degree + 1], bt[3][max_degree + 1];
+  double bs[3][most_polynomial_degree + 1], bt[3][most_polynomial_degree + 1];
   if (derivatives == 0) {
     bernstein(p, s, bs[0]);
     bernstein(p, t, bt[0]);

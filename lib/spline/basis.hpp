@@ -18,7 +18,7 @@ struct Basis {
 Basis basis(const Element& element, double s, double t, int derivatives = 1);
 
 /// Bezier points of a field on an element of degree p. Row (p + 1) j + i is Bezier point i along s and j along t. Uses no heap memory.
-using BezierPoints = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, (max_degree + 1) * (max_degree + 1), 3>;
+using BezierPoints = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, (most_polynomial_degree + 1) * (most_polynomial_degree + 1), 3>;
 BezierPoints bezier_points(const Element& e, const Net& field);
 
 }  // namespace tanktread::spline

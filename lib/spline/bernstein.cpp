@@ -33,14 +33,14 @@ void bernstein(int p, double x, double* value) {
 }
 
 void bernstein(int p, double x, double* value, double* first, double* second) {
-  assert(p >= 1 && p <= max_degree);
+  assert(p >= 1 && p <= most_polynomial_degree);
   if (p == 1) {
     value[0] = 1;
     if (second) second[0] = second[1] = 0;
   } else {
     bernstein(p - 2, x, value);
     if (second) {
-      double slope[max_degree + 1];
+      double slope[most_polynomial_degree + 1];
       difference(p - 1, value, slope);
       difference(p, slope, second);
     }
@@ -54,7 +54,7 @@ TensorBernstein tensor_bernstein(int p, const Eigen::VectorXd& s, const Eigen::V
   const Eigen::Index n = p + 1;
   TensorBernstein all;
   for (Eigen::MatrixXd* const table : {&all.value, &all.s, &all.t}) table->resize(s.size(), n * n);
-  double bs[max_degree + 1], bt[max_degree + 1], ds[max_degree + 1], dt[max_degree + 1];
+  double bs[most_polynomial_degree + 1], bt[most_polynomial_degree + 1], ds[most_polynomial_degree + 1], dt[most_polynomial_degree + 1];
   for (Eigen::Index q = 0; q < s.size(); ++q) {
     bernstein(p, s[q], bs, ds, nullptr);
     bernstein(p, t[q], bt, dt, nullptr);

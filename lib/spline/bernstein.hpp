@@ -7,7 +7,7 @@
 
 namespace tanktread::spline {
 
-constexpr int max_degree = 15;  ///< largest degree of the polynomials; larger than spline::largest_degree of elements
+constexpr int most_polynomial_degree = 15;  ///< largest degree of the polynomials; larger than spline::largest_degree of elements
 
 /// Computes B_i(x) = C(p, i) x^i (1 - x)^(p - i), i = 0 .. p, and stores them in value[0 .. p].
 void bernstein(int p, double x, double* value);

@@ -56,18 +56,18 @@ Eigen::MatrixXd at_corner(const Eigen::MatrixXd& table, int p, int k) {
   return out;
 }
 
-/// Returns the Bezier elements that represent a mesh element at an extraordinary point, positioned in the unit square of the mesh element: one
-/// bi-quartic element, or the pieces of the Catmull-Clark surface.
-std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, int corner, ExtraordinaryRule rule, int depth) {
+/// Returns one bi-quartic element that represents a mesh element at an extraordinary point.
+std::vector<Element> biquartic_element(const std::array<int, OneRing::size>& ring, int corner) {
+  Element e;
+  e.degree = 4;
+  e.points.assign(ring.begin(), ring.end());
+  e.extraction = std::make_shared<const Eigen::MatrixXd>(at_corner(constrained_biquartic(), 4, corner));
+  return {std::move(e)};
+}
+
+/// Returns the pieces of the Catmull-Clark surface that represent a mesh element at an extraordinary point.
+std::vector<Element> subdivided_element(const std::array<int, OneRing::size>& ring, int corner, int depth) {
   std::vector<Element> out;
-  if (rule == ExtraordinaryRule::g1) {
-    Element e;
-    e.degree = 4;
-    e.points.assign(ring.begin(), ring.end());
-    e.extraction = std::make_shared<const Eigen::MatrixXd>(at_corner(constrained_biquartic(), 4, corner));
-    out.push_back(std::move(e));
-    return out;
-  }
   for (const Piece& piece : catmull_clark_pieces(depth)) {
     Element e;
     e.origin = turned(piece.u, piece.v, 1 - piece.size, corner);
@@ -81,6 +81,15 @@ std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, in
     out.push_back(std::move(e));
   }
   return out;
+}
+
+/// Returns the Bezier elements that represent a mesh element at an extraordinary point, positioned in the unit square of the mesh element.
+std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, int corner, ExtraordinaryRule rule, int depth) {
+  switch (rule) {
+    case ExtraordinaryRule::g1: return biquartic_element(ring, corner);
+    case ExtraordinaryRule::catmull_clark: return subdivided_element(ring, corner, depth);
+  }
+  throw std::logic_error("no rule for extraordinary points has the number " + std::to_string(static_cast<int>(rule)));
 }
 
 int log2_of(int power) { return std::countr_zero(unsigned(power)); }
@@ -177,7 +186,7 @@ Space space(const TMesh& mesh, ExtraordinaryRule rule) {
     out.collocation.push_back(on_elements(l, b.tiling, elements, tiles_around(mesh, b.tiling, greville(mesh, b.anchor[A], b.knots[A]))));
   out.elements = std::move(elements.all);
   out.description = std::to_string(out.elements.size()) + " Bezier elements on a cube, " + std::to_string(out.n_points) +
-                    " control points, eight extraordinary points (" + (rule == ExtraordinaryRule::g1 ? "g1" : "catmull-clark") + ")";
+                    " control points, eight extraordinary points (" + extraordinary_rules[static_cast<std::size_t>(rule)] + ")";
   return out;
 }
 

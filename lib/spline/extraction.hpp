@@ -1,6 +1,9 @@
 #pragma once
 // The spline space of a T-mesh: Bezier elements, their extraction matrices and generalised Greville points.
 
+#include <string>
+#include <vector>
+
 #include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
 
@@ -12,6 +15,8 @@ enum class ExtraordinaryRule {
   catmull_clark,  ///< limit surface of Catmull-Clark subdivision, in bicubic pieces that shrink towards the extraordinary point; nested under
                   ///< refinement
 };
+
+inline const std::vector<std::string> extraordinary_rules{"g1", "catmull-clark"};  ///< words for ExtraordinaryRule in decks
 
 /// Returns the space of bicubic analysis-suitable T-splines of the mesh, with one function per anchor (vertex with a control point), in the order
 /// of anchors(mesh). The positions of elements are in units of the side of a macro face (a face of the cube), so they do not depend on the

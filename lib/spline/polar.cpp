@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <stdexcept>
 
 #include <Eigen/LU>
 
@@ -82,9 +83,9 @@ struct Share {
 };
 class Shares {
  public:
-  Shares(const TMesh& mesh, const TileFunctions& f, PoleRule poles) : per_pole_(poles == PoleRule::c1 ? 3 : 1), shares_(f.anchor.size()) {
+  Shares(const TMesh& mesh, const TileFunctions& f, PoleRule poles) : per_pole_(points_per_pole(poles)), shares_(f.anchor.size()) {
     const Lattice& l = *mesh.lattice;
-    const int replaced = poles == PoleRule::c1 ? 2 : 1;
+    const int replaced = per_pole_ == 1 ? 1 : 2;
     auto to_end = [&](int v) { return std::min(v / l.units, l.rows - v / l.units); };
     int next = per_pole_;
     for (std::size_t a = 0; a < f.anchor.size(); ++a)
@@ -245,18 +246,54 @@ std::vector<Element> tile_elements(const Lattice& l, const TileFunctions& f, con
   return out;
 }
 
+std::logic_error unknown_rule(PoleRule rule) {
+  return std::logic_error("no rule for poles has the number " + std::to_string(static_cast<int>(rule)));
+}
+
 const char* name(PoleRule rule) {
-  return rule == PoleRule::plain ? "plain poles" : rule == PoleRule::c1 ? "C1 poles" : "poles by Bezier transform";
+  switch (rule) {
+    case PoleRule::bezier_transform: return "poles by Bezier transform";
+    case PoleRule::plain: return "plain poles";
+    case PoleRule::c1: return "C1 poles";
+  }
+  throw unknown_rule(rule);
 }
 
 }  // namespace
 
-std::vector<PolarAnchor> anchors(const PolarMesh& mesh) {
+int points_per_pole(PoleRule rule) {
+  switch (rule) {
+    case PoleRule::bezier_transform:
+    case PoleRule::plain: return 1;
+    case PoleRule::c1: return 3;
+  }
+  throw unknown_rule(rule);
+}
+
+bool has_normal_at_poles(PoleRule rule) {
+  switch (rule) {
+    case PoleRule::bezier_transform:
+    case PoleRule::c1: return true;
+    case PoleRule::plain: return false;
+  }
+  throw unknown_rule(rule);
+}
+
+bool replaces_elements(PoleRule rule) {
+  switch (rule) {
+    case PoleRule::bezier_transform: return true;
+    case PoleRule::plain:
+    case PoleRule::c1: return false;
+  }
+  throw unknown_rule(rule);
+}
+
+std::vector<PolarAnchor> polar_anchors(const PolarMesh& mesh) {
   const int m = mesh.azimuthal, r = mesh.meridional;
-  const bool c1 = mesh.poles == PoleRule::c1;
+  const bool three = points_per_pole(mesh.poles) == 3;
   std::vector<PolarAnchor> out;
   const auto pole = [&](double u, double row) {
-    if (!c1) return out.push_back({u, 0, 1});
+    if (!three) return out.push_back({u, 0, 1});
     std::vector<Eigen::Vector2d> place;
     for (int k = 0; k < m; ++k) place.emplace_back(std::cos(2 * std::numbers::pi * k / m), std::sin(2 * std::numbers::pi * k / m));
     const auto middles = largest_triangle(place);
@@ -264,7 +301,7 @@ std::vector<PolarAnchor> anchors(const PolarMesh& mesh) {
       out.push_back({row, std::atan2(corner[1], corner[0]) * m / (2 * std::numbers::pi), corner.norm()});
   };
   pole(0, 1.0 / 3);
-  for (int row = c1 ? 2 : 1; row <= r + (c1 ? 0 : 1); ++row) {
+  for (int row = three ? 2 : 1; row <= r + (three ? 0 : 1); ++row) {
     const double u = (open_knot(row + 1, r) + open_knot(row + 2, r) + open_knot(row + 3, r)) / 3;
     for (int k = 0; k < m; ++k) out.push_back({u, double(k), 1});
   }
@@ -282,7 +319,7 @@ Space space(const TMesh& mesh, PoleRule poles, int subdivisions) {
   out.n_points = shares.n_points();
   out.elements = tile_elements(l, f, shares);
   out.collocation = sites_on_tiles(mesh, f, shares);
-  const bool transformed = poles == PoleRule::bezier_transform;
+  const bool transformed = replaces_elements(poles);
   if (transformed) {
     const Transform transform(subdivisions);
     std::vector<Element> kept, pieces;

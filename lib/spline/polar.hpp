@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "spline/space.hpp"
@@ -13,11 +14,23 @@ namespace tanktread::spline {
 
 /// Representation of the surface around a pole.
 enum class PoleRule {
-  plain,             ///< one function per pole, only continuous (C0) there; elements at a pole have one side that is collapsed to the pole
   bezier_transform,  ///< functions of `plain`, but degenerate elements at the poles are replaced by non-degenerate pieces (equations A.1 and A.2 of
                      ///< Maestre et al. 2017)
+  plain,             ///< one function per pole, only continuous (C0) there; elements at a pole have one side that is collapsed to the pole
   c1,                ///< three functions per pole, so that tangent planes are continuous; elements have a collapsed side as in `plain`
 };
+
+inline const std::vector<std::string> pole_rules{"bezier transform", "plain", "c1"};  ///< words for PoleRule in decks
+
+/// Returns the number of control points whose functions are not zero at a pole.
+int points_per_pole(PoleRule rule);
+
+/// Returns whether the surface has a normal at the poles. If not, loads and the identities of closed surfaces cannot be evaluated there.
+bool has_normal_at_poles(PoleRule rule);
+
+/// Returns whether the elements at the poles are replaced by pieces that are not elements of the mesh. If so, the spaces of nested meshes are not
+/// nested.
+bool replaces_elements(PoleRule rule);
 
 /// Mesh of m elements in azimuth and r from pole to pole, with uniform knots. It has (r + 1) m + 2 control points, or (r - 1) m + 6 with `c1`.
 struct PolarMesh {
@@ -35,7 +48,7 @@ struct PolarMesh {
 struct PolarAnchor {
   double u = 0, v = 0, distance = 1;
 };
-std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
+std::vector<PolarAnchor> polar_anchors(const PolarMesh& mesh);
 
 /// Returns the spline space of the mesh.
 ///

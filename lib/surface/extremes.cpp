@@ -1,4 +1,4 @@
-#include "surface/geometry.hpp"
+#include "surface/extremes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,15 +1,14 @@
 #pragma once
 // Points, measures and moments of a spline surface, which is given by a space and a control net.
 
-#include <algorithm>
 #include <array>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "base/types.hpp"
 #include "spline/space.hpp"
 #include "surface/bezier_points.hpp"
+#include "surface/extremes.hpp"
 #include "surface/patch.hpp"
 
 namespace tanktread::surface {
@@ -54,30 +53,6 @@ PrincipalAxes principal_axes(const Measures& measures);
 /// Number of integrals per block of elements: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) over the interior, with x
 /// relative to the mean of the control points.
 constexpr int n_moments = 11;
-
-// Smallest and largest value of a quantity on a closed surface. The quantity is a coordinate, or the distance of the points of a plane section from a
-// given point. coordinate_range(), lowest() and section_distances() find the extrema of the spline surface itself by Newton's method.
-
-struct Range {
-  double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();  ///< empty range
-};
-
-/// Returns the smallest range that contains both given ranges.
-inline Range wider(const Range& a, const Range& b) { return {std::min(a.smallest, b.smallest), std::max(a.largest, b.largest)}; }
-
-/// Returns the smallest and largest coordinate x_{c+1} of the Bezier points, which bound the patch.
-Range hull(const Patch& patch, int c);
-
-/// Returns the smallest and largest coordinate x_{c+1} on the surface, to round-off. The range of a whole surface is the union over its parts.
-Range coordinate_range(const Patches& surface, int c);
-
-/// Returns the point of the surface with the smallest coordinate x_{c+1}, to round-off.
-Vec3 lowest(const Patches& surface, int c);
-
-/// Returns the shortest and longest distance of `centre` to the curve in which the plane x2 = centre_2 cuts the surface, to round-off if the
-/// extremum is simple (nonzero second derivative). No symmetry of the surface is assumed. The range of a whole surface is the union over its parts.
-/// The range is empty if the plane misses the surface.
-Range section_distances(const Patches& surface, const Vec3& centre);
 
 /// Deformation measures of the time series (6.2): Taylor parameter D in the x1 x3 plane, by two definitions (see Geometry::deformation());
 /// inclination in degrees, from -90 (not included) to 90. The inclination is NaN if the two semi-axes in that plane are not distinct.

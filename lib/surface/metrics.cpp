@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <unordered_map>
 
 #include <Eigen/Geometry>
@@ -229,6 +231,16 @@ struct Gradients {
   Eigen::MatrixX3d fields;
 };
 
+/// Returns the norm of the corrected fourth difference of a criterion, which is 384 times its estimated error (1.5).
+double norm(Criterion criterion, const Sample& d4, const Gradients& g) {
+  switch (criterion) {
+    case Criterion::surface: return (d4.now - g.f * d4.rest).norm();
+    case Criterion::load: return d4.load.norm();
+    case Criterion::fields: return (d4.fields - g.fields * d4.now).norm();
+  }
+  throw std::logic_error("no criterion of refinement has the number " + std::to_string(static_cast<int>(criterion)));
+}
+
 Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int length, const Gradients& g) {
   const EdgeLine found = line(lattice, edge, length);
   Resolution result;
@@ -245,7 +257,8 @@ Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int le
       if (first >= 0 && first <= last) windows.push_back(first);
   for (const int first : windows) {
     const Sample d4 = fourth_difference(samples, found, first);
-    const Errors norms{(d4.now - g.f * d4.rest).norm(), d4.load.norm(), (d4.fields - g.fields * d4.now).norm()};
+    Errors norms;
+    for (std::size_t k = 0; k < n_criteria; ++k) norms.of[k] = norm(static_cast<Criterion>(k), d4, g);
     result.errors = result.errors + norms * (1 / 384. / static_cast<double>(windows.size()));
   }
   return result;

@@ -2,6 +2,7 @@
 // Refinement indicators: size of the elements of a T-mesh, variation of fields on them, and resolution errors of surface and load.
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -46,6 +47,14 @@ FieldAt per_current_area(const spline::Space& space, const Net& rest, const Net&
 /// Returns the field with control values `net`.
 FieldAt field_of_net(const spline::Space& space, const Net& net);
 
+/// Criteria of refinement, each of which is an estimated error (1.5).
+enum class Criterion {
+  surface,  ///< error e(x) of the surface, length
+  load,     ///< error e(phi) of the load phi, in the unit of phi; 0 without a load
+  fields,   ///< error e(q) of the fields q, dimensionless; 0 without fields
+};
+constexpr std::size_t n_criteria = static_cast<std::size_t>(Criterion::fields) + 1;
+
 /// Errors of an element along one direction. They estimate how far the exact surface or load is from its best approximation by cubics on elements
 /// of this length,
 ///
@@ -59,12 +68,20 @@ FieldAt field_of_net(const spline::Space& space, const Net& net);
 /// So a field that is linear in x has no error. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by
 /// about 8.
 struct Errors {
-  double surface = 0;  ///< error e(x) of the surface (1.5), length
-  double load = 0;     ///< error e(phi) of the load phi (1.5), in the unit of phi; 0 without a load
-  double fields = 0;   ///< error e(q) of the fields q (1.5), dimensionless; 0 without fields
+  std::array<double, n_criteria> of{};  ///< errors in the order of Criterion
 
-  Errors operator+(const Errors& other) const { return {surface + other.surface, load + other.load, fields + other.fields}; }
-  Errors operator*(double factor) const { return {surface * factor, load * factor, fields * factor}; }
+  double operator[](Criterion criterion) const { return of.at(static_cast<std::size_t>(criterion)); }
+  double& operator[](Criterion criterion) { return of.at(static_cast<std::size_t>(criterion)); }
+  Errors operator+(const Errors& other) const {
+    Errors sum;
+    for (std::size_t k = 0; k < n_criteria; ++k) sum.of[k] = of[k] + other.of[k];
+    return sum;
+  }
+  Errors operator*(double factor) const {
+    Errors product;
+    for (std::size_t k = 0; k < n_criteria; ++k) product.of[k] = of[k] * factor;
+    return product;
+  }
 };
 struct Resolution {
   double length = 0;  ///< mean length of the element's edges along the direction

@@ -23,9 +23,9 @@ void MeshOptions::declare(deck::Section& section) {
       "Surface/azimuthal elements around the pole axis and r = Surface/meridional elements from pole to pole; (r + 1)m + 2 control points; "
       "elements are narrow near the poles");
   if (polar()) {
-    azimuthal_elements = 32, meridional_elements = 16, pole_axis = "x3", poles = "bezier transform";
+    azimuthal_elements = 32, meridional_elements = 16, pole_axis = "x3", poles = spline::PoleRule::bezier_transform;
   } else {
-    elements_per_side = fits_tightly ? 8 : 6, extraordinary_points = "g1";
+    elements_per_side = fits_tightly ? 8 : 6, extraordinary_points = spline::ExtraordinaryRule::g1;
   }
   if (of_cylinder) azimuthal_elements = 24;
   section.key("elements per side", elements_per_side, deck::between(3, 200), "1",
@@ -33,7 +33,7 @@ void MeshOptions::declare(deck::Section& section) {
               "deformations of a rounded particle have errors of about 0.1 %; elements half as long have about a sixteenth of the error. If not "
               "given: 6, or 8 for a rigid particle in a tube or channel if R_C is more than 3/4 of the distance from the axis to the wall");
   section.key(
-      "extraordinary points", extraordinary_points, deck::Choice{"g1", "catmull-clark"},
+      "extraordinary points", extraordinary_points, spline::extraordinary_rules,
       "treatment of the extraordinary points, the eight corners of the cube mesh where three elements meet instead of four. `g1`: "
       "continuous tangent planes, with elements of degree 4 around the point (constrained extraction of Maestre et al. 2017). "
       "`catmull-clark`: limit surface of Catmull and Clark's subdivision, in bicubic pieces; refinement does not change the surface");
@@ -48,11 +48,11 @@ void MeshOptions::declare(deck::Section& section) {
               "number r of elements from pole to pole of the polar surface mesh; 16 if not given");
   section.key("pole axis", pole_axis, deck::Choice{"x1", "x2", "x3"},
               "body-fixed axis of the particle on which the poles of the polar surface mesh lie; `x3` if not given");
-  section.key("poles", poles, deck::Choice{"bezier transform", "plain", "c1"},
+  section.key("poles", poles, spline::pole_rules,
               "treatment of the poles of the polar surface mesh. `bezier transform`: degenerate elements are replaced by regular ones, as "
               "by Maestre et al. (2017); the default. `plain`: degenerate elements are kept. `c1`: tangent planes are continuous at the "
               "poles, with (r - 1)m + 6 control points for m elements around the axis and r from pole to pole");
-  if (poles == "bezier transform") pole_subdivisions = 2;
+  if (poles && spline::replaces_elements(*poles)) pole_subdivisions = 2;
   section.key("pole subdivisions", pole_subdivisions, deck::between(0, 4), "1",
               "number of times that the elements at the poles of the polar surface mesh are halved in azimuth before the transform of "
               "Surface/poles `bezier transform`; 2 if not given");
@@ -73,19 +73,19 @@ void MeshOptions::check() const {
   misplaced(!polar() && pole_axis, "pole axis");
   misplaced(!polar() && poles, "poles");
   misplaced(!polar() && pole_subdivisions, "pole subdivisions");
-  refuse(pole_subdivisions && poles != "bezier transform", "Surface/pole subdivisions", "Surface/poles `" + poles.value_or("c1") + "`",
-         "it belongs to `bezier transform`");
+  refuse(pole_subdivisions && !replaces_elements(), "Surface/pole subdivisions",
+         "Surface/poles `" + deck::word(spline::pole_rules, poles.value_or(spline::PoleRule::c1)) + "`", "it belongs to `bezier transform`");
 }
 
 spline::PolarMesh MeshOptions::polar_mesh() const {
-  const auto rule = poles == "plain" ? spline::PoleRule::plain : poles == "c1" ? spline::PoleRule::c1 : spline::PoleRule::bezier_transform;
-  return {azimuthal_elements.value(), meridional_elements.value(), rule, pole_subdivisions.value_or(0)};
+  return {azimuthal_elements.value(), meridional_elements.value(), poles.value(), pole_subdivisions.value_or(0)};
 }
 
 double MeshOptions::n_points() const {
   if (!polar()) return 6.0 * *elements_per_side * *elements_per_side + 2;
   const double m = *azimuthal_elements, r = *meridional_elements;
-  return poles == "c1" ? (r - 1) * m + 6 : (r + 1) * m + 2;
+  const int per_pole = spline::points_per_pole(poles.value());
+  return (per_pole == 1 ? r + 1 : r - 1) * m + 2 * per_pole;
 }
 
 double MeshOptions::n_elements() const {
@@ -94,7 +94,7 @@ double MeshOptions::n_elements() const {
 }
 
 void ParticleShape::declare(deck::Section& section) {
-  section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell", "cylinder", "file"},
+  section.key("shape", shape, particle_shapes,
               "resting shape of the particle. `sphere`: of Particle/radius. `spheroid`, `ellipsoid`: with Particle/semi-axes. `red cell`: "
               "the biconcave disc of Evans and Fung, with its axis along the body-fixed x3. `cylinder`: a post, which is a fixed circular "
               "cylinder along Particle/axis through the whole period of the Domain. `file`: the closed surface in Particle/file");

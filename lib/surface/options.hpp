@@ -3,9 +3,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/types.hpp"
 #include "deck/forward.hpp"
+#include "spline/extraction.hpp"
 #include "spline/iga.hpp"
 #include "spline/polar.hpp"
 
@@ -15,13 +17,12 @@ namespace tanktread::surface {
 struct MeshOptions {
   std::string mesh = "cube";  ///< cube, polar
 
-  std::optional<int> elements_per_side;             ///< number n of elements along each edge of the cube
-  /// rule at the eight points of the cube mesh where three elements meet: g1, catmull-clark
-  std::optional<std::string> extraordinary_points;
+  std::optional<int> elements_per_side;                           ///< number n of elements along each edge of the cube
+  std::optional<spline::ExtraordinaryRule> extraordinary_points;  ///< rule at the eight points of the cube mesh where three elements meet
 
   std::optional<int> azimuthal_elements, meridional_elements;  ///< numbers of elements of the polar mesh: m around the axis, r from pole to pole
   std::optional<std::string> pole_axis;                        ///< body-fixed axis of the particle on which the poles lie
-  std::optional<std::string> poles;                            ///< rule at the poles: bezier transform, plain, c1
+  std::optional<spline::PoleRule> poles;                       ///< rule at the poles of the polar mesh
   bool fits_tightly = false;  ///< true if the particle is rigid and fills more than three quarters of a duct's width
   bool of_cylinder = false;  ///< true if the surface is a cylinder (Particle/shape `cylinder`); it then has `azimuthal_elements` and `axial_elements`
   std::optional<int> axial_elements;                           ///< number of elements along the period of a cylinder
@@ -36,6 +37,10 @@ struct MeshOptions {
   bool operator==(const MeshOptions&) const = default;
   bool polar() const { return mesh == "polar"; }
   spline::PolarMesh polar_mesh() const;
+  /// Returns whether the surface has a normal at every pole; true for the cube mesh, which has no poles.
+  bool has_normal_at_poles() const { return !polar() || spline::has_normal_at_poles(poles.value()); }
+  /// Returns whether elements at poles are replaced by pieces that are not elements of the mesh; false for the cube mesh.
+  bool replaces_elements() const { return polar() && spline::replaces_elements(poles.value()); }
   int axis() const { return pole_axis.value()[1] - '1'; }
 
   double n_points() const;    ///< returns the number of control points of the mesh
@@ -67,9 +72,11 @@ struct InitialShape {
   std::optional<Mat3> affine(const Mat3& rotation) const;
 };
 
+inline const std::vector<std::string> particle_shapes{"sphere", "spheroid", "ellipsoid", "red cell", "cylinder", "file"};  ///< words for `shape`
+
 /// Options `Particle/*` of the deck that give the resting shape and the initial shape of the particle.
 struct ParticleShape {
-  std::string shape = "sphere";     ///< sphere, spheroid, ellipsoid, red cell, cylinder, file
+  std::string shape = "sphere";     ///< one of particle_shapes
   std::optional<double> radius;     ///< radius of the sphere or cylinder, or of the disc of a red cell; not set for other shapes
   std::optional<std::string> axis;  ///< periodic direction along which a cylinder lies; not set for other shapes
   std::optional<Vec3> semi_axes;    ///< semi-axes of a spheroid or ellipsoid along its body-fixed x1, x2, x3; not set for other shapes

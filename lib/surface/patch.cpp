@@ -7,14 +7,14 @@
 
 namespace tanktread::surface {
 
-using spline::max_degree;
+using spline::most_polynomial_degree;
 
 namespace {
 
 /// Values, first and second derivatives of the Bernstein polynomials of degree p at the local coordinates of a point.
 struct Factors {
   int p;
-  double s[3][max_degree + 1], t[3][max_degree + 1];
+  double s[3][most_polynomial_degree + 1], t[3][most_polynomial_degree + 1];
   Factors(int degree, double at_s, double at_t) : p(degree) {
     spline::bernstein(p, at_s, s[0], s[1], s[2]);
     spline::bernstein(p, at_t, t[0], t[1], t[2]);
@@ -60,7 +60,7 @@ CoordinateJet jet(const Patch& patch, int c, double s, double t) {
 
 Vec3 position(const Patch& patch, double s, double t) {
   const int p = patch.degree;
-  double b[max_degree + 1], c[max_degree + 1];
+  double b[most_polynomial_degree + 1], c[most_polynomial_degree + 1];
   spline::bernstein(p, s, b);
   spline::bernstein(p, t, c);
   Vec3 result = Vec3::Zero();
@@ -82,12 +82,12 @@ double mean_curvature(const Jet& jet) {
 namespace {
 
 /// Values of the Bernstein polynomials of each degree at the grid points. Index: degree, polynomial, grid point.
-using Tables = std::array<std::array<std::array<double, cells + 1>, max_degree + 1>, max_degree + 1>;
+using Tables = std::array<std::array<std::array<double, cells + 1>, most_polynomial_degree + 1>, most_polynomial_degree + 1>;
 Tables grid_tables() {
   Tables tables{};
-  for (int p = 0; p <= max_degree; ++p)
+  for (int p = 0; p <= most_polynomial_degree; ++p)
     for (int i = 0; i <= cells; ++i) {
-      double values[max_degree + 1];
+      double values[most_polynomial_degree + 1];
       spline::bernstein(p, double(i) / cells, values);
       for (int k = 0; k <= p; ++k) tables[p][k][i] = values[k];
     }

@@ -24,7 +24,7 @@ struct Circles {
 
   explicit Circles(const spline::PolarMesh& mesh) {
     double last = -1;
-    for (const spline::PolarAnchor& anchor : spline::anchors(mesh)) {
+    for (const spline::PolarAnchor& anchor : spline::polar_anchors(mesh)) {
       n_rows += anchor.u != last;
       last = anchor.u;
       row.push_back(n_rows - 1);
@@ -47,7 +47,7 @@ struct Circles {
 Eigen::VectorXd first_profile(const spline::PolarMesh& mesh) {
   std::vector<double> profile;
   double last = -1;
-  for (const spline::PolarAnchor& anchor : spline::anchors(mesh)) {
+  for (const spline::PolarAnchor& anchor : spline::polar_anchors(mesh)) {
     if (anchor.u == last) continue;
     last = anchor.u;
     const double colatitude = std::numbers::pi * anchor.u / mesh.meridional;
@@ -67,7 +67,7 @@ struct Misfit {
 
 class Sector {
  public:
-  Sector(const spline::PolarMesh& mesh, const spline::Space& space) : circles_(mesh), c1_(mesh.poles == spline::PoleRule::c1) {
+  Sector(const spline::PolarMesh& mesh, const spline::Space& space) : circles_(mesh), one_at_pole_(spline::points_per_pole(mesh.poles) == 1) {
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(6);
     for (const spline::Element& e : space.elements) {
       if (e.origin[0] != 0) continue;
@@ -82,7 +82,7 @@ class Sector {
     Misfit m{0, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
     const Net net = circles_.net(profile);
     for (const Node& node : nodes_) add(node, net, m);
-    if (!c1_)
+    if (one_at_pole_)
       for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // the control points of the poles stay on the axis
         m.matrix.row(k).setZero(), m.matrix.col(k).setZero();
         m.matrix(k, k) = 1, m.gradient[k] = 0;
@@ -137,7 +137,7 @@ class Sector {
   }
 
   Circles circles_;
-  bool c1_;
+  bool one_at_pole_;  // true if each pole has one control point, false if it has three
   std::vector<Node> nodes_;
 };
 

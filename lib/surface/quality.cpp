@@ -13,7 +13,7 @@ namespace tanktread::surface {
 namespace {
 
 constexpr int points = 16;  ///< 4 x 4
-constexpr int most = (spline::max_degree + 1) * (spline::max_degree + 1);
+constexpr int most = (spline::most_polynomial_degree + 1) * (spline::most_polynomial_degree + 1);
 
 using Tangents = Eigen::Array<double, points, 3>;
 

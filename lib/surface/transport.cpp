@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "surface/element_groups.hpp"
+#include "surface/extremes.hpp"
 #include "surface/patch.hpp"
 
 namespace tanktread::surface {

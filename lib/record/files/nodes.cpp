@@ -94,7 +94,7 @@ std::vector<double> jet_table(int p) {
   for (int b = 0; b < (p + 1) * (p + 1); ++b)
     for (const auto& [along_s, along_t] : derivatives)
       for (const auto& node : order) {
-        double s[3][spline::max_degree + 1], t[3][spline::max_degree + 1];
+        double s[3][spline::most_polynomial_degree + 1], t[3][spline::most_polynomial_degree + 1];
         spline::bernstein(p, double(node[0]) / p, s[0], s[1], s[2]);
         spline::bernstein(p, double(node[1]) / p, t[0], t[1], t[2]);
         table.push_back(s[along_s][b % (p + 1)] * t[along_t][b / (p + 1)]);

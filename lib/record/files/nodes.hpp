@@ -61,8 +61,8 @@ class Nodes {
   Net normals(const Net& net) const;
 
  private:
-  using Points = std::array<double, 3 * (spline::max_degree + 1) * (spline::max_degree + 1)>;  ///< Bezier points, shape (3, n_bezier); storage for
-                                                                                               ///< the largest degree
+  /// Bezier points, shape (3, n_bezier); storage for the largest degree
+  using Points = std::array<double, 3 * (spline::most_polynomial_degree + 1) * (spline::most_polynomial_degree + 1)>;
   template <class Use>
   void each_cell(const Net& net, Use use) const;
   Points jets(int element, const Net& net, std::vector<surface::Jet>& jets) const;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
 #include "base/text_file.hpp"
 #include "base/errors.hpp"
@@ -18,6 +20,8 @@ constexpr int n_samples = 4000;
 // least length of a straight end of the channel divided by the tube radius R_T; perturbations of the flow decay to 1e-5 of their size over this
 // length
 constexpr double straight_end = 1.7;
+
+std::logic_error unknown_profile(const std::string& profile) { return std::logic_error("Channel/profile " + profile + " has no scale factors"); }
 
 }  // namespace
 
@@ -183,9 +187,13 @@ Channel::SectionParameters Channel::place(double u) const {
     at.factor = jet(*factors_, inside).x;
   } else if (own_.profile == "step") {
     at = step(u);
-  } else if (own_.half_length && std::abs(u) < *own_.half_length) {
-    const double bump = *own_.depth * (1 + std::cos(pi * u / *own_.half_length)) / 2;
-    at.factor.setConstant(own_.profile == "expansion" ? 1 + bump : 1 - bump);
+  } else if (own_.profile == "constriction" || own_.profile == "expansion") {
+    if (std::abs(u) < own_.half_length.value()) {
+      const double bump = *own_.depth * (1 + std::cos(pi * u / *own_.half_length)) / 2;
+      at.factor.setConstant(own_.profile == "expansion" ? 1 + bump : 1 - bump);
+    }
+  } else if (own_.profile != "straight") {
+    throw unknown_profile(own_.profile);
   }
   if (own_.directions == "x2") at.factor[1] = 1;
   if (own_.directions == "x3") at.factor[0] = 1;
@@ -244,16 +252,18 @@ TubeOptions Channel::tube(double s) const {
   TubeOptions tube = options_;
   tube.channel.reset();
   const Vec2 factor = section(s).factor;
-  if (tube.section == "circle" && factor[0] != factor[1]) {
+  if (tube.section == "circle" && factor[0] == factor[1]) {
+    tube.radius = tube.radius.value() * factor[0];
+  } else if (tube.section == "circle") {
     tube.section = "ellipse";
-    tube.semi_axes = *tube.radius * factor;
+    tube.semi_axes = tube.radius.value() * factor;
     tube.radius.reset();
-  } else if (tube.radius) {
-    *tube.radius *= factor[0];
-  } else if (tube.semi_axes) {
-    tube.semi_axes = tube.semi_axes->cwiseProduct(factor);
-  } else if (tube.sides) {
-    tube.sides = tube.sides->cwiseProduct(factor);
+  } else if (tube.section == "ellipse") {
+    tube.semi_axes = tube.semi_axes.value().cwiseProduct(factor);
+  } else if (tube.section == "rectangle") {
+    tube.sides = tube.sides.value().cwiseProduct(factor);
+  } else if (tube.section != "file") {  // a file is not scaled: the outline is used instead
+    throw std::logic_error("Channel/section " + tube.section + " cannot be scaled");
   }
   return tube;
 }
@@ -269,12 +279,16 @@ std::vector<double> Channel::lines() const {
 /// Returns the values of the longitudinal parameter u at which the curvature of the wall or of the centre line jumps.
 std::vector<double> Channel::kinks() const {
   std::vector<double> u;
-  if (factors_) u = {factors_->breaks.front(), factors_->breaks.back()};
-  if (own_.profile == "constriction" || own_.profile == "expansion") u = {-*own_.half_length, *own_.half_length};
-  if (own_.profile == "step") {
+  if (factors_) {
+    u = {factors_->breaks.front(), factors_->breaks.back()};
+  } else if (own_.profile == "constriction" || own_.profile == "expansion") {
+    u = {-*own_.half_length, *own_.half_length};
+  } else if (own_.profile == "step") {
     const double first = *own_.half_length - *own_.corner_radius, arc = pi / 2 * *own_.corner_radius;
     const double across = std::abs(*own_.depth) * height_ - 2 * *own_.corner_radius;
     for (const double v : {first, first + arc, first + arc + across, first + 2 * arc + across}) u.push_back(-v), u.push_back(v);
+  } else if (own_.profile != "straight") {
+    throw unknown_profile(own_.profile);
   }
   if (!own_.bend_radius) return u;
   u.push_back(parameter(own_.bend_start));

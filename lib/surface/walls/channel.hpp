@@ -30,8 +30,10 @@ class Channel {
   Section section(double s) const;
 
   const Outline& outline() const { return outline_; }
-  Outline outline(double s) const;      ///< outline of the cross-section at the arc length s of the centre line
-  TubeOptions tube(double s) const;     ///< options of a straight tube with the cross-section at the arc length s of the centre line
+  Outline outline(double s) const;  ///< outline of the cross-section at the arc length s of the centre line
+  /// Returns the options of a straight tube with the cross-section at the arc length s of the centre line. The cross-section `file` is not scaled,
+  /// because its flow is computed from outline(s).
+  TubeOptions tube(double s) const;
   double start() const { return start_; }
   double end() const { return end_; }
   bool repeats() const { return options_.period > 0; }

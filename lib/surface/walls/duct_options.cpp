@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <initializer_list>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "base/errors.hpp"
 #include "deck/section.hpp"
@@ -125,9 +127,12 @@ void ChannelOptions::check() const {
 }
 
 double TubeOptions::half_width() const {
-  if (radius) return *radius;
-  if (semi_axes) return semi_axes->minCoeff();
-  return sides ? sides->minCoeff() / 2 : std::numeric_limits<double>::infinity();
+  constexpr double not_known = std::numeric_limits<double>::infinity();
+  if (section == "circle") return radius.value_or(not_known);
+  if (section == "ellipse") return semi_axes ? semi_axes->minCoeff() : not_known;
+  if (section == "rectangle") return sides ? sides->minCoeff() / 2 : not_known;
+  if (section == "file") return not_known;
+  throw std::logic_error(list() + "/section " + section + " has no half width");
 }
 
 void TubeOptions::check() const {

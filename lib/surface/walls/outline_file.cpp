@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <stdexcept>
 
 #include "base/text_file.hpp"
 #include "base/errors.hpp"
@@ -115,6 +116,7 @@ Outline outline(const TubeOptions& options) {
   const Vec2 zero = Vec2::Zero();
   if (options.section == "circle") return Outline({Ellipse{zero, Vec2::Constant(options.radius.value())}});
   if (options.section == "ellipse") return Outline({Ellipse{zero, options.semi_axes.value()}});
+  if (options.section != "rectangle") throw std::logic_error(options.list() + "/section " + options.section + " has no outline");
   const Vec2 half = options.sides.value() / 2;
   const std::array<Vec2, 4> corner{Vec2(-half[0], -half[1]), Vec2(half[0], -half[1]), Vec2(half[0], half[1]), Vec2(-half[0], half[1])};
   std::vector<PlaneCurve> sides;

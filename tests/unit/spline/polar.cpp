@@ -50,7 +50,7 @@ TEST(Polar, ReproducesTheMeridianCoordinate) {
   const PolarMesh mesh{8, 6, PoleRule::plain};
   const Space s = space(mesh);
   Net net = Net::Zero(s.n_points, 3);
-  const auto at = anchors(mesh);
+  const auto at = polar_anchors(mesh);
   for (int a = 0; a < s.n_points; ++a) net(a, 0) = at[a].u;
   for (std::size_t e = 0; e < s.elements.size(); ++e)
     for (const double t : {0.0, 0.3, 1.0}) EXPECT_NEAR(value_at(s, net, {int(e), 0.4, t})[0], (s.elements[e].origin[1] * 6) + t, 1e-13);

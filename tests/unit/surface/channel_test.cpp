@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -49,6 +50,15 @@ TEST(Channel, HasTheRadiusOfItsProfile) {
   EXPECT_NEAR(slit.section(-0.9).factor[1], (1 + 0.2 - std::sqrt(0.04 - 0.01)) / 2, 1e-9);   // the arc of the rounded edge
   EXPECT_NEAR(slit.section(1.1).factor[1], (2 - 0.2 + std::sqrt(0.04 - 0.01)) / 2, 1e-9);
   EXPECT_NEAR(slit.smallest_radius(), 1, 1e-12);
+}
+
+TEST(Channel, ThrowsForAProfileOrSectionWithoutADefinition) {
+  TubeOptions options = constriction();
+  options.channel->profile = "zigzag";
+  EXPECT_THROW(Channel{options}, std::logic_error);
+  options = constriction(), options.section = "star";
+  EXPECT_THROW(options.half_width(), std::logic_error);
+  EXPECT_THROW(outline(options), std::logic_error);
 }
 
 TEST(Channel, FindsThePositionOfAPointInTheChannel) {

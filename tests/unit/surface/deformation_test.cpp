@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "base/indices.hpp"
+#include "surface/extremes.hpp"
 #include "surface/geometry.hpp"
 #include "surfaces.hpp"
 

@@ -1,4 +1,4 @@
-#include "surface/geometry.hpp"
+#include "surface/extremes.hpp"
 
 #include <numbers>
 #include <numeric>
@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "base/indices.hpp"
+#include "surface/geometry.hpp"
 #include "surfaces.hpp"
 
 namespace tanktread::surface {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 #include "surface/geometry.hpp"
 #include "surface/partition.hpp"
@@ -148,7 +149,7 @@ TEST(PolarShapes, RedCellHasTheVolumeOfItsOutline) {
 
 TEST(PolarShapes, CanBePartitioned) {
   const spline::Space space = spline::space({16, 8, PoleRule::bezier_transform});
-  const Partition p = partition(space, 3);
+  const Partition p = partition_of_points(space, 3, indices(space.n_points));
   std::vector<int> points(3, 0);
   for (const int owner : p.point_owner) ++points[owner];
   for (const int n : points) EXPECT_NEAR(n, space.n_points / 3., 0.1 * space.n_points);

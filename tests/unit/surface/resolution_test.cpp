@@ -19,7 +19,7 @@ namespace {
 double largest_surface_error(const std::vector<std::array<Resolution, 2>>& all) {
   double largest = 0;
   for (const auto& element : all)
-    for (const Resolution& along : element) largest = std::max(largest, along.errors.surface);
+    for (const Resolution& along : element) largest = std::max(largest, along.errors[Criterion::surface]);
   return largest;
 }
 
@@ -45,8 +45,8 @@ TEST(Resolution, AFourthPowerHasItsFourthDifferenceAlongOneDirectionOnly) {
     const int unit = tiles[e].width;
     if (tiles[e].x < 3 * unit || tiles[e].x > (n - 4) * unit || tiles[e].y < 3 * unit || tiles[e].y > (n - 4) * unit) continue;
     ++counted;
-    EXPECT_NEAR(found[e][0].errors.load, 24. / 384, 1e-9);  // round-off of values up to 4096
-    EXPECT_NEAR(found[e][1].errors.load, 0, 1e-9);
+    EXPECT_NEAR(found[e][0].errors[Criterion::load], 24. / 384, 1e-9);  // round-off of values up to 4096
+    EXPECT_NEAR(found[e][1].errors[Criterion::load], 0, 1e-9);
   }
   EXPECT_EQ(counted, 6 * 2 * 2);
 }
@@ -63,7 +63,8 @@ TEST(Resolution, HalvingElementsDividesTheErrorBySixteen) {
     return sum * (1 / static_cast<double>(found.size()));
   };
   const Errors coarse = errors(12), fine = errors(24);
-  for (const double order : {std::log2(coarse.load / fine.load), std::log2(coarse.fields / fine.fields)}) {
+  for (const Criterion criterion : {Criterion::load, Criterion::fields}) {
+    const double order = std::log2(coarse[criterion] / fine[criterion]);
     EXPECT_GT(order, 3.5);  // lines at extraordinary points, a fraction 1/n of all lines, have a lower order
     EXPECT_LT(order, 4.1);
   }
@@ -71,17 +72,17 @@ TEST(Resolution, HalvingElementsDividesTheErrorBySixteen) {
 
 TEST(Resolution, AFieldProportionalToPositionHasNoErrorAtExtraordinaryPoints) {
   // The field is q = x. Its fourth differences along the surface come from the parametrisation, which is not smooth at extraordinary points.
-  const auto largest = [](int n, double Errors::*which) {
+  const auto largest = [](int n, Criterion which) {
     const CubeMesh cube(n, spline::ExtraordinaryRule::catmull_clark);
     const Net rest = cube.sphere();
     const FieldAt place = field_of_net(cube.space, rest);
     double most = 0;
     for (const auto& element : resolution(cube.mesh, cube.space, rest, rest, place, [&](const spline::Site& site) { return place(site); }))
-      most = std::max({most, element[0].errors.*which, element[1].errors.*which});
+      most = std::max({most, element[0].errors[which], element[1].errors[which]});
     return most;
   };
-  EXPECT_LT(largest(16, &Errors::fields), largest(8, &Errors::fields) / 6);  // expected factor at an extraordinary point: 8
-  EXPECT_GT(largest(16, &Errors::load), largest(8, &Errors::load) / 3);      // estimate without the correction for the parametrisation
+  EXPECT_LT(largest(16, Criterion::fields), largest(8, Criterion::fields) / 6);  // expected factor at an extraordinary point: 8
+  EXPECT_GT(largest(16, Criterion::load), largest(8, Criterion::load) / 3);      // estimate without the correction for the parametrisation
 }
 
 TEST(Resolution, TheEstimatedErrorAfterMergingIsThatOfTheCoarserMesh) {
@@ -95,7 +96,8 @@ TEST(Resolution, TheEstimatedErrorAfterMergingIsThatOfTheCoarserMesh) {
   const auto errors = [](const spline::TMesh& mesh, const spline::Space& space, const Net& net, Errors Resolution::*which) {
     const FieldAt bump = [&](const spline::Site& site) { return Vec3(std::sin(3 * value(space, net, site)[0]), 0, 0); };
     double sum = 0;
-    for (const auto& element : resolution(mesh, space, net, net, bump)) sum += (element[0].*which).load + (element[1].*which).load;
+    for (const auto& element : resolution(mesh, space, net, net, bump))
+      sum += (element[0].*which)[Criterion::load] + (element[1].*which)[Criterion::load];
     return sum / static_cast<double>(spline::elements(mesh).tiles.size());
   };
   const double was = errors(coarse, before, rest, &Resolution::errors);
@@ -124,8 +126,8 @@ TEST(Resolution, OfAPolarMeshVanishesWithoutDeformationAndIsFiniteAtThePoles) {
     EXPECT_GT(found[e][1].length, 0.2);
     EXPECT_GT(found[e][0].length, at_pole ? 0.15 : 0.2);  // length of the side that is not the pole
     // sin(x) has the fourth difference 16 sin(d/2)^4 sin(x), which is below d^4, with d = pi/8 along a meridian and pi/6 around.
-    EXPECT_LT(found[e][0].errors.load, std::pow(3.15 / 6, 4) / 384);
-    EXPECT_LT(found[e][1].errors.load, 1.3 * std::pow(3.15 / 8, 4) / 384);  // rows are not exactly evenly spaced
+    EXPECT_LT(found[e][0].errors[Criterion::load], std::pow(3.15 / 6, 4) / 384);
+    EXPECT_LT(found[e][1].errors[Criterion::load], 1.3 * std::pow(3.15 / 8, 4) / 384);  // rows are not exactly evenly spaced
   }
 }
 
