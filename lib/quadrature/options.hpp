@@ -9,7 +9,7 @@ namespace tanktread::quadrature {
 
 /// Quadrature rule of layer integrals. `adaptive`: number of Gauss points chosen by Options::tolerance. `fixed`: Options::points x Options::points
 /// Gauss points, with the map of Lachat and Watson on panels that contain the target. `desingularised`: these Gauss points on all panels, with the
-/// singularity subtracted by identities.
+/// singularity subtracted by identities. What distinguishes the rules is in stokes/sums/layer_rule.hpp.
 enum class LayerRule { adaptive, fixed, desingularised };
 
 inline const std::vector<std::string> layer_rules{"adaptive", "fixed", "desingularised"};  ///< words for LayerRule in decks

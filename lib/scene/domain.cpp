@@ -189,8 +189,10 @@ void DomainOptions::reject_medium(const ParticleScene& particle_scene, Rejection
   const Chosen added("Domain/kind `" + kind + "`", "Domain/kind of an added medium");
   to.pair(particle_scene.tube.present, added, particle_scene.duct_choice(), "a duct encloses all of its fluid");
   to.pair(particle_scene.wall.present, added, "Wall", "a plane wall is a medium itself");
-  to.pair(particle_scene.quadrature.rule == quadrature::LayerRule::desingularised, added, "Quadrature/rule `desingularised`",
-          "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
+  to.pair(particle_scene.quadrature.rule != quadrature::LayerRule::adaptive, added,
+          {"Quadrature/rule `" + deck::word(quadrature::layer_rules, particle_scene.quadrature.rule) + "`",
+           "Quadrature/rule `fixed` or `desingularised`"},
+          "integrals close to its boundaries need quadrature to a tolerance; give `adaptive`");
   to.pair(!particle_scene.runs_in_time(), particle_scene.sought(), added,
           "a deformable particle next to a boundary moves away from it or towards it, so that no shape is steady");
   to.pair(particle_scene.particle.drift == "held", added, "Particle/drift `held`", "the distance from the boundaries must be free to change");

@@ -4,7 +4,8 @@
 
 #include <Eigen/Geometry>
 
-#include "stokes/kernels/assembly_kernel.hpp"
+#include "stokes/kernels/far_kernel.hpp"
+#include "stokes/kernels/identity_kernel.hpp"
 
 namespace tanktread::stokes {
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <stdexcept>
-#include <typeinfo>
 #include <utility>
 
 #include "base/indices.hpp"
 #include "stokes/closed_surface_identities.hpp"
+#include "stokes/sums/layer_rule.hpp"
 
 namespace tanktread::stokes {
 
@@ -48,11 +48,13 @@ void Layer::repeat(const PeriodicCell& cell, const Repetition& how) {
 
 /// Throws std::logic_error if the layer has a medium or is on a lattice.
 void Layer::require_no_medium() const {
-  if (typeid(*medium_) != typeid(LayerMedium)) throw std::logic_error("a layer has one medium, or is on a lattice");
+  if (!dynamic_cast<const UnboundedFluid*>(medium_.get())) throw std::logic_error("a layer has one medium, or is on a lattice");
 }
 
 void Layer::set_medium(const Medium& medium) {
   require_no_medium();
+  if (!corrects_near(sources_.surface.options.rule))
+    throw std::logic_error("a medium needs Quadrature/rule `adaptive`, because it integrates over its images by near-singular rules");
   if (shared()) throw std::logic_error("Layer::set_medium must be called before Layer::share, because the far sums of the medium are shared as well");
   use(medium.in_layer(sources_, by_clusters()));
 }

@@ -35,6 +35,10 @@ namespace tanktread::stokes {
 /// The quadrature rule `desingularised` uses only the Gauss nodes. This rule subtracts the singularity of the single layer by two identities of a
 /// closed surface: the integral of G n is 0, and the boundary integral identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the
 /// tangential density at the target. After Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012, who use a different flow.
+///
+/// Order of calls: set_reference(), set_symmetry(), set_medium() or repeat(), and share(), each only if it is needed; then set_shape() for each
+/// shape; then apply(), near() or assemble() for any number of densities. repeat() may be called again at any time, also after share(). After each
+/// call of these functions other than apply(), near() and assemble(), set_shape() must be called before the next result.
 class Layer {
  public:
   using Kernel = LayerKernel;
@@ -56,8 +60,8 @@ class Layer {
   void set_symmetry(const surface::Symmetry& symmetry);
 
   /// Sets the medium, by default unbounded fluid. All later shapes must be in it. Throws std::logic_error if the layer has a medium or a lattice
-  /// already, or if share() has divided its far sums. Call set_shape() afterwards. Blocks that are assembled for near control points do not include
-  /// what the medium adds.
+  /// already, if share() has divided its far sums, or if the quadrature rule does not correct panels close to a target (corrects_near()). Blocks that
+  /// are assembled for near control points do not include what the medium adds.
   void set_medium(const Medium& medium);
 
   /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again, and before
@@ -160,7 +164,7 @@ class Layer {
   void add_self(const LayerTargets& targets, Net& u);
 
   LayerSources sources_;
-  std::unique_ptr<LayerMedium> medium_ = std::make_unique<LayerMedium>();
+  std::unique_ptr<LayerMedium> medium_ = std::make_unique<UnboundedFluid>();
   std::optional<ClusterSums> clusters_;  // not set if far sums are direct
   std::vector<int> fundamental_sites_;   // targets in the tree of clusters
   int part_ = 0, parts_ = 1;             // part of the far sums that this rank computes, and number of parts, see share()

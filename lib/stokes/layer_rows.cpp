@@ -248,7 +248,7 @@ template <class Real>
 void assemble_rows(LayerSources& sources, LayerMedium& medium, std::span<const int> targets, const Net* at, Rows<Real>& a) {
   assemble_copies(sources, medium, targets, at, copies(medium), a);
   add_medium_rows(sources, medium, targets, at, a);
-  if (sources.desingularised()) subtract_identities(sources, targets, a);
+  if (!at && sources.desingularised()) subtract_identities(sources, targets, a);
 }
 
 }  // namespace

@@ -9,9 +9,10 @@
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
-#include "stokes/kernels/far_kernel.hpp"
 #include "stokes/kernels/kernels.hpp"
 #include "stokes/layer_surface.hpp"
+#include "stokes/sums/far_sums.hpp"
+#include "stokes/sums/layer_rule.hpp"
 
 namespace tanktread::stokes {
 
@@ -41,7 +42,8 @@ class LayerSources {
   bool on_reference(int e) const {
     return measure_ == Measure::reference || (measure_ == Measure::by_element && !reference_.per_current_area[static_cast<std::size_t>(e)]);
   }
-  bool desingularised() const { return single() && surface.options.rule == quadrature::LayerRule::desingularised; }
+  /// Returns whether the singularity is subtracted by identities of a closed surface, because there are no singular rules.
+  bool desingularised() const { return single() && !has_singular_rules(surface.options.rule); }
 
   /// See Layer::set_reference.
   void set_reference(const Net& unstressed, std::vector<bool> per_current_area);

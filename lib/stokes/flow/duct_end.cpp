@@ -7,6 +7,7 @@
 #include "quadrature/gauss.hpp"
 #include "stokes/kernels/far_kernel.hpp"
 #include "stokes/kernels/kernels.hpp"
+#include "stokes/sums/far_sums.hpp"
 
 namespace tanktread::stokes {
 namespace {

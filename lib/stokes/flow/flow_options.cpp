@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <stdexcept>
 
 #include "base/errors.hpp"
@@ -24,7 +23,11 @@ bool has_shear_rate(const std::string& type) {
 
 void FlowOptions::declare(deck::Section& section) {
   deck::Choice types{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "parabolic", "duct"};
-  if (registered) std::ranges::copy(registered->names(), std::back_inserter(types));
+  if (registered)
+    for (const std::string& name : registered->names()) {
+      if (std::ranges::count(types, name) > 0) throw std::logic_error("a registered flow has the name `" + name + "` of another Flow/type");
+      types.push_back(name);
+    }
   section.key("type", type, types,
               "ambient flow, that is the flow without particles; rate means Flow/shear rate. `simple shear`: velocity (rate x3, 0, 0); in "
               "a straight Tube the wall then moves with this velocity. `planar hyperbolic`: velocity (rate x1, 0, -rate x3). `uniaxial "

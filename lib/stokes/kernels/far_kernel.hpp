@@ -1,5 +1,5 @@
 #pragma once
-// Direct sums of the contributions of all nodes at each target, on plain arrays.
+// Direct sums of the contributions of all nodes at one block of targets, or at one target, on plain arrays.
 
 #include <array>
 #include <span>
@@ -61,18 +61,13 @@ Number coincident(const Number& x0, const Number& y0, const Number& z0) {
 /// (2^-40 of the target's distance from the origin), is skipped.
 void stokeslet_sum(const Charges& forces, const double* target, double* u);
 
-/// Computes the stokeslet_sum() of point forces for any number of targets k; result u[3 k + c].
-void far_sums(const Charges& forces, std::span<const Vec3> targets, double* u);
-
 /// Computes the stokeslet_sum() of a few point forces at one target x0[3]; result u[3]. If a better quadrature rule replaces these nodes, the caller
 /// subtracts this sum from the far sum.
 void node_sum(const Charges& forces, const double* x0, double* u);
 
-/// Compute the double layer (2.2), u_l = sum over the nodes k of (v_k - v0_l)_j T_ijm(x_k, x0_l) n_m, for far_block targets, any number of targets,
-/// or one target. In far_sum(), target[far_block c + l] is coordinate c = 0, 1, 2 of target l, and for c = 3, 4, 5 component c - 3 of the velocity v0
-/// there.
+/// Compute the double layer (2.2), u_l = sum over the nodes k of (v_k - v0_l)_j T_ijm(x_k, x0_l) n_m, for far_block targets or one target. In
+/// far_sum(), target[far_block c + l] is coordinate c = 0, 1, 2 of target l, and for c = 3, 4, 5 component c - 3 of the velocity v0 there.
 void far_sum(const Stresslets& nodes, const double* target, double* u);
-void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u);
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
 
 /// Kernels for TreeSum: each computes a sum over sources with several components, at far_block targets. Targets have the layout of stokeslet_sum().
@@ -80,9 +75,6 @@ void node_sum(const Stresslets& nodes, const double* x0, const double* v0, doubl
 void stresslet_sum(const Charges& points, const double* target, double* value);
 void normal_stress_sum(const Charges& points, const double* target, double* value);
 using KernelSum = void (*)(const Charges& points, const double* target, double* value);
-
-/// Computes a sum `kernel` that has three components per target, for any number of targets k; result u[3 k + c].
-void kernel_sums(KernelSum kernel, const Charges& points, std::span<const Vec3> targets, double* u);
 
 struct StokesletKernel {  ///< kernel for TreeSum: maps forces f to the velocities G f
   static constexpr int in = 3, out = 3;

@@ -1,4 +1,4 @@
-#include "stokes/kernels/assembly_kernel.hpp"
+#include "stokes/kernels/identity_kernel.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,7 @@
 #pragma once
+// Free-space kernels for one pair of points, and the number of kernel evaluations.
 
+#include <cmath>
 #include <numbers>
 
 #include "base/types.hpp"
@@ -14,10 +16,17 @@ constexpr double over_8_pi = 1 / (8 * std::numbers::pi);
 ///   G_ij = delta_ij/|r| + r_i r_j/|r|^3,   r = x - x0                     (2.1)
 ///
 /// Zero at r = 0. Units 1/length. Pozrikidis 1992, eq. 2.2.8.
-Mat3 stokeslet(const Vec3& r);
+inline Mat3 stokeslet(const Vec3& r) {
+  const double square = r.squaredNorm(), inverse = square > 0 ? 1 / std::sqrt(square) : 0;
+  return inverse * Mat3::Identity() + inverse * inverse * inverse * r * r.transpose();
+}
 
-/// Returns the stresslet contracted with a normal: T_ijk n_k = -6 r_i r_j (r.n)/|r|^5   (2.1). Units 1/length^2.
-Mat3 stresslet(const Vec3& r, const Vec3& n);
+/// Returns the stresslet contracted with a normal: T_ijk n_k = -6 r_i r_j (r.n)/|r|^5   (2.1). Zero at r = 0. Units 1/length^2.
+inline Mat3 stresslet(const Vec3& r, const Vec3& n) {
+  const double square = r.squaredNorm();
+  if (square == 0) return Mat3::Zero();
+  return -6 * r.dot(n) / (square * square * std::sqrt(square)) * r * r.transpose();
+}
 
 /// Number of kernel evaluations so far, by the kind of rule: far-field, near-singular and singular.
 struct Evaluations {

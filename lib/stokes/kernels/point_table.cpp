@@ -11,7 +11,7 @@ void tabulate(const quadrature::Rule& rule, int degree, PointTable& table) {
   table.bernstein.resize(static_cast<std::size_t>(4) * n * packs);
   table.weights.assign(packs, Pack{});
   double* const bernstein = numbers(table.bernstein.data());
-  double value[4][spline::max_degree + 1];
+  double value[4][spline::most_polynomial_degree + 1];
   for (int q = 0; q < packs * lanes; ++q) {
     const int from = q < rule.size() ? q : 0, k = q / lanes, l = q % lanes;
     spline::bernstein(degree, rule.s[from], value[0], value[2], nullptr);

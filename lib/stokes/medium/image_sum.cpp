@@ -4,6 +4,7 @@
 
 #include "base/indices.hpp"
 #include "stokes/kernels/image_kernel.hpp"
+#include "stokes/sums/far_sums.hpp"
 
 namespace tanktread::stokes {
 

@@ -36,6 +36,8 @@ class Lattice : public LayerMedium {
   const NodeVectors& nodes(const LayerSources& /*sources*/) const override { return node_; }
   bool rows_include_images() const override { return how_.assembled; }
   void add(LayerSources& sources, const LayerTargets& targets, Net& u) override;
+  /// Returns false: rows contain displaced images, and the remainder is added to all rows together by add_remainder().
+  bool add_row(LayerSources& /*sources*/, const Vec3& /*x0*/, std::vector<Mat3>& /*block*/) override { return false; }
   void add_remainder(const LayerSources& sources, std::span<const int> sites, Rows<double>& a) const override;
 
  private:

@@ -6,10 +6,6 @@ void LayerMedium::set_sources(const LayerSources& /*sources*/) {}
 
 void LayerMedium::share(int /*part*/, int /*parts*/) {}
 
-void LayerMedium::add(LayerSources& /*sources*/, const LayerTargets& /*targets*/, Net& /*u*/) {}
-
-bool LayerMedium::add_row(LayerSources& /*sources*/, const Vec3& /*x0*/, std::vector<Mat3>& /*block*/) { return false; }
-
 void LayerMedium::add_remainder(const LayerSources& /*sources*/, std::span<const int> /*sites*/, Rows<double>& /*a*/) const {}
 
 }  // namespace tanktread::stokes

@@ -37,8 +37,8 @@ struct LayerTargets {
   int first_image_row;                  ///< first row to which only displaced images contribute, see Layer::apply
 };
 
-/// Medium of a layer: the fluid and the boundaries that the kernels of the layer take into account. This class is unbounded fluid. A derived class
-/// adds the difference between its kernels and those of free space, in up to three ways:
+/// Medium of a layer: the fluid and the boundaries that the kernels of the layer take into account. A derived class adds the difference between its
+/// kernels and those of free space, in up to three ways:
 ///
 ///   displaced images   copies of the surfaces by lattice vectors, with the kernel of free space, which the layer sums and integrates like the
 ///                      surfaces themselves: node_shifts(), panel_shifts(), nodes(), wrapped()
@@ -73,17 +73,24 @@ class LayerMedium {
   virtual bool rows_include_images() const { return false; }
 
   /// Adds to rows of u, which are later divided by 8 pi, all terms except the terms of displaced images with the kernel of free space.
-  virtual void add(LayerSources& sources, const LayerTargets& targets, Net& u);
+  virtual void add(LayerSources& sources, const LayerTargets& targets, Net& u) = 0;
 
   /// Adds the terms of add() to assembled rows of the target x0: block[B] is the 3 x 3 block of control point B, before the division by 8 pi. Returns
   /// false if there are no such terms.
-  virtual bool add_row(LayerSources& sources, const Vec3& x0, std::vector<Mat3>& block);
+  virtual bool add_row(LayerSources& sources, const Vec3& x0, std::vector<Mat3>& block) = 0;
 
   /// Adds to assembled rows `a` of a single layer at `sites` the part of the kernel that rows_include_images() does not cover.
   virtual void add_remainder(const LayerSources& sources, std::span<const int> sites, Rows<double>& a) const;
 
  private:
   std::vector<Vec3> itself_{Vec3::Zero()};
+};
+
+/// Unbounded fluid, the medium of a layer by default. It adds nothing to the kernels of free space.
+class UnboundedFluid : public LayerMedium {
+ public:
+  void add(LayerSources& /*sources*/, const LayerTargets& /*targets*/, Net& /*u*/) override {}
+  bool add_row(LayerSources& /*sources*/, const Vec3& /*x0*/, std::vector<Mat3>& /*block*/) override { return false; }
 };
 
 }  // namespace tanktread::stokes

@@ -1,6 +1,7 @@
 #include "stokes/medium/periodic_sum.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -182,7 +183,9 @@ bool PeriodicSum::suits(const std::array<Vec3, 2>& extent) const {
 }
 
 Vec3 PeriodicSum::in_box(const Vec3& wrapped) const {
-  return (cell_.coordinates(wrapped) - low_).cwiseQuotient(length_) - Vec3::Constant(0.5);
+  const Vec3 s = (cell_.coordinates(wrapped) - low_).cwiseQuotient(length_) - Vec3::Constant(0.5);
+  assert(!(s.array().abs() > 0.5 + 1e-8).any() && "positions are wrapped(), and within the extent");  // true for NaN
+  return s;
 }
 
 /// Computes the velocities u at the nodes, stored in blocks of far_block nodes, from the source strengths q at the nodes.

@@ -1,6 +1,7 @@
 #include "stokes/sums/near_field.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -158,6 +159,7 @@ void NearField::list(const Vec3& target, std::span<const SelfPair> self_pairs, s
 }
 
 const PointTable& NearField::rule(int panel, const Vec3& target, std::span<const SelfPair> self_pairs) {
+  assert(bezier_ && "update() comes first");
   const NodeTable& t = *panels_[panel].table;
   const View& view = views_[panel];
   const bool across = !on_same_surface(panel, self_pairs);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "stokes/kernels/cluster_kernel.hpp"
 #include "stokes/kernels/far_kernel.hpp"
 #include "stokes/sums/clusters.hpp"
 #include "surface/symmetry.hpp"
@@ -39,6 +40,7 @@ class TreeSum {
   /// row i is values[Kernel::out i + c].
   template <class Kernel>
   void sum(const std::array<const double*, 6>& strengths, double* values) {
+    static_assert(has_cluster_kernel(Kernel::in) && has_cluster_kernel(Kernel::out));
     in_ = Kernel::in, out_ = Kernel::out, kernel_ = Kernel::sum;
     sum(strengths, values);
   }

@@ -3,9 +3,12 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
+
+#include "deck/document.hpp"
 
 namespace tanktread::stokes {
 namespace {
@@ -18,6 +21,24 @@ FlowOptions flow(const char* type, double rate = 1.5) {
 }
 
 const Vec3 x(0.3, -0.2, 0.7);
+
+struct NoKeys {
+  void declare(deck::Section&) {}
+};
+
+TEST(FlowOptions, RefuseARegisteredFlowWithTheNameOfAnotherType) {
+  for (const char* name : {"parabolic", "rotlet"}) {
+    UserFlows flows;
+    flows.add<NoKeys>(name, "a flow", [](const NoKeys&) { return std::shared_ptr<const UserFlow>(); });
+    FlowOptions options;
+    options.registered = &flows;
+    const auto read = [&] { deck::read_text("Tanktread: {type: quiescent}").declare(options); };
+    if (std::string(name) == "parabolic")
+      EXPECT_THROW(read(), std::logic_error);
+    else
+      EXPECT_NO_THROW(read());
+  }
+}
 
 TEST(AmbientFlow, EveryFlowIsIncompressibleAndAffine) {
   FlowOptions linear = flow("linear", 1), roll = flow("four-roll"), uniform = flow("uniform");

@@ -60,17 +60,19 @@ TEST(CrossLayer, IsTheIntegral) {
 }
 
 TEST(CrossLayer, IsItsAssembledRows) {
-  const Fixture s;
-  for (const auto kernel : {CrossLayer::Kernel::single_layer, CrossLayer::Kernel::double_layer}) {
-    CrossLayer layer(s.space, s.options, kernel);
-    layer.set_shape(s.x);
-    Net u(4, 3);
-    layer.apply(s.f, s.at, s.all, u);
-    Rows<double> rows;
-    layer.assemble(s.at, s.all, rows);
-    const Eigen::VectorXd product = rows * Eigen::Map<const Eigen::VectorXd>(s.f.data(), s.f.size());
-    EXPECT_LT((Eigen::Map<const Net>(product.data(), 4, 3) - u).norm(), 1e-13);
-  }
+  Fixture s;
+  for (const auto rule : {quadrature::LayerRule::adaptive, quadrature::LayerRule::fixed, quadrature::LayerRule::desingularised})
+    for (const auto kernel : {CrossLayer::Kernel::single_layer, CrossLayer::Kernel::double_layer}) {
+      s.options.rule = rule;
+      CrossLayer layer(s.space, s.options, kernel);
+      layer.set_shape(s.x);
+      Net u(4, 3);
+      layer.apply(s.f, s.at, s.all, u);
+      Rows<double> rows;
+      layer.assemble(s.at, s.all, rows);
+      const Eigen::VectorXd product = rows * Eigen::Map<const Eigen::VectorXd>(s.f.data(), s.f.size());
+      EXPECT_LT((Eigen::Map<const Net>(product.data(), 4, 3) - u).norm(), 1e-13) << deck::word(quadrature::layer_rules, rule);
+    }
 }
 
 TEST(CrossLayer, KeepsItsNearRulesForFurtherDensities) {

@@ -38,6 +38,12 @@ TEST(Stresslet, IsTheStressOfTheStokeslet) {
   EXPECT_LT((stresslet(r, n) * g - traction).norm(), 1e-8);
 }
 
+TEST(FreeSpaceKernels, AreZeroAtTheTarget) {
+  const Vec3 n = Vec3(1, 2, -2) / 3;
+  EXPECT_EQ(stokeslet(Vec3::Zero()), Mat3::Zero());
+  EXPECT_EQ(stresslet(Vec3::Zero(), n), Mat3::Zero());
+}
+
 struct Forces {
   std::vector<double> values;
   Charges view;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <stdexcept>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -230,6 +231,7 @@ struct UndividedMedium : Medium {
       for (Vec3& x : at) x[2] += 3;
       u(targets.far_rows, Eigen::all) += sources.direct_sum(sources.surface.node, at, rows_of(targets.f0, targets.far_rows));
     }
+    bool add_row(LayerSources& /*sources*/, const Vec3& /*x0*/, std::vector<Mat3>& /*block*/) override { return false; }
   };
   std::unique_ptr<LayerMedium> in_layer(const LayerSources& /*sources*/, bool /*by_clusters*/) const override { return std::make_unique<Sums>(); }
   bool contains(const Vec3& /*x*/) const override { return true; }
@@ -255,6 +257,14 @@ TEST(Medium, PartsOfTheSumsAddUp) {
       };
       EXPECT_LT(difference(part_of(0, 3) + part_of(1, 3) + part_of(2, 3), part_of(0, 1)), 1e-13);  // round-off
     }
+}
+
+TEST(Medium, NeedsNearSingularRules) {
+  const Surface& of = ellipsoid();
+  for (const auto rule : {quadrature::LayerRule::fixed, quadrature::LayerRule::desingularised}) {
+    Layer layer(single, of.space, of.space.collocation, {.rule = rule});
+    EXPECT_THROW(layer.set_medium(of.below(0.1)), std::logic_error);
+  }
 }
 
 }  // namespace plane_wall_test

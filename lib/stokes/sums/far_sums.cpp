@@ -1,7 +1,7 @@
+#include "stokes/sums/far_sums.hpp"
+
 #include <algorithm>
 #include <array>
-
-#include "stokes/kernels/far_kernel.hpp"
 
 namespace tanktread::stokes {
 namespace {
