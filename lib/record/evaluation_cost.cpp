@@ -65,9 +65,13 @@ bool coarsen(Scene& scene, int divisor) {
   return changed;
 }
 
+/// Returns the number of elements of all particles on the meshes of the deck. A particle whose shape comes from a file has the mesh of the file.
 double elements(const Scene& scene) {
   double sum = 0;
-  for (const ParticleKind& one : scene.particles) sum += one.surface.n_elements();
+  for (const ParticleKind& one : scene.particles) {
+    const auto& imported = one.particle.shape.imported;
+    sum += imported ? static_cast<double>(imported->space.elements.size()) : one.surface.n_elements();
+  }
   return sum;
 }
 

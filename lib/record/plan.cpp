@@ -240,8 +240,7 @@ output::Entries<std::string> plan(const Scene& scene, int ranks) {
     lines.emplace_back("time", "steady: nothing moves");
     return lines;
   }
-  std::vector<Member> all = make_members(scene);
-  check_apart(all, scene.domain.cell());
+  std::vector<Member> all = checked_members(scene);
   arrange(all);
   const std::unique_ptr<Body> stacked = make_stacked_body(all);
   if (stacked && scene.tube.present) stacked->wall = make_wall(scene, *stacked);

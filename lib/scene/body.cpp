@@ -1,16 +1,10 @@
 #include "scene/body.hpp"
 
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
-#include <Eigen/SVD>
-
 #include "base/errors.hpp"
-#include "base/formatted.hpp"
 #include "membrane/patch_forces.hpp"
 #include "membrane/wall_repulsion.hpp"
 #include "membrane/weight.hpp"
@@ -25,66 +19,6 @@
 #include "system/targets/collocation.hpp"
 
 namespace tanktread {
-
-namespace {
-
-std::string direction(const Vec3& v) {
-  for (int c = 0; c < 3; ++c)
-    if (v == Vec3::Unit(c)) return "x" + std::to_string(c + 1);
-  return formatted("(%.4g, %.4g, %.4g)", v[0], v[1], v[2]);
-}
-
-}  // namespace
-
-std::string FlowPlane::description() const {
-  const std::string plane = direction(axes.row(0)) + " " + direction(axes.row(2));
-  if (contains_flow) return "in the plane " + plane;
-  return "in the plane of the longest and the shortest axis, because the flow is not planar; tank-treading in the plane " + plane;
-}
-
-FlowPlane plane_normal_to(Vec3 normal) {
-  normal.normalize();
-  for (double& component : normal)
-    if (std::abs(component) < 1e-12) component = 0;  // removes round-off, so that normals along a coordinate axis are exact
-  const Vec3 first = std::abs(normal[0]) < 1 - 1e-9 ? Vec3::UnitX() : Vec3::UnitY();
-  const Vec3 a = (first - normal * normal.dot(first)).normalized();
-  Vec3 b = a.cross(normal).normalized();
-  Eigen::Index largest;
-  b.cwiseAbs().maxCoeff(&largest);
-  if (b[largest] < 0) b = -b;
-  FlowPlane plane;
-  plane.axes << a.transpose(), b.cross(a).transpose(), b.transpose();
-  plane.axes.array() += 0.0;  // removes negative zeros
-  return plane;
-}
-
-std::optional<Mat3> axes_of_shear(const Mat3& gradient) {
-  constexpr double most = 1e-6;  // relative rounding error of a gradient in a deck, above which the flow is no simple shear
-  const Eigen::JacobiSVD<Mat3> parts(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vec3 along = parts.matrixU().col(0), across = parts.matrixV().col(0), sizes = parts.singularValues();
-  if (!(sizes[0] > 0) || sizes[1] > most * sizes[0] || std::abs(along.dot(across)) > most) return {};
-  Mat3 axes;
-  axes << along.transpose(), along.cross(across).transpose(), across.transpose();
-  return axes;
-}
-
-FlowPlane flow_plane(const stokes::FlowOptions& flow) {
-  if (flow.type != "linear" || flow.gradient->isZero(0)) return {};
-  const Mat3& l = *flow.gradient;
-  // Matrix of the quadratic form |L n|^2 + |L^T n|^2 of a unit vector n, where L is the velocity gradient. The form is zero if the velocity has no
-  // component along n and does not change along n.
-  const Eigen::SelfAdjointEigenSolver<Mat3> varies(l.transpose() * l + l * l.transpose());
-  const Vec3 values = varies.eigenvalues();
-  if (values[0] < 1e-12 * values[2]) {
-    FlowPlane plane = plane_normal_to(varies.eigenvectors().col(0));
-    plane.of_shear = axes_of_shear(l);
-    return plane;
-  }
-  const Vec3 vorticity = axial_vector(l);
-  FlowPlane plane = vorticity.norm() > 1e-10 * l.norm() ? plane_normal_to(vorticity) : FlowPlane();
-  plane.contains_flow = false;
-  return plane;
-}
 
 namespace {
 
@@ -112,11 +46,10 @@ void lay_out(const ParticleScene& particle_scene, spline::TMesh mesh, Body& body
   if (particle_scene.surface.polar()) {
     const spline::PolarMesh polar = particle_scene.surface.polar_mesh();
     body.space = spline::space(body.mesh, polar.poles, polar.subdivisions);
-    if (particle_scene.adaptation.enabled && polar.poles == spline::PoleRule::bezier_transform)
+    if (particle_scene.adaptation.enabled && spline::replaces_elements(polar.poles))
       body.plain = std::make_shared<const spline::Space>(spline::space(body.mesh, spline::PoleRule::plain));
   } else {
-    const bool g1 = particle_scene.surface.extraordinary_points == "g1";
-    body.space = spline::space(body.mesh, g1 ? spline::ExtraordinaryRule::g1 : spline::ExtraordinaryRule::catmull_clark);
+    body.space = spline::space(body.mesh, particle_scene.surface.extraordinary_points.value());
   }
 }
 

@@ -9,6 +9,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/words.hpp"
+#include "record/files/file.hpp"
 #include "scene/memory.hpp"
 #include "scene/posts.hpp"
 #include "scene/scene.hpp"
@@ -75,11 +76,12 @@ void check_shared(const Scene& scene) {
 /// of the particle in the message.
 void check_several(const Scene& scene) {
   const std::vector<ParticleScene> alone = scene.particle_scenes();
-  const bool strong = alone.front().load_is_strong();
+  const bool strong = scene.first_deforming().load_is_strong();
   for (ParticleScene one : alone) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies only to deformable particles
     const std::string list = one.path();
-    if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load must be the same for all particles.");
+    if (!one.particle.rigid() && one.load_is_strong() != strong)
+      throw UserError(list + "/Membrane/load must be the same for all deforming particles.");
     if (one.particle.drift == "held" && alone.size() > 1)
       throw UserError(list + "/drift `held` is for a single particle: held at their places, particles would not move relative to each other.");
     try {
@@ -91,10 +93,23 @@ void check_several(const Scene& scene) {
       throw UserError(list + ": " + error.what());
     }
   }
-  const Columns columns = run_columns(scene);
-  for (const ParticleKind& kind : scene.particles)
-    if (std::ranges::find(columns.all(), kind.name, &Column::name) != columns.all().end())
-      throw UserError(kind.path() + " has the name of a series of the run: give it another name.");
+}
+
+/// Throws UserError if a particle or a post has the name of a series of the run, or if the copy of a file that the deck names would have the name of
+/// a file of the results. Series of particles and posts are stored under their names, and the copy of a particle's file is named after the particle.
+void check_names(const Scene& scene) {
+  Columns columns = run_columns(scene);
+  SteadyRow().add_columns(scene, columns);
+  const auto check_name = [&](const std::string& name, const std::string& path) {
+    if (std::ranges::find(columns.all(), name, &Column::name) != columns.all().end())
+      throw UserError(path + " has the name of a series of the run: give it another name.");
+  };
+  for (const ParticleKind& kind : scene.particles) check_name(kind.name, kind.path());
+  for (const Post& post : scene.posts) check_name(post.name, post.path());
+  for (const auto& [file, kept] : scene.files)
+    if (kept == output::surface_file)
+      throw UserError("The copy of " + file + " would have the name of a file of the results, " + kept +
+                      ": give another name to the particle, or to the file.");
 }
 
 /// Throws UserError if the mesh cannot have the element lengths that the adaptation requires.
@@ -111,14 +126,17 @@ void Scene::check() const {
   if (solvers.rigid_bodies == coupling::BodyEquation::first_kind) check_first_kind(*this);
   check_shared(*this);
   Rejections found;
-  reject_power(*this, first().load_is_strong(), found);
+  reject_power(*this, first_deforming().load_is_strong(), found);
   if (only_solids) {
     first().reject_surroundings(found);
-    return found.throw_if_any();
+    found.throw_if_any();
+  } else if (!named()) {
+    first().check(std::move(found));
+  } else {
+    check_several(*this);
+    found.throw_if_any();
   }
-  if (!named()) return first().check(std::move(found));
-  check_several(*this);
-  found.throw_if_any();
+  check_names(*this);
 }
 
 void ParticleScene::check(Rejections found) const {

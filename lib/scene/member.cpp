@@ -177,7 +177,7 @@ std::shared_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, co
   parameters.viscosity = particle_scene.flow.viscosity;
   for (Member& member : members) member.loads = make_loads(member.scene, *member.body, all.wall.get());
   parameters.particles = particles(members);
-  parameters.strong_load = particle_scene.load_is_strong();
+  parameters.strong_load = std::ranges::any_of(members, [](const Member& member) { return member.scene.load_is_strong(); });
   parameters.volume = particle_scene.volume;
   parameters.solvers = particle_scene.solvers;
   parameters.quadrature = particle_scene.quadrature;

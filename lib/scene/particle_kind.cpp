@@ -1,6 +1,7 @@
 // Keys of a particle: declarations, and rejections of combinations.
 
 #include "base/errors.hpp"
+#include "scene/posts.hpp"
 #include "scene/scene.hpp"
 
 namespace tanktread {
@@ -89,6 +90,7 @@ void ParticleOptions::declare(deck::Section& section) {
               "method of computing force and torque on a single particle with Particle/motion `prescribed`. `integral`: integral of the "
               "traction, as by Maestre et al. (2017). `reciprocal`: this integral corrected by the reciprocal theorem, which is more "
               "accurate; default with Quadrature/rule `adaptive`, the only rule that is accurate enough for it");
+  if (shape.shape == "cylinder") section.without_effect_except("shape", only_keys_of_post);  // take_posts() allows some of the keys
 }
 
 void ParticleKind::declare(deck::Section& section, const Registry& registry) {
@@ -125,6 +127,7 @@ struct InterfaceSection {
 
   void declare(deck::Section& section) {
     kind.interface.declare(section);
+    if (kind.surface.of_cylinder) section.without_effect_except("", only_keys_of_post);
     membrane::SurfactantOptions given;
     if (section.optional_section("surfactant", given,
                                  "an insoluble surfactant on the interface of a drop; without this section the interface is clean"))
@@ -134,26 +137,38 @@ struct InterfaceSection {
   }
 };
 
+/// Reader of the section Adaptation.
+struct AdaptationSection {
+  ParticleKind& kind;
+
+  void declare(deck::Section& section) {
+    kind.adaptation.declare(section);  // without `enabled`, also states that the other keys have no effect
+    if (kind.surface.of_cylinder && kind.adaptation.enabled) section.without_effect_except("", only_keys_of_post);
+  }
+};
+
 }  // namespace
 
 void ParticleKind::declare_sections(deck::Section& section, const Registry& registry) {
   surface.of_cylinder = particle.shape.shape == "cylinder";
   surface.fits_tightly = particle.rigid() && particle.shape.sized() && particle.shape.equivalent_radius() > 0.75 * duct_half_width;
   const bool deforms = !particle.rigid() && !surface.of_cylinder;
-  // removes the keys of Membrane that come from sections shared by several particles, because a particle without a membrane ignores them
+  // removes the sections that come from sections shared by several particles and that this particle cannot have, because it ignores them
   if (!deforms) section.leave_out("Membrane");
+  if (surface.of_cylinder) section.leave_out("Interface"), section.leave_out("Adaptation");
   membrane_given = section.given("Membrane");
   if (MembraneSection list{*this, registry}; deforms || membrane_given)
     section.section("Membrane", list, "mechanical properties of the particle's membrane or interface");
   if (particle.shape.shape != "file") section.section("Surface", surface, "spline space and mesh of the particle's surface");
   else
     refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
-           "the file determines the spline space");
-  InterfaceSection list{*this, registry};
-  section.section("Interface", list, "the interface of a drop: motion of the mesh along the interface, and surfactant");
+           unread::two_meshes);
+  InterfaceSection of_interface{*this, registry};
+  section.section("Interface", of_interface, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
   complete_film_resolution(false);  // before the section is read, so that the deck's values contain the default
-  section.section("Adaptation", adaptation, "refinement and coarsening of the particle's surface mesh");
+  AdaptationSection of_adaptation{*this};
+  section.section("Adaptation", of_adaptation, "refinement and coarsening of the particle's surface mesh");
 }
 
 void ParticleKind::complete_film_resolution(bool films) {
@@ -165,7 +180,7 @@ void ParticleKind::complete_film_resolution(bool films) {
 void ParticleKind::reject(const ParticleScene& particle_scene, Rejections& to) const {
   const bool drop = membrane.fluid_interface(), strong = particle_scene.load_is_strong(), rigid = particle.rigid();
   const bool desingularised = particle_scene.quadrature.rule == quadrature::LayerRule::desingularised;
-  const bool degenerate = surface.polar() && surface.poles == "plain";
+  const bool degenerate = !surface.has_normal_at_poles();
   const bool constrained = particle_scene.volume.constraint != coupling::VolumeConservation::none;
   const std::string plain = "Surface/poles `plain`";
   const Chosen law("Membrane/law `" + membrane.law + "`", "Membrane/law of an elastic membrane");
@@ -186,7 +201,7 @@ void ParticleKind::reject(const ParticleScene& particle_scene, Rejections& to) c
           {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"},
           "only the interface of a drop can have a surfactant");
   to.pair(surfactant && strong, "Interface/surfactant", "Membrane/load `strong`", "its load is by virtual work, in the form `weak` only");
-  const bool pieces = surface.polar() && surface.poles == "bezier transform";
+  const bool pieces = surface.replaces_elements();
   to.pair(adaptation.enabled && pieces && (surfactant || particle_scene.maxwell_membrane() || !fields.empty() || particle_scene.contact.limiter),
           "Adaptation/enabled with fields on surfaces or Contact/limiter", "Surface/poles `bezier transform`",
           "the elements at these poles are not those of the mesh that adapts; give `c1`");

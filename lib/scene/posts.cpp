@@ -1,8 +1,10 @@
 #include "scene/posts.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -14,28 +16,37 @@ namespace {
 
 bool is_post(const ParticleKind& kind) { return kind.particle.shape.shape == "cylinder"; }
 
-/// Throws UserError if the deck sets a key that has no meaning for a post.
-void check_keys(const ParticleKind& kind, const Post& post) {
-  const ParticleOptions& particle = kind.particle;
-  const auto refuse_key = [&](const char* key, bool given) {
-    refuse(given, post.path(key), "Particle/shape `cylinder`", "a cylinder is a fixed post, which does not move or deform");
-  };
-  for (const auto& [key, given] : {std::pair("semi-axes", particle.shape.semi_axes.has_value()), std::pair("file", particle.shape.file.has_value())})
-    refuse(given, post.path(key), "Particle/shape `cylinder`", "its radius determines the size of a cylinder");
-  refuse_key("motion", particle.motion != Motion::deforming);
-  refuse_key("velocity", particle.velocity.has_value());
-  refuse_key("angular velocity", particle.angular_velocity.has_value());
-  refuse_key("force", particle.force.has_value());
-  refuse_key("torque", particle.torque.has_value());
-  refuse_key("density difference", particle.density_difference.has_value());
-  refuse_key("viscosity ratio", particle.viscosity_ratio != 1);
-  refuse_key("drift", particle.drift.has_value());
-  refuse_key("forces", particle.forces.has_value());
-  refuse_key("initial shape", particle.shape.initial.has_value());
-  refuse_key("orientation", !particle.shape.orientation.isZero(0));
-  refuse_key("copies", kind.copies.present);
-  refuse_key("Membrane", kind.membrane_given);
-  refuse_key("Adaptation/enabled", kind.adaptation.enabled);
+/// Keys of the section of a post that a post can have. The key `shape` is set on every post.
+constexpr const char* keys_of_post[] = {"radius", "axis", "center"};
+
+/// Returns true if the sentence `idle` of Section::idle_keys is about the key or section at `path`.
+bool is_about(const std::string& idle, const std::string& path) {
+  return idle.starts_with(path + "/") || idle.starts_with(path + " has no effect");
+}
+
+/// Moves the sentences about keys that a post cannot have from `idle`, the keys without effect in the deck, to `wrong`. Removes the sentences about
+/// keys that a post can have. Keys of Surface stay in `idle`, because a post often takes them from Particles/defaults.
+void check_keys(const Post& post, std::vector<std::string>& idle, std::vector<std::string>& wrong) {
+  std::vector<std::string> left;
+  for (std::string& sentence : idle) {
+    const auto is_of = [&](const char* key) { return is_about(sentence, post.path(key)); };
+    const bool of_post = is_of("") || is_of("Interface") || is_of("Adaptation");
+    if (!of_post || is_of("Surface")) left.push_back(std::move(sentence));
+    else if (std::ranges::none_of(keys_of_post, is_of)) wrong.push_back(std::move(sentence));
+  }
+  idle = std::move(left);
+}
+
+/// Adds a sentence to `wrong` for each section that the deck gives although a post cannot have it.
+void check_sections(const ParticleKind& kind, const Post& post, std::vector<std::string>& wrong) {
+  const std::pair<const char*, bool> sections[] = {{"initial shape", kind.particle.shape.initial.has_value()},
+                                                   {"copies", kind.copies.present},
+                                                   {"Membrane", kind.membrane_given},
+                                                   {"Interface/surfactant", kind.surfactant.has_value()},
+                                                   {"Interface/fields", !kind.fields.empty()}};
+  for (const auto& [section, given] : sections)
+    if (given)
+      wrong.push_back(contradiction(post.path(section), "Particle/shape `cylinder`", "a cylinder is a fixed post, which does not move or deform"));
 }
 
 Post post_of(const ParticleKind& kind) {
@@ -43,7 +54,6 @@ Post post_of(const ParticleKind& kind) {
   Post post{kind.name, shape.radius.value(), 0, shape.center, kind.surface.azimuthal_elements.value_or(24), kind.surface.axial_elements};
   if (!shape.axis) throw UserError("Particle/shape `cylinder` needs " + post.path("axis") + ": x1, x2 or x3.");
   post.axis = shape.axis->at(1) - '1';
-  check_keys(kind, post);
   return post;
 }
 
@@ -67,7 +77,9 @@ double distance(const Post& post, const Post& other, const stokes::PeriodicCell&
 
 std::string Post::path(const std::string& key) const {
   const std::string list = name.empty() ? "Particle" : "Particles/" + name;
-  return key.empty() ? list : (name.empty() && (key == "Membrane" || key == "Adaptation/enabled") ? "" : list + "/") + key;
+  if (key.empty()) return list;
+  const bool outside = name.empty() && std::isupper(static_cast<unsigned char>(key.front())) != 0;  // Membrane is next to Particle, not in it
+  return outside ? key : list + "/" + key;
 }
 
 Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell) {
@@ -79,8 +91,14 @@ Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell) {
 }
 
 void take_posts(Scene& scene) {
-  for (const ParticleKind& kind : scene.particles)
-    if (is_post(kind)) scene.posts.push_back(post_of(kind));
+  std::vector<std::string> wrong;
+  for (const ParticleKind& kind : scene.particles) {
+    if (!is_post(kind)) continue;
+    const Post& post = scene.posts.emplace_back(post_of(kind));
+    check_keys(post, scene.idle_keys, wrong);
+    check_sections(kind, post, wrong);
+  }
+  require_none(std::move(wrong));
   std::erase_if(scene.particles, is_post);
   scene.only_solids = scene.particles.empty();
   if (!scene.only_solids) return;

@@ -30,7 +30,13 @@ struct Post {
 /// Returns the lattice vector along the axis of a post, in units of length; zero if no lattice vector is along the axis.
 Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell);
 
-/// Moves the cylinders from the particles of a scene to its posts. Throws UserError if a cylinder has keys that only particles have.
+/// Reason why most keys of a particle have no effect on a cylinder, for Section::without_effect.
+constexpr const char* only_keys_of_post =
+    "on a post (Particle/shape `cylinder`), which has only the keys radius, axis and center, and the keys azimuthal elements and axial elements of "
+    "Surface";
+
+/// Moves the cylinders from the particles of a scene to its posts. Throws UserError if the deck gives a cylinder another key than those that a post
+/// can have. Such keys are the keys of the cylinder in Scene::idle_keys; sentences about a cylinder are removed from there.
 void take_posts(Scene& scene);
 
 /// Throws UserError if a post does not fit into the cell, or if it touches a wall or another post. If there are no posts, throws UserError if the

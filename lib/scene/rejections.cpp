@@ -7,6 +7,7 @@
 #include "scene/scene.hpp"
 #include "scene/searches/searches.hpp"
 #include "scene/tube.hpp"
+#include "stokes/flow/ambient_flow.hpp"
 
 namespace tanktread {
 
@@ -24,13 +25,23 @@ void reject_registered(const ParticleScene& particle_scene, Rejections& to) {
           {particle_scene.particle.choice(), "Particle/motion `prescribed` or `free`"}, "only deformable particles have surface fields");
 }
 
+/// Adds to the table the sections and keys that Scene::declare refuses while it reads a deck, because they cannot be read together.
+void reject_unread(Rejections& to) {
+  if (!to.every()) return;
+  to.pair(true, "Channel", "Tube", unread::two_ducts);
+  to.pair(true, "Tube/periodic length", "Domain", unread::two_periods);
+  to.pair(true, "Particles", "Particle, Membrane, Surface, Interface or Adaptation", unread::one_and_several);
+  to.pair(true, "Surface", "Particle/shape `file`", unread::two_meshes);
+}
+
 }  // namespace
 
 void reject_power(const SharedOptions& shared, bool strong, Rejections& to) {
   const stokes::FlowOptions& flow = shared.flow;
   const bool asked = shared.output.power_balance, plates = shared.wall.solid && shared.wall.distance;
   const std::string word = "Output/power balance";
-  to.pair(asked && flow.type == "parabolic" && shared.domain.present && !plates, word,
+  const bool quadratic = asked && flow.type != "duct" && !stokes::AmbientFlow(flow).quadratic_direction().isZero(0);
+  to.pair(quadratic && shared.domain.present && !plates, word,
           {"Domain and " + flow.choice(), "Domain and Flow/type `parabolic`"},
           "the pressure of that flow does work on the flow that particles cause through a cell, which is included only between two plates");
   to.pair(asked && !shared.tube.present && flow.user && !flow.user->affine(), word, {flow.choice(), "Flow/type of an added flow"},
@@ -53,6 +64,7 @@ void ParticleScene::reject(Rejections& to) const {
   reject_surroundings(to);
   reject_registered(*this, to);
   if (to.every()) {
+    reject_unread(to);
     reject_power(*this, load_is_strong(), to);
     flow.reject(to);
     membrane.reject(to);

@@ -102,8 +102,7 @@ std::vector<ParticleKind> declare_particles(deck::Section& root, ParticleKind& o
   const bool several = root.given("Particles");
   if (several) {
     for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
-      refuse(root.given(list), std::string(list), "Particles",
-             "give it for each particle in Particles/<name>, or for all particles in Particles/defaults");
+      refuse(root.given(list), std::string(list), "Particles", unread::one_and_several);
   } else {
     root.section("Particle", only.particle, "resting shape, initial shape and motion of the particle");
     only.declare_sections(root, registry);
@@ -128,7 +127,7 @@ void Scene::declare(deck::Section& root) {
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
   surface::TubeOptions documented;
   ChannelSection channel{root.given("Channel") ? tube : documented};
-  refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one duct; give one of them");
+  refuse(tube.present && root.given("Channel"), "Channel", "Tube", unread::two_ducts);
   if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;
   ParticleKind only;  // options of the particle in the section Particle
@@ -139,7 +138,7 @@ void Scene::declare(deck::Section& root) {
   constexpr const char* cell = "periodic cell of fluid and particles, whose lattice the flow convects; nothing is periodic without this section";
   domain.present = root.optional_section("Domain", domain, cell) && !domain.medium;
   if (tube.present && !tube.channel && tube.periodic_length) {
-    refuse(domain.present, "Tube/periodic length", "Domain", "both give the period along x1");
+    refuse(domain.present, "Tube/periodic length", "Domain", unread::two_periods);
     domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
   }
   if (several || domain.present || root.documenting())
@@ -205,8 +204,14 @@ bool ParticleScene::reciprocal_forces() const {
 }
 
 Chosen SharedOptions::sought() const {
-  const Search chosen = search();
-  return {chosen == Search::steady ? "Steady" : chosen == Search::periodic ? "Periodic" : "Spectrum", any_search};
+  const char* section = any_search;
+  switch (search()) {
+    case Search::none: break;
+    case Search::steady: section = "Steady"; break;
+    case Search::periodic: section = "Periodic"; break;
+    case Search::spectrum: section = "Spectrum"; break;
+  }
+  return {section, any_search};
 }
 
 std::shared_ptr<const stokes::Medium> SharedOptions::medium() const {
@@ -221,23 +226,30 @@ double SharedOptions::next_snapshot(double now) const {
   return next < time.final_time * (1 - 1e-12) ? next : time.final_time;
 }
 
-ParticleScene Scene::of(const ParticleKind& kind) const {
-  ParticleScene particle_scene(*this, kind);
-  particle_scene.solvers.rigid_bodies = by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind;
+Scene::Common Scene::common() const {
+  Common all{by_tractions() ? coupling::BodyEquation::first_kind : coupling::BodyEquation::second_kind, {}};
   const auto sized = [](const ParticleKind& one) { return one.particle.shape.sized(); };
-  if (std::ranges::all_of(particles, sized)) particle_scene.least_radius = least_radius();
+  if (std::ranges::all_of(particles, sized)) all.least_radius = least_radius();
+  return all;
+}
+
+ParticleScene Scene::of(const ParticleKind& kind, const Common& common) const {
+  ParticleScene particle_scene(*this, kind);
+  particle_scene.solvers.rigid_bodies = common.rigid_bodies;
+  particle_scene.least_radius = common.least_radius;
   return particle_scene;
 }
 
 std::vector<ParticleScene> Scene::particle_scenes() const {
+  const Common of_all = common();
   std::vector<ParticleScene> scenes;
-  for (const ParticleKind& kind : particles) scenes.push_back(of(kind));
+  for (const ParticleKind& kind : particles) scenes.push_back(of(kind, of_all));
   return scenes;
 }
 
 ParticleScene Scene::first_deforming() const {
   const auto found = std::ranges::find_if(particles, [](const ParticleKind& kind) { return !kind.particle.rigid(); });
-  return of(found == particles.end() ? particles.front() : *found);
+  return of(found == particles.end() ? particles.front() : *found, common());
 }
 
 std::string_view why_in_system(const SharedOptions& shared, const ParticleKind& kind) {
@@ -272,7 +284,13 @@ bool Scene::by_tractions() const {
 
 double Scene::least_radius() const {
   double least = std::numeric_limits<double>::infinity();
-  for (const ParticleKind& kind : particles) least = std::min(least, kind.particle.shape.equivalent_radius());
+  const spline::SplineSurface* before = nullptr;  // surface from a file, which copies of a particle share
+  for (const ParticleKind& kind : particles) {
+    const surface::ParticleShape& shape = kind.particle.shape;
+    if (shape.imported && shape.imported.get() == before) continue;
+    before = shape.imported.get();
+    least = std::min(least, shape.equivalent_radius());
+  }
   return least;
 }
 

@@ -1,6 +1,13 @@
 #pragma once
 // All options of a run, as read from its deck.
 //
+// How wrong options are reported:
+//   range of a key, check()  a value is wrong by itself, a key is missing, or numbers do not fit each other: throws UserError
+//   Rejections::pair         two choices exclude each other: in a function reject...(), so that `--rejections` lists the combination
+//   refuse()                 two keys exclude each other: two keys for one quantity, a key of another choice of its own section, or sections that
+//                            cannot be read together. Sections that cannot be read together are also listed by reject_unread() (scene/rejections.cpp)
+//   idle_keys                a key has no effect: the run warns. On a post such a key is an error, see take_posts()
+//
 // The types that describe a particle. Each contains the type above it, or is built from it:
 //   ParticleOptions    keys of the section Particle (scene/particle_kind.hpp)
 //   ParticleKind       all sections of one particle; Scene::particles has one per particle (scene/particle_kind.hpp)
@@ -112,7 +119,8 @@ struct ParticleScene : SharedOptions, ParticleKind {
   ParticleScene() = default;
   ParticleScene(const SharedOptions& shared, const ParticleKind& kind) : SharedOptions(shared), ParticleKind(kind) {}
 
-  std::optional<double> least_radius;  ///< smallest radius R_C of all particles, by which gaps are divided; not set for a particle without a Scene
+  /// smallest radius R_C of all particles, by which gaps are divided; not set for a particle without a Scene, or if the size of a particle is unknown
+  std::optional<double> least_radius;
 
   /// Throws UserError if options of this particle contradict each other or shared options, or if the problem is too large. Scene::check() checks the
   /// shared options before. `found`: rejected combinations of the whole scene.
@@ -158,7 +166,7 @@ struct Scene : SharedOptions {
 
   /// Reads the deck. Sections are declared in an order in which each may use the sections before it: Flow, Tube and Channel before Surface, because
   /// the default mesh depends on the width of the duct; Domain before Solvers. Options that follow from several sections are set at the end
-  /// (complete_derived). Then files are read and copies expanded, see prepare() in app/program.cpp; check() comes last.
+  /// (complete_derived). Then files are read and copies expanded, see prepare() in app/deck_files.cpp; check() comes last.
   void declare(deck::Section& root);
 
   /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
@@ -170,7 +178,7 @@ struct Scene : SharedOptions {
 
   /// Return the scenes of all particles, and of the first one. In them, Solvers/rigid bodies is not `auto`.
   std::vector<ParticleScene> particle_scenes() const;
-  ParticleScene first() const { return of(particles.front()); }
+  ParticleScene first() const { return of(particles.front(), common()); }
   /// Returns the scene of the first particle that deforms, or the first particle if all are rigid.
   ParticleScene first_deforming() const;
   bool by_tractions() const;  ///< returns true if the unknowns of rigid bodies are tractions, by the integral equation of the first kind (2.40)
@@ -191,8 +199,23 @@ struct Scene : SharedOptions {
   bool lands_on_snapshots() const;   ///< true if steps are shortened so that they end at snapshots
 
  private:
-  ParticleScene of(const ParticleKind& kind) const;
+  /// Data that follow from all particles and that each ParticleScene contains.
+  struct Common {
+    coupling::BodyEquation rigid_bodies;
+    std::optional<double> least_radius;
+  };
+  Common common() const;
+  ParticleScene of(const ParticleKind& kind, const Common& common) const;
 };
+
+/// Reasons why sections or keys cannot be read together. Scene::declare refuses them while it reads a deck, and reject_unread()
+/// (scene/rejections.cpp) lists them.
+namespace unread {
+constexpr const char* two_ducts = "a scene has one duct; give one of them";
+constexpr const char* two_periods = "both give the period along x1";
+constexpr const char* one_and_several = "give it for each particle in Particles/<name>, or for all particles in Particles/defaults";
+constexpr const char* two_meshes = "the file determines the spline space";
+}  // namespace unread
 
 /// Returns true if the key at this path may change when a run is resumed, because the data of the checkpoint do not depend on it. Keys of sections
 /// that this function does not name may not change.

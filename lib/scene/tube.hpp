@@ -29,7 +29,7 @@ std::unique_ptr<coupling::Tube> make_tube(const SharedOptions& shared, const Bod
 
 /// Data of the tube for one row of the results. For a periodic train, pressure drops refer to one period.
 struct TubeRow {
-  double pressure_drop = 0, gap = 0, flow_rate = 0, channel_pressure_drop = 0, channel_extra_pressure_drop = 0;
+  double pressure_drop = not_set, gap = not_set, flow_rate = not_set, channel_pressure_drop = not_set, channel_extra_pressure_drop = not_set;
   coupling::Tube::Checks checks;
   void add_columns(const SharedOptions& shared, Columns& to) const;
 };

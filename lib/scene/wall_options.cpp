@@ -63,7 +63,6 @@ void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<sto
   if (!distance)
     throw UserError(
         "Flow/pressure gradient needs a second wall, at Wall/distance, because a single wall does not balance the force of the pressure.");
-  refuse(flow.type == "parabolic", "Flow/pressure gradient", "Flow/type `parabolic`", "that flow already has a pressure gradient");
   if (std::abs(n.dot(*flow.pressure_gradient)) > 1e-9 * flow.pressure_gradient->norm())
     throw UserError(
         "Flow/pressure gradient must be along the walls, because a gradient across them drives no flow, but has a component along "
@@ -79,6 +78,8 @@ void WallOptions::reject(const ParticleScene& particle_scene, Rejections& to) co
           "the wall of a duct is given in a section Tube or Channel");
   to.pair(particle_scene.tube.present, "Wall", particle_scene.duct_choice(),
           "a plane wall is represented by images, which need a fluid without other walls");
+  to.pair(particle_scene.flow.pressure_gradient && solid && particle_scene.flow.type == "parabolic", "Flow/pressure gradient",
+          "Flow/type `parabolic`", "that flow already has a pressure gradient");
   to.pair(particle_scene.quadrature.rule != quadrature::LayerRule::adaptive, "Wall",
           {"Quadrature/rule `" + deck::word(quadrature::layer_rules, particle_scene.quadrature.rule) + "`",
            "Quadrature/rule `fixed` or `desingularised`"},

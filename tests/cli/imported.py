@@ -36,6 +36,27 @@ def a_written_surface_can_start_the_next_run():
     check(series("second", "n_control_points")[0] == 98, "control points")
 
 
+SEVERAL = """
+Tanktread:
+  Flow: { type: simple shear }
+  Particles:
+    %s: { shape: file, file: %s, Membrane: { law: Skalak, capillary number: 0.3 } }
+    ball: { center: [0, 0, 4], Surface: { elements per side: 6 } }
+  Time: { scheme: bs3, final time: 0.05 }
+"""
+
+
+def the_timed_evaluation_counts_the_elements_of_a_file():
+    check("kernel evaluations" in run(deck(SEVERAL % ("red", _written())), "--check").stdout, "no timed evaluation")
+
+
+def a_particle_from_a_file_must_not_be_named_surface():
+    """The copy of its file would have the name of a file of the results."""
+    file = _written()
+    refused(["surface.iga", "another name"], deck(SEVERAL % ("surface", file)))
+    run(deck(SEVERAL % ("red", file)), "--check", "--quiet")
+
+
 def the_error_of_a_mesh_from_a_file_cannot_be_estimated():
     refused(["Accuracy", "Particle/shape `file`", "not refined"], deck(IMPORT % _written()), "--accuracy", "taylor_inertia=1%")
 

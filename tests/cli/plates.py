@@ -181,6 +181,7 @@ Tanktread:
   Time: {final time: 0.1}
 """
     refused(["Particles/drop crosses Particles/post"], deck(text), "--check")
+    refused(["Particles/drop crosses Particles/post"], "deck.yaml", "--check", "--quiet")  # without the timed evaluation
     run("deck.yaml", "--check", "--set", "Particles/drop/center=[7.06, 0, 0]")
     refused(["cylinder", "drift `held`"], "deck.yaml", "--set", "Particles/drop/center=[3, 3, 0]", "--set", "Particles/drop/drift=held")
     refused(["Particles/drop crosses Particles/post"], "deck.yaml", "--check", "--set", "Particles/drop/center=[7.04, 0, 0]")
@@ -305,6 +306,8 @@ def impossible_decks_are_rejected():
     refused(["Particle/velocity", "cylinder"], deck(POST), "--set", "Particle/velocity=[1, 0, 0]")
     refused(["Particle/semi-axes", "cylinder"], deck(POST), "--set", "Particle/semi-axes=[1, 1, 2]")
     refused(["Particle/drift", "cylinder"], deck(POST), "--set", "Particle/drift=held")
+    refused(["Interface/relaxation", "cylinder"], deck(POST), "--set", "Interface/relaxation=2")
+    refused(["Interface/surfactant", "cylinder"], deck(POST), "--set", "Interface/surfactant/elasticity number=0.2")
 
 
 main()

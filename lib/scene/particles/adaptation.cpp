@@ -166,7 +166,7 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction, con
 /// Removes the marks of T-mesh elements with a side at a pole, if the poles are degenerate or `Adaptation/indicator` is not `error`. As in Maestre et
 /// al. (2017), such elements are then refined only if the refinement of a neighbour requires it.
 void leave_poles(const ParticleScene& particle_scene, const Body& body, std::vector<spline::Mark>& marks) {
-  if (body.mesh.lattice->pad == 0 || (particle_scene.surface.poles != "plain" && particle_scene.adaptation.indicator == "error")) return;
+  if (body.mesh.lattice->pad == 0 || (particle_scene.surface.has_normal_at_poles() && particle_scene.adaptation.indicator == "error")) return;
   const spline::Tiling tiling = spline::elements(body.mesh);
   const auto degenerate = [&](const spline::Mark& mark) {
     return spline::is_degenerate(*body.mesh.lattice, tiling.tiles[static_cast<size_t>(mark.element)]);

@@ -32,14 +32,6 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the particles of the scene. Throws UserError if they overlap or cross a post at the start.
-std::vector<Member> checked_members(const Scene& scene) {
-  std::vector<Member> members = make_members(scene);
-  check_apart(members, scene.domain.cell());
-  check_outside_of_posts(scene, members);
-  return members;
-}
-
 class CoupledParticles : public ParticleSystem {
  public:
   CoupledParticles(const Scene& scene, coupling::Ranks& ranks, Phases& phases)

@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "scene/solids.hpp"
 #include "surface/closest_points.hpp"
 
 namespace tanktread {
@@ -230,8 +231,7 @@ void check_not_nested(const std::vector<Member>& members, const std::vector<Net>
   }
 }
 
-}  // namespace
-
+/// Throws UserError if two particles overlap in their initial shapes, or if one is inside another.
 void check_apart(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell) {
   if (members.size() == 1 && !cell) return;
   std::vector<Net> x;
@@ -246,6 +246,15 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
                     formatted(", which overlaps its own image near [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
   throw UserError(name(found.first) + " and " + name(found.second) +
                   formatted(" overlap at the start, near [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
+}
+
+}  // namespace
+
+std::vector<Member> checked_members(const Scene& scene) {
+  std::vector<Member> members = make_members(scene);
+  check_apart(members, scene.domain.cell());
+  check_outside_of_posts(scene, members);
+  return members;
 }
 
 void Nearest::add_columns(Columns& to) const {

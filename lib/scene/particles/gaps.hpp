@@ -22,8 +22,9 @@ struct Nearest {
   void add_columns(Columns& to) const;
 };
 
-/// Throws UserError if two particles overlap in their initial shapes, or if one is inside another. The message names the particles and the position.
-void check_apart(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell);
+/// Returns the particles of the scene. Throws UserError if two of them overlap in their initial shapes, if one is inside another, or if one crosses a
+/// post. The message names the particles and, if they overlap, the position.
+std::vector<Member> checked_members(const Scene& scene);
 
 /// Pair of particles close to each other: their contact (the two nearest points and the normal), without a force, and their gap.
 struct Approach {

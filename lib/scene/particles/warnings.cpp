@@ -113,7 +113,7 @@ std::string Warnings::choice() const {
   if (scene_.elastic() && scene_.membrane.load == "strong")
     return "the load is computed in the strong form, which amplifies errors of the shape until the time step vanishes: set Membrane/load "
            "to weak";
-  if (scene_.surface.polar() && scene_.surface.poles == "plain" && scene_.quadrature.rule == quadrature::LayerRule::fixed)
+  if (!scene_.surface.has_normal_at_poles() && scene_.quadrature.rule == quadrature::LayerRule::fixed)
     return "a fixed Gauss rule does not converge on elements of plain poles: set Surface/poles to bezier transform, or Quadrature/rule to "
            "adaptive";
   if (const double k = scene_.membrane.global_area_dilatation;

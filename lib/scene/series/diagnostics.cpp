@@ -67,19 +67,9 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
   return site;
 }
 
-/// Returns an array with one number per rank: `mine` for this rank and 0 for all others, so that a sum over ranks collects the numbers.
-std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
-  std::vector<double> all(static_cast<size_t>(ranks.size()), 0);
-  all[static_cast<size_t>(ranks.rank())] = mine;
-  return all;
-}
-
-/// Returns the smallest of the numbers `all` (one per rank) over the ranks that own blocks of elements, because other ranks have no value.
-double least(const std::vector<double>& all, const coupling::Ranks& ranks, int n_blocks) {
-  double result = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < n_blocks; ++k) result = std::min(result, all[static_cast<size_t>(ranks.owner(k, n_blocks))]);
-  return result;
-}
+/// Extremes over the part of the surface that one rank evaluates: the smallest tension (infinity without elements), the largest change of area, and
+/// the largest normal velocity.
+using Extremes = std::array<double, 3>;
 
 double sum(const std::vector<double>& all) { return std::accumulate(all.begin(), all.end(), 0.); }
 
@@ -320,11 +310,14 @@ DeformingRow deforming_row(const ParticleScene& particle_scene, const Body& body
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
   const membrane::ElementTensions tensions = membrane.element_tensions(x, elements, global_tension(particle_scene, body, x));
-  const auto [moments, energy, area, compressed, smallest, change, fastest, shape] = ranks.of_all(std::array{
+  const auto [moments, energy, area, compressed, shape] = ranks.of_all(std::array{
       geometry.block_moments(x, blocks), surface::block_sums(membrane.element_energies(x, elements)), surface::block_sums(tensions.area),
-      surface::block_sums(tensions.compressed), slots(ranks, elements.empty() ? 0 : tensions.smallest), slots(ranks, tensions.area_change),
-      slots(ranks, normal_velocity(particle_scene, body, geometry, x, slope, own)),
-      surface::shape_velocity_sums(geometry.bezier(), x, slope, body.radius, elements)});
+      surface::block_sums(tensions.compressed), surface::shape_velocity_sums(geometry.bezier(), x, slope, body.radius, elements)});
+  const std::vector<Extremes> of_ranks = ranks.gathered(Extremes{elements.empty() ? std::numeric_limits<double>::infinity() : tensions.smallest,
+                                                                 tensions.area_change,
+                                                                 normal_velocity(particle_scene, body, geometry, x, slope, own)});
+  const auto value = [](std::size_t k) { return [k](const Extremes& one) { return one[k]; }; };
+  const auto largest = [&](std::size_t k) { return std::ranges::max(of_ranks, {}, value(k))[k]; };
   DeformingRow now;
   now.n_points = body.space.n_points;
   now.measures = surface::Geometry::measures(x, moments);
@@ -332,8 +325,8 @@ DeformingRow deforming_row(const ParticleScene& particle_scene, const Body& body
   now.axes = surface::principal_axes(now.measures);
   now.refit_error = body.refit_error;
   now.energy = sum(energy);
-  now.tension = {least(smallest, ranks, geometry.n_blocks()), sum(compressed) / sum(area), std::ranges::max(change)};
-  now.normal_velocity = std::ranges::max(fastest);
+  now.tension = {std::ranges::min(of_ranks, {}, value(0))[0], sum(compressed) / sum(area), largest(1)};
+  now.normal_velocity = largest(2);
   now.shape_velocity = surface::shape_velocity(shape, particle_scene.tube.present) / particle_scene.unit_speed();
   now.centre = now.measures.centroid;
   return now;
@@ -353,7 +346,7 @@ double normal_velocity(const ParticleScene& particle_scene, const Body& body, co
   double largest = 0;
   const Vec3 frame = surface::centroid_velocity(geometry.bezier(), x, slope);
   const surface::BezierMap& map = geometry.bezier();
-  constexpr int most = 3 * (spline::max_degree + 1) * (spline::max_degree + 1);
+  constexpr int most = 3 * (spline::most_polynomial_degree + 1) * (spline::most_polynomial_degree + 1);
   double points[most], velocities[most];
   for (const int i : sites) {
     const auto& [element, s, t] = body.space.collocation[static_cast<size_t>(i)].front();

@@ -1,6 +1,7 @@
 #pragma once
 // Measurements on a particle, and the columns of a particle in the results.
 
+#include <limits>
 #include <span>
 
 #include <Eigen/Geometry>
@@ -13,16 +14,20 @@
 
 namespace tanktread {
 
+/// Initial value of data that every row must set: a value that is not set ends the run (Columns::check).
+constexpr double not_set = std::numeric_limits<double>::quiet_NaN();
+
 /// Data of a moving particle for one row of the results. Vectors have components in the laboratory frame. The columns state the units.
 struct ParticleRow {
   int n_points = 0;
-  surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};
-  surface::Deformation shape{0, 0, 0, Vec3::Zero()};
-  surface::PrincipalAxes axes;
-  surface::TankTreading treading;
-  Mat3 stresslet = Mat3::Zero();
-  Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero();
-  double energy = 0, intrinsic_viscosity = 0, phase = 0;
+  surface::Measures measures{not_set, not_set, Vec3::Constant(not_set), Mat3::Constant(not_set)};
+  surface::Deformation shape{not_set, not_set, not_set, Vec3::Constant(not_set)};
+  surface::PrincipalAxes axes{.lengths = Vec3::Constant(not_set)};
+  surface::TankTreading treading{not_set, not_set};
+  Mat3 stresslet = Mat3::Constant(not_set);
+  Vec3 centre = Vec3::Constant(not_set), velocity = Vec3::Constant(not_set);
+  double energy = 0;  ///< 0 for a rigid body
+  double intrinsic_viscosity = not_set, phase = not_set;
 
   virtual ~ParticleRow() = default;
   /// Adds the columns of this particle to a row. `particle_scene`: scene with the options of this particle only.
@@ -34,15 +39,17 @@ struct ParticleRow {
 };
 
 struct DeformingRow : ParticleRow {
-  double volume_error = 0, refit_error = 0, dissipation = 0, normal_velocity = 0, shape_velocity = 0;
-  membrane::TensionSummary tension;
+  double volume_error = not_set, refit_error = not_set, normal_velocity = not_set, shape_velocity = not_set;
+  double dissipation = 0;  ///< 0 without surface viscosity
+  membrane::TensionSummary tension{not_set, not_set, not_set};
   void add_columns(const ParticleScene& particle_scene, Columns& to) const override;
 };
 
 struct RigidRow : ParticleRow {
-  Vec3 angular_velocity = Vec3::Zero(), drag = Vec3::Zero(), torque = Vec3::Zero();
-  Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< quaternion of the rotation since the start, the scalar part first
-  double shape_velocity = 0;                             ///< shape velocity (6.8), computed only if Time/steady tolerance is given
+  Vec3 angular_velocity = Vec3::Constant(not_set);
+  Vec3 drag = Vec3::Constant(not_set), torque = Vec3::Constant(not_set);  ///< set only in a coupled system
+  Eigen::Vector4d quaternion = Eigen::Vector4d::Constant(not_set);        ///< quaternion of the rotation since the start, the scalar part first
+  double shape_velocity = not_set;                                        ///< shape velocity (6.8), set only if Time/steady tolerance is given
   void add_columns(const ParticleScene& particle_scene, Columns& to) const override;
 };
 

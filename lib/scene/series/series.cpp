@@ -12,7 +12,8 @@ namespace tanktread {
 
 namespace {
 
-/// Order of columns in a row of the results and in the manual. Columns with components are listed by the part of their name before the component.
+/// Order of columns in a row of the results and in the manual. Columns with components are listed by the part of their name before the component, and
+/// columns of posts, `<post>/post_force_x1`, by the part after the name of the post.
 constexpr const char* order =
     "time time_step taylor_inertia taylor_surface inclination volume volume_error refit_error area energy membrane_dissipation smallest_tension "
     "compressed_area local_area_change flow_power force_power fluid_dissipation power_residual stresslet_ length_ normal_velocity shape_velocity "
@@ -26,13 +27,14 @@ constexpr const char* order =
     "smallest_concentration largest_concentration parameter fold second_parameter period mean_particle_velocity_ leading_rate unstable_modes "
     "rate_ frequency_ kernel_evaluations";
 
-std::size_t rank(const std::string& name) {
+std::size_t rank(const std::string& column) {
   static const auto ranks = [] {
     std::unordered_map<std::string, std::size_t> all;
     std::istringstream names(order);
     for (std::string one; names >> one;) all.emplace(one, all.size());
     return all;
   }();
+  const std::string name = column.substr(column.find('/') + 1);
   auto at = ranks.find(name);
   if (at == ranks.end()) at = ranks.find(name.substr(0, name.rfind('_') + 1));
   return at == ranks.end() ? ranks.size() : at->second;

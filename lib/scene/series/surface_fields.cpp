@@ -38,6 +38,11 @@ SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsu
   motion_.emplace(capsule, std::move(on));
 }
 
+static_assert(sizeof(motion::State) == 4 * sizeof(double) + 3 * sizeof(Net) + sizeof(std::vector<Net>) + sizeof(std::vector<motion::PastPosition>) +
+                                           sizeof(std::vector<double>) + sizeof(coupling::Secants),
+              "a new member of State must be treated in of_shape(), put_back() and transferred() below, in transferred() of "
+              "scene/particles/adaptation.cpp, and in the other functions that the comment at State lists; then correct this sum");
+
 motion::State SurfaceFields::of_shape(const motion::State& state) const {
   if (!motion_) return state;
   motion::State shapes;

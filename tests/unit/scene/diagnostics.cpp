@@ -1,6 +1,7 @@
 #include "scene/series/diagnostics.hpp"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <set>
@@ -42,8 +43,38 @@ TEST(Series, OfTheProgramAreInTheOrderOfTheManual) {
   EXPECT_EQ(names, (std::vector<std::string>{"time", "axis_3", "axis_1_x1", "cell_2_x1", "kernel_evaluations", "of a part"}));
 }
 
-TEST(Series, ThatMayBeUndefinedDoNotEndTheRun) {
+/// Returns a row in which all values are set.
+DeformingRow complete_row() {
   DeformingRow now;
+  now.measures = {1, 1, Vec3::Zero(), Mat3::Identity()};
+  now.shape = {0, 0, 0, Vec3::Ones()};
+  now.treading = {0, 0};
+  now.stresslet = Mat3::Zero();
+  now.centre = now.velocity = Vec3::Zero();
+  now.intrinsic_viscosity = now.phase = now.volume_error = now.refit_error = now.normal_velocity = now.shape_velocity = 0;
+  now.tension = {0, 0, 0};
+  return now;
+}
+
+TEST(Series, ThatARowDoesNotSetEndTheRun) {
+  const std::function<void(DeformingRow&)> all[] = {
+      [](DeformingRow& row) { row.stresslet = DeformingRow().stresslet; }, [](DeformingRow& row) { row.axes = DeformingRow().axes; },
+      [](DeformingRow& row) { row.phase = DeformingRow().phase; },         [](DeformingRow& row) { row.shape = DeformingRow().shape; },
+      [](DeformingRow& row) { row.measures = DeformingRow().measures; },   [](DeformingRow& row) { row.tension = DeformingRow().tension; }};
+  for (const auto& forget : all) {
+    DeformingRow now = complete_row();
+    now.axes.lengths = Vec3::Ones();
+    Columns complete, incomplete;
+    now.add_columns(ParticleScene(), complete);
+    EXPECT_NO_THROW(finish(complete));
+    forget(now);
+    now.add_columns(ParticleScene(), incomplete);
+    EXPECT_THROW(finish(incomplete), RunFailure);
+  }
+}
+
+TEST(Series, ThatMayBeUndefinedDoNotEndTheRun) {
+  DeformingRow now = complete_row();
   now.shape.inclination = std::numeric_limits<double>::quiet_NaN();
   now.axes.lengths = Vec3(2, 1, 1);
   now.axes.directions = Mat3::Identity();
