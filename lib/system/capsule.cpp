@@ -57,7 +57,7 @@ Net Capsule::defect(const Net& x, const Net& u) {
 }
 
 bool Capsule::defect_spares_system() const {
-  return solver_.has_system() && solver_.unknowns_are_velocities() && solver_.eliminates_walls();
+  return !solver_.is_explicit() && solver_.unknowns_are_velocities() && solver_.eliminates_walls();
 }
 
 void Capsule::freeze(const Net& shape) {
@@ -74,7 +74,7 @@ void Capsule::linearise(const Net& x) {
   ++counts().tangents;
   const auto e = evaluate_on_demand(x, {}, 0);
   jacobian_.linearise(x, slides() ? e->work() : Net(), e->load_sums(), e->slip());
-  if (solver_.has_system() && has_frozen()) solver_.use_inverse([this](const Net& rhs) { return jacobian_.inverse_product(rhs); });
+  if (!solver_.is_explicit() && has_frozen()) solver_.use_inverse([this](const Net& rhs) { return jacobian_.inverse_product(rhs); });
 }
 
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {

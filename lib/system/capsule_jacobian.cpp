@@ -34,7 +34,7 @@ Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::Vec
 
 CapsuleJacobian::CapsuleJacobian(VelocitySolver& solver, FrozenLayers& frozen)
     : parameters_(solver.parameters()), flow_(solver.flow()), flow_at_sites_(solver.flow_at_targets()), targets_(solver.targets()),
-      membranes_(solver.membranes()), volumes_(solver.volumes()), frozen_(frozen), has_system_(solver.has_system()), tube_(solver.walls().tube),
+      membranes_(solver.membranes()), volumes_(solver.volumes()), frozen_(frozen), explicit_(solver.is_explicit()), tube_(solver.walls().tube),
       interface_(solver.interface()), counts_(solver.counts()),
       step_solver_(parameters_.solvers.of(parameters_.solvers.implicit_step)),
       inner_solver_(parameters_.solvers.of(parameters_.solvers.velocity)) {
@@ -109,7 +109,7 @@ Net CapsuleJacobian::without_pressure(Net work, const Net& db) const {
 /// membrane tangent. `added_work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies, B is the
 /// identity and B J dx is 0. The layers and the tube are applied once, to the sum of all loads.
 Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& added_work) {
-  const bool has_velocity = v.size() > 0 && has_system_, displaced = dx.size() > 0;
+  const bool has_velocity = v.size() > 0 && !explicit_, displaced = dx.size() > 0;
   if (!has_velocity && !displaced) return v;
   Net moving, work_change;
   if (has_velocity) {
@@ -150,7 +150,7 @@ Net CapsuleJacobian::fluid_velocity(const Net& rhs, double tolerance) {
 /// an implicit step, because each product with the matrix of that system may require this solve.
 Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& added_work) {
   const Net rhs = product({}, dx, -1, added_work);
-  return has_system_ ? fluid_velocity(rhs, 1e-3) : rhs;
+  return explicit_ ? rhs : fluid_velocity(rhs, 1e-3);
 }
 
 CapsuleJacobian::RateChange CapsuleJacobian::velocity_change(const Net& dx, const Net& added_work) {

@@ -83,7 +83,7 @@ class CapsuleJacobian {
   Membranes& membranes_;
   const Volumes& volumes_;
   FrozenLayers& frozen_;
-  const bool has_system_;       // see VelocitySolver::has_system
+  const bool explicit_;         // see VelocitySolver::is_explicit
   Tube* tube_;                  // null if there is no tube
   InterfaceMotion* interface_;  // null if no control points slide
   OperationCounts& counts_;

@@ -31,7 +31,10 @@ Eigen::SparseMatrix<double> CoupledMotion::basis(std::size_t k, const surface::S
   std::vector<std::vector<std::pair<int, double>>> maps;
   for (const surface::Image& g : symmetry.images()) {
     std::vector<std::pair<int, double>> map = field.images(g);
-    if (map.empty()) break;
+    if (map.empty()) {  // the columns are then all unit vectors
+      maps.clear();
+      break;
+    }
     const double turned = surface::character(g.signs, parity);
     for (auto& [to, sign] : map) sign *= turned;
     maps.push_back(std::move(map));
@@ -55,7 +58,9 @@ Eigen::SparseMatrix<double> CoupledMotion::basis(std::size_t k, const surface::S
 }
 
 bool CoupledMotion::knows_images(const surface::Symmetry& symmetry) const {
-  return symmetry.order() == 1 || std::ranges::none_of(fields_, [&](const auto& on) { return on.field->images(symmetry.images()[0]).empty(); });
+  return std::ranges::none_of(fields_, [&](const FieldOnParticle& on) {
+    return std::ranges::any_of(symmetry.images(), [&](const surface::Image& g) { return on.field->images(g).empty(); });
+  });
 }
 
 Net CoupledMotion::start(const Net& shape) const {

@@ -47,7 +47,8 @@ class Dynamics {
   /// Assembles the layer operators that the Jacobian keeps frozen (4.3) at x.
   virtual void freeze(const Net& /*x*/) {}
 
-  /// Returns the size in bytes, over all ranks, of those frozen operators that grow with the square of the number of control points.
+  /// Returns the size in bytes, over all ranks, of those frozen operators that grow with the square of the number of control points,
+  /// without those of the images in a periodic duct.
   virtual double frozen_bytes() const { return 0; }
 
   /// Returns true if freeze() uses a periodic lattice that changes in time. The time set by set_time() must then be the time of the shape passed to

@@ -47,13 +47,9 @@ const WorkOfLoads& Evaluation::loads() {
 const std::vector<Net>& Evaluation::load_sums() { return system_->solver().membranes().loads().n_sums() > 0 ? loads().sums : known_.loads.sums; }
 
 const Net& Evaluation::load() {
-  if (known_.load.size() == 0) {
-    VelocitySolver& solver = system_->solver();
-    // Viscous membranes require a solve: a viscous load computed from the velocity passed to the constructor (the velocity of an implicit step)
-    // would have an up to 20 times larger error.
-    if (!solver.rigid().empty() || solver.viscous()) require_solution();
-    else known_.load = solver.membrane_load(x_, known_.loads);
-  }
+  VelocitySolver& solver = system_->solver();
+  if (solver.load_depends_on_unknowns()) require_solution();
+  else if (known_.load.size() == 0) known_.load = solver.membrane_load(x_, known_.loads);
   return known_.load;
 }
 

@@ -11,7 +11,7 @@
 #include "base/types.hpp"
 #include "membrane/membrane.hpp"
 #include "system/motion_of_shape.hpp"
-#include "system/targets/particle_layers.hpp"
+#include "system/targets/targets.hpp"
 
 namespace tanktread::coupling {
 

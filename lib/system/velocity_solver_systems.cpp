@@ -59,7 +59,7 @@ Net VelocitySolver::dependent_load(const Net& x, const Net& y) {
 /// u is the velocity that y and its load cause, including the response of walls that are eliminated. `caused`: the part of u due to the tractions on
 /// bodies, if it is known already; otherwise empty.
 Net VelocitySolver::particle_rows(const Net& x, const Net& y, const Net& load, const Net& caused) {
-  if (!has_system() && !bodies_.tractions) return y;  // y causes no velocity
+  if (is_explicit() && !bodies_.tractions) return y;  // y causes no velocity
   const Net v = velocities_in(y);
   Net other = load;  // load whose velocity is not contained in `caused`
   if (caused.size() > 0) clear_rigid(particles(), other);
@@ -155,7 +155,7 @@ Net VelocitySolver::solve_tractions(const Net& x, const VolumeProjection& volume
   std::vector<RigidDrive> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
-  const bool responds = layers_.repeats() || walls_.any() || has_system();
+  const bool responds = layers_.repeats() || walls_.any() || !is_explicit();
   const RigidTractions::Solution& solution =
       bodies_.tractions->solve(x, centres, driven, flow_, RigidTractions::Surroundings{flow, responds, product, load});
   Net v = velocities_in(projected(solution.unknowns));

@@ -13,7 +13,8 @@ namespace tanktread::coupling {
 
 /// The single layer A and the double layer D of (4.2) at the collocation sites, assembled at one shape and used at later shapes with the rotations
 /// (4.29) of the particles. A is a NodalOperator or a FrozenOperator, as selected by the option `frozen_operator`; D is a FrozenOperator. Images on a
-/// lattice are omitted, and NodalOperator also omits images in a plane wall. Calls are collective.
+/// lattice are omitted, and NodalOperator also omits images in a plane wall. A tube has frozen operators of its own (Tube::freeze, called by
+/// Capsule::freeze); further operators of this kind are added to Capsule::freeze and CapsuleJacobian::product. Calls are collective.
 class FrozenLayers {
  public:
   /// `layers`: the layers at `targets`. If `targets` are the collocation sites, this object assembles `layers`. Otherwise it creates and assembles

@@ -5,6 +5,7 @@
 #include "base/indices.hpp"
 #include "stokes/kernels/far_kernel.hpp"
 #include "stokes/kernels/kernels.hpp"
+#include "stokes/sums/far_sums.hpp"
 #include "stokes/sums/vicinity.hpp"
 #include "system/solvers/options.hpp"
 

@@ -146,6 +146,7 @@ void Ranks::replicate(Net& net) const {
 void Ranks::add(std::span<Net* const> nets) const {
   if (size() == 1) return;
   const std::vector<int>& all = impl_->symmetry.fundamental();
+  assert(!all.empty());  // divide_points() was called
   std::vector<double> numbers;
   numbers.reserve(3 * all.size() * nets.size());
   for (const Net* net : nets)

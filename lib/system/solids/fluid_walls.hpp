@@ -9,7 +9,7 @@
 #include "base/types.hpp"
 #include "system/solids/ducts/tube.hpp"
 #include "system/solids/plates/solid_response.hpp"
-#include "system/targets/particle_layers.hpp"
+#include "system/targets/targets.hpp"
 
 namespace tanktread::coupling {
 

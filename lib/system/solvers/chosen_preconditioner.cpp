@@ -2,6 +2,7 @@
 
 #include <iterator>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 namespace tanktread::coupling {
@@ -45,25 +46,26 @@ void RecycledProducts::keep(Product product) {
 
 LinearSystem ChosenPreconditioner::join(const LinearSystem& system) {
   LinearSystem result = system;
+  if (kind_ == "none") result.precondition = {};
+  if (kind_ == "none" || kind_ == "own") return result;
   const Eigen::Index n = std::accumulate(system.blocks.begin(), system.blocks.end(), Eigen::Index(0),
                                          [](Eigen::Index sum, const UnknownBlock& block) { return sum + block.size; });
-  if (kind_ == "none") result.precondition = {};
-  if (kind_ == "neumann" || kind_ == "recycled") {
-    result.product = [this, &system, n](const double* in, double* out) {
-      system.product(in, out);
-      recycled_.record(Eigen::Map<const Eigen::VectorXd>(in, n), Eigen::Map<Eigen::VectorXd>(out, n));
-    };
-  }
+  result.product = [this, &system, n](const double* in, double* out) {
+    system.product(in, out);
+    recycled_.record(Eigen::Map<const Eigen::VectorXd>(in, n), Eigen::Map<Eigen::VectorXd>(out, n));
+  };
   if (kind_ == "neumann")
     result.precondition = [this, &system, n](const double* in, double* out) {
       const double s = recycled_.scale();
       system.product(in, out);
       Eigen::Map<Eigen::VectorXd>(out, n) = s * (2 * Eigen::Map<const Eigen::VectorXd>(in, n) - s * Eigen::Map<Eigen::VectorXd>(out, n));
     };
-  if (kind_ == "recycled")
+  else if (kind_ == "recycled")
     result.precondition = [this, &system, n](const double* in, double* out) {
       recycled_.apply(Eigen::Map<const Eigen::VectorXd>(in, n), system.precondition, {out, n});
     };
+  else
+    throw std::logic_error("no preconditioner is called " + kind_);
   return result;
 }
 

@@ -23,15 +23,18 @@ const RunFailure not_found("the computation of the eigenvalues of the linearised
 /// its real part, and in the next column its imaginary part.
 std::vector<Eigenpair> unpacked(const Eigen::VectorXcd& values, const Eigen::MatrixXd& columns) {
   std::vector<Eigenpair> pairs;
+  bool second = false;  // whether the value belongs to the same pair as the value before; a repeated pair follows the first one
   for (Eigen::Index k = 0; k < values.size(); ++k) {
-    const bool oscillates = values[k].imag() != 0, second = oscillates && k > 0 && pairs.back().value == std::conj(values[k]);
+    const bool oscillates = values[k].imag() != 0;
     if (second) {
+      second = false;
       pairs.push_back({values[k], pairs.back().vector.conjugate()});
       continue;
     }
     Eigen::VectorXcd vector = columns.col(k).cast<std::complex<double>>();
     if (oscillates && k + 1 < columns.cols()) vector += std::complex<double>(0, 1) * columns.col(k + 1);
     pairs.push_back({values[k], vector.normalized()});
+    second = oscillates;
   }
   return pairs;
 }

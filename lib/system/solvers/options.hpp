@@ -1,4 +1,5 @@
 #pragma once
+// Options of the linear and nonlinear solvers.
 
 #include <array>
 #include <memory>

@@ -1,3 +1,4 @@
+// Trials of the solvers that the deck names, on small systems before the run (try_solvers).
 #include "system/solvers/options.hpp"
 
 #include <functional>

@@ -1,5 +1,7 @@
 #include "system/solvers/thyra_blocks.hpp"
 
+#include <cassert>
+
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Thyra_DefaultProductVectorSpace.hpp>
 #include <Thyra_DefaultSpmdVectorSpace.hpp>
@@ -24,6 +26,7 @@ Eigen::VectorXd numbers_of(const ThyraVector& vector) {
 
 void set(const Teuchos::RCP<ThyraVector>& vector, const Eigen::VectorXd& numbers) {
   const Thyra::DetachedVectorView<double> view(vector);
+  assert(view.subDim() == numbers.size());
   Eigen::Map<Eigen::VectorXd>(view.values(), numbers.size()) = numbers;
   take_first({view.values(), static_cast<std::size_t>(numbers.size())});
 }

@@ -93,7 +93,7 @@ Net VelocityProjection::normals(const Net& x) const {
 }
 
 Eigen::VectorXd VelocityProjection::scalar_values(const Eigen::VectorXd& at_sites) const {
-  membrane::Columns sums = fundamental_ * (weighted_ * at_sites);
+  membrane::RightHandSides sums = fundamental_ * (weighted_ * at_sites);
   scalar_mass_.solve(sums, sums);
   return images_ * sums;
 }

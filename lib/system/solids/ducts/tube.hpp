@@ -74,8 +74,14 @@ struct TubeParameters {
 ///   c                         integral over the inlet (2.13)    v_inf per unit pressure drop of a period
 ///   images of the particle    none                              in the kernels of one period
 ///
-/// A new kind of duct also needs decisions in: ParticleData and pressure_correction() (v_inf in the weights of f), checks(), gap(), inside();
-/// VelocitySolver::move_into_cell(), cell_origin() and Capsule::evaluated_about() (origin of the frame); BlockSystem (known velocity of images).
+/// A new kind of duct also needs decisions in:
+///
+///   frame of the wall      fixed() and its uses, set_shape(), frame_origin(); VelocitySolver::move_into_cell(), cell_origin() and
+///                          Capsule::evaluated_about()
+///   flow v_inf             ParticleData, pressure_correction(), pressure_of_velocity(), pressure_driven_velocity(), freeze()
+///   wall                   Wall::is_for(), flow_of_forces() and flow_of_double_layer(); WallPoints (means over points only in channels)
+///   geometry and checks    checks(), cap_velocity(), gap(), inside()
+///   other files            BlockSystem (known velocity of images), scene/memory.cpp, walls in record/plan.cpp
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,

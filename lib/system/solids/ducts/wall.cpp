@@ -57,7 +57,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
 bool Wall::is_for(const surface::TubeWall& wall, const quadrature::Options& quadrature, const surface::Symmetry& symmetry,
                   const WallSolver& solver) const {
   const bool same_surface = same(wall.net, surface_.net) && wall.n_around == surface_.n_around && wall.period == surface_.period &&
-                            wall.start == surface_.start && wall.end == surface_.end;
+                            wall.start == surface_.start && wall.end == surface_.end && !wall.channel == !surface_.channel;
   const bool same_symmetry = symmetry.order() == symmetry_.order() && (symmetry.order() == 1 || symmetry.source() == symmetry_.source());
   return same_surface && same_symmetry && quadrature == quadrature_ && solver == solver_;
 }

@@ -73,7 +73,7 @@ void PlatesAndPosts::factor_plates(stokes::Layer& on_itself, const std::array<in
   for (std::size_t s = 0; s < middle.size(); ++s) {
     const Vec3 n = normals_.row(middle[s]).transpose();
     const auto at = 3 * static_cast<Eigen::Index>(s);
-    regular.block<3, 3>(at, at) = std::sqrt(std::abs(cell().volume())) * n * n.transpose();
+    regular.block<3, 3>(at, at) = std::sqrt(area(s)) * n * n.transpose();
   }
   plates_.emplace(rows(on_itself, middle), grid, std::array{n1 / 2, n2 / 2}, regular);
 }
@@ -145,14 +145,14 @@ void PlatesAndPosts::factor(stokes::Layer& on_itself) {
     for (std::size_t s = 0; s + 1 < first_.size(); ++s) {
       const Eigen::Index first = 3 * first_[s], length = 3 * first_[s + 1] - first;
       const Eigen::Map<const Eigen::VectorXd> w(normals_.data() + first, length), b(flux_.data() + first, length);
-      const double area = areas_.segment(first_[s], first_[s + 1] - first_[s]).sum();
-      all.block(first, first, length, length) += std::sqrt(area) / b.dot(w) * w * b.transpose();
+      all.block(first, first, length, length) += std::sqrt(area(s)) / b.dot(w) * w * b.transpose();
     }
   }
   for (Eigen::Index k = 0; k < m; ++k)
     for (Eigen::Index i = 0; i < n / 3; ++i) {
-      all.col(n + k).segment<3>(3 * i) = parameters_.free[static_cast<std::size_t>(k)];
-      all.row(n + k).segment<3>(3 * i) = (plates_ ? cell().volume() : areas_[i]) * parameters_.free[static_cast<std::size_t>(k)].transpose();
+      const Vec3& free = parameters_.free[static_cast<std::size_t>(k)];
+      all.col(n + k).segment<3>(3 * i) = free;
+      all.row(n + k).segment<3>(3 * i) = (plates_ ? area(static_cast<std::size_t>(i)) : areas_[i]) * free.transpose();
     }
   factors_ = DenseFactors(std::move(all));
 }

@@ -102,6 +102,7 @@ class PlatesAndPosts {
   void factor_plates(stokes::Layer& on_itself, const std::array<int, 2>& grid);
   void factor(stokes::Layer& on_itself);
   Eigen::MatrixXd rows(stokes::Layer& on_itself, std::span<const int> sites) const;
+  double area(std::size_t s) const { return areas_.segment(first_[s], first_[s + 1] - first_[s]).sum(); }  // area of solid s
   void make_layer();
   bool reaches(const Net& at) const;  // whether `velocity_at` is accurate at these points
 
