@@ -1,3 +1,5 @@
+// The traction on a body with prescribed motion, and what all runs without time steps have in common.
+
 #include <cstdio>
 #include <memory>
 #include <optional>

@@ -1,20 +1,22 @@
+// Command line: options, and the run or the text that they request.
+
 #include "app/program.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <optional>
-#include <string_view>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
+#include "app/deck_files.hpp"
 #include "app/provenance.hpp"
 #include "app/signals.hpp"
 #include "app/runs.hpp"
@@ -26,7 +28,9 @@
 #include "motion/guarded.hpp"
 #include "record/citations.hpp"
 #include "record/evaluation_cost.hpp"
+#include "record/files/exit_code.hpp"
 #include "record/files/file.hpp"
+#include "record/new_deck.hpp"
 #include "record/plan.hpp"
 #include "record/results.hpp"
 #include "record/series_manual.hpp"
@@ -39,57 +43,12 @@ namespace tanktread {
 
 namespace {
 
-enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // exit codes; the exit code `stopped` = 4 is in runs.hpp
-
-struct Arguments {
-  std::vector<std::string> decks, settings, accuracy;
-  std::string output, resume, new_deck;
+struct Arguments : DeckPlaces {
+  std::vector<std::string> settings, accuracy;
+  std::string output, new_deck;
   bool overwrite = false, check = false, reference = false, reference_series = false, rejections = false, schema = false, quiet = false;
   bool no_expect = false, cite = false;
 };
-
-/// A kind of deck that `--new` prints.
-struct Kind {
-  std::string_view name, title, lists;
-};
-
-constexpr std::array<Kind, 6> kinds{{
-    {"capsule", "A capsule in simple shear.",
-     "Flow: {type: simple shear, shear rate: 1.0, viscosity: 1.0}, Particle: {shape: sphere, radius: 1.0, viscosity ratio: 1.0}, "
-     "Membrane: {law: neo-Hookean, capillary number: 0.3}, Surface: {elements per side: 6}, Time: {final time: 5.0}, Output: {interval: 0.5}"},
-    {"drop", "A drop in uniaxial extension.",
-     "Flow: {type: uniaxial extension, shear rate: 1.0}, Particle: {shape: sphere, radius: 1.0, viscosity ratio: 1.0}, "
-     "Membrane: {law: surface tension, capillary number: 0.05}, Surface: {elements per side: 6}, Time: {final time: 5.0}, Output: {interval: 0.5}"},
-    {"tube", "A capsule that is carried along a circular tube.",
-     "Flow: {type: duct, mean velocity: 1.0, viscosity: 1.0}, Tube: {section: circle, radius: 1.0}, Particle: {shape: sphere, radius: 0.8}, "
-     "Membrane: {law: neo-Hookean, shear modulus: 20.0, pre-inflation: 0.1}, Surface: {elements per side: 6}, "
-     "Time: {final time: 6.0, steady tolerance: 2.0e-4}, Output: {interval: 0.5}"},
-    {"red-cell", "A red cell in simple shear; lengths in micrometres, times in seconds, forces in piconewtons.",
-     "Flow: {type: simple shear, shear rate: 40.0, viscosity: 0.022}, Particle: {shape: red cell, radius: 3.91, viscosity ratio: 0.27}, "
-     "Membrane: {law: Skalak, shear modulus: 5.0, area dilatation: 10.0, bending modulus: 0.2, bending reference: flat}, "
-     "Surface: {elements per side: 8}, Time: {final time: 0.1}, Output: {interval: 0.01}"},
-    {"rigid", "A free rigid spheroid in simple shear.",
-     "Flow: {type: simple shear}, Particle: {shape: spheroid, semi-axes: [1.0, 1.0, 2.0], motion: free}, Surface: {elements per side: 6}, "
-     "Time: {final time: 20.0}, Output: {interval: 0.5}"},
-    {"several", "Two capsules that meet in simple shear.",
-     "Flow: {type: simple shear}, Particles: {defaults: {Membrane: {law: neo-Hookean, capillary number: 0.3}, Surface: {elements per side: 6}}, "
-     "left: {center: [-3.0, 0.0, 0.5]}, right: {center: [3.0, 0.0, -0.5]}}, Time: {final time: 10.0}, Output: {interval: 0.5}"},
-}};
-
-std::vector<std::string> kinds_of_decks() {
-  std::vector<std::string> names;
-  for (const Kind& kind : kinds) names.emplace_back(kind.name);
-  return names;
-}
-
-/// Returns the text of the example deck with this name, with a comment for each key.
-std::string new_deck(const std::string& name) {
-  const Kind& kind = *std::ranges::find(kinds, name, &Kind::name);
-  Scene scene;
-  deck::Document document = deck::read_text("Tanktread: {" + std::string(kind.lists) + "}");
-  document.declare(scene);
-  return "# " + std::string(kind.title) + " Every key: tanktread --reference\n" + document.commented();
-}
 
 /// Declares the options of the command line.
 void declare_options(CLI::App& app, Arguments& arguments) {
@@ -164,54 +123,6 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
                       ", and now is " + value + ".");
 }
 
-/// Returns the path of a file or directory that a deck names, or `name` if it does not exist. Looks for the copy `kept` in the directory of a resumed
-/// run (or in its folder `level_0`, if several Accuracy levels are resumed), then in the working directory, then in the directory of each deck.
-std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
-  const std::filesystem::path path(name);
-  std::vector<std::filesystem::path> places;
-  if (!arguments.resume.empty() && !kept.empty())
-    places = {std::filesystem::path(arguments.resume) / kept, std::filesystem::path(arguments.resume) / "level_0" / kept};
-  places.push_back(path);
-  for (const std::string& deck : arguments.decks) places.push_back(std::filesystem::path(deck).parent_path() / path);
-  for (const auto& place : places)
-    if (std::error_code error; std::filesystem::exists(place, error)) return place.string();
-  return name;
-}
-
-/// Replaces `file` by its path, as returned by `found`. Registers it, or the newest snapshot of a run with this directory, to be copied into the
-/// results directory under the name `kept`, after `other_` if another file has this name.
-void find_and_keep(std::string& file, std::string kept, const Arguments& arguments, Scene& scene) {
-  while (std::ranges::find(scene.files, kept, &std::pair<std::string, std::string>::second) != scene.files.end()) kept.insert(0, "other_");
-  file = found(file, kept, arguments);
-  scene.files.emplace_back(output::newest_file(file), kept);
-}
-
-/// Finds the files (shapes, positions of copies) that the deck names in the section of a particle, and reads the shape.
-void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
-  surface::ParticleShape& shape = kind.particle.shape;
-  if (kind.copies.file) find_and_keep(*kind.copies.file, kept_places(kind), arguments, scene);
-  if (shape.file) find_and_keep(*shape.file, kept_surface(kind), arguments, scene);
-  if (auto& file = kind.membrane.stress_free_file) find_and_keep(*file, kept_stress_free(kind), arguments, scene);
-  shape.read();
-  if (auto& initial = shape.initial; initial && (initial->file || initial->run))
-    find_and_keep(initial->file ? *initial->file : *initial->run, kept_initial(kind), arguments, scene);
-}
-
-/// Reads the scene of a deck, with its files, and checks it.
-void prepare(deck::Document& deck, const Arguments& arguments, Scene& scene) {
-  deck.declare(scene);
-  if (auto& outline = scene.tube.outline) find_and_keep(*outline, kept_name(*outline), arguments, scene);
-  if (auto& channel = scene.tube.channel; channel && channel->points) find_and_keep(*channel->points, kept_name(*channel->points), arguments, scene);
-  if (auto& history = scene.flow.history; history && history->file) {
-    find_and_keep(*history->file, kept_flow_history, arguments, scene);
-    history->read();
-  }
-  for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
-  if (scene.domain.present) scene.domain.check(scene.flow, scene.tube.present ? scene.tube.list() : "");
-  scene.particles = with_copies(scene.particles, scene.domain);
-  scene.check();
-}
-
 /// Reads and checks the scene of a deck given as text, in which `settings` replace the values of keys. Also reads the files that the deck names.
 Scene scene_of(const std::string& text, const std::vector<std::string>& settings, const Arguments& arguments, const Registry& registry) {
   deck::Document deck = deck::read({}, settings, text);
@@ -230,6 +141,14 @@ RunRequest run_request(const Arguments& arguments, const std::string& deck, cons
   request.changed = [=, &registry](const std::vector<std::string>& settings) { return scene_of(deck, settings, arguments, registry); };
   request.provenance = provenance();
   return request;
+}
+
+/// Prints a text on the first rank. Throws RunFailure on all ranks if that fails. Only this function may write to std::cout. Collective.
+void print(bool speaks, const std::string& text) {
+  coupling::together(speaks, [&] {
+    if (!(std::cout << text).flush() || std::fflush(stdout) != 0 || std::ferror(stdout))
+      throw RunFailure(std::string("cannot write to standard output: ") + std::strerror(errno));
+  });
 }
 
 /// Runs the deck on finer and finer levels until the errors requested by the section Accuracy are reached. With `--check`, only prints the predicted
@@ -259,9 +178,10 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
   };
   program.reason_of_stop = reason_of_stop;
   if (!arguments.check) return accuracy::climb(task, program);
-  for (const std::string& line : accuracy::forecast(task, program))
-    if (speaks) std::cout << line << "\n";
-  return done;
+  std::string text;
+  for (const std::string& line : accuracy::forecast(task, program)) text += line + "\n";
+  print(speaks, text);
+  return Exit::done;
 }
 
 /// Returns the deck with which the run in this directory was started. Collective.
@@ -286,8 +206,8 @@ std::optional<std::string> text_without_deck(const Arguments& arguments, const R
 
 int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   if (const auto text = text_without_deck(arguments, registry)) {
-    if (speaks) std::cout << *text;
-    return done;
+    print(speaks, *text);
+    return Exit::done;
   }
   const bool resume = !arguments.resume.empty();
   if (arguments.decks.empty() && !resume)
@@ -303,8 +223,8 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   prepare(deck, arguments, scene);
   if (resume) check_changes(stored, deck, before);
   if (arguments.cite) {
-    if (speaks) std::cout << citations(&scene, provenance().at("version"));
-    return done;
+    print(speaks, citations(&scene, provenance().at("version")));
+    return Exit::done;
   }
   coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
   for (const auto& sentences : {check_expectations(scene), scene.idle_keys})
@@ -315,20 +235,13 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   if (arguments.check) {
     output::Entries<std::string> lines = plan(scene, coupling::Ranks().size());
     if (!arguments.quiet) std::ranges::move(evaluation_cost(scene), std::back_inserter(lines));
-    const std::string chosen = plan_text(lines);
-    if (speaks) std::cout << deck.effective() << "\n" << chosen;
-    return scene.accuracy.present ? climb(scene, deck, arguments, registry, speaks) : static_cast<int>(done);
+    print(speaks, deck.effective() + "\n" + plan_text(lines));
+    return scene.accuracy.present ? climb(scene, deck, arguments, registry, speaks) : static_cast<int>(Exit::done);
   }
   if (scene.accuracy.present) return climb(scene, deck, arguments, registry, speaks);
   RunRequest request = run_request(arguments, deck.effective(), registry);
   request.another_scheme = resume && before.time.scheme != scene.time.scheme;
   return simulate(scene, request);
-}
-
-/// Throws RunFailure if writing to standard output has failed.
-void check_output() {
-  if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout))
-    throw RunFailure(std::string("cannot write to standard output: ") + std::strerror(errno));
 }
 
 /// Returns the message as one line of at most 1000 bytes.
@@ -352,28 +265,23 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-      if (error.get_exit_code() != 0) return report(error.what(), mistake);
-      if (!speaks) return done;
-      app.exit(error);  // --help, --version
-      check_output();
-      return done;
+      if (error.get_exit_code() != 0) return report(error.what(), Exit::mistake);
+      std::ostringstream text;
+      app.exit(error, text, text);  // --help, --version
+      print(speaks, text.str());
+      return Exit::done;
     }
-    const int code = run(arguments, registry, speaks);
-    // These commands print their result on standard output; a run writes files.
-    const bool prints = arguments.check || arguments.cite || arguments.reference || arguments.reference_series || arguments.rejections ||
-                        arguments.schema || !arguments.new_deck.empty();
-    if (speaks && prints) check_output();
-    return code;
+    return run(arguments, registry, speaks);
   } catch (const motion::Stopped&) {
-    return report((spoken(reason_of_stop()) + " before any results were written").c_str(), stopped);
+    return report((spoken(reason_of_stop()) + " before any results were written").c_str(), Exit::stopped);
   } catch (const UserErrors& errors) {
-    for (const std::string& sentence : errors.all) report(sentence.c_str(), mistake);
+    for (const std::string& sentence : errors.all) report(sentence.c_str(), Exit::mistake);
     message = one_line(errors.what());
-    return mistake;
+    return Exit::mistake;
   } catch (const UserError& error) {
-    return report(error.what(), mistake);
+    return report(error.what(), Exit::mistake);
   } catch (const std::exception& error) {
-    return report(error.what(), failed);
+    return report(error.what(), Exit::failed);
   }
 }
 

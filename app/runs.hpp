@@ -10,12 +10,9 @@
 
 namespace tanktread {
 
-/// Exit code of a run that was stopped. A time-dependent run can be resumed.
-constexpr int stopped = 4;
-
 /// Runs the scene to its end. Uses one of the functions below if the deck requests a steady or periodic shape, a spectrum or a prescribed motion, or
-/// has no particles; otherwise integrates the motion in time. Returns the exit code: 0 if every expectation is met, 1 if an expectation is missed, or
-/// `stopped`. Throws UserError, RunFailure, and motion::Stopped if a stop signal arrives before the first step. Collective.
+/// has no particles; otherwise integrates the motion in time. Returns Exit::done, Exit::missed or Exit::stopped. Throws UserError, RunFailure, and
+/// motion::Stopped if a stop signal arrives before the first step. Collective.
 int simulate(const Scene& scene, const RunRequest& request);
 
 /// Runs the computation that the section Steady, Periodic or Spectrum of the deck requests. Returns and throws like `simulate`. Collective.

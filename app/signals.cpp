@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include "motion/guarded.hpp"
+#include "record/files/summary.hpp"
 #include "system/parallel/agreement.hpp"
 
 namespace tanktread {
@@ -37,7 +38,9 @@ void stop_where_told(bool too_late) {
   if (coupling::any_stop_requested(stop_requested() || too_late)) throw motion::Stopped();
 }
 
-std::string reason_of_stop() { return coupling::any_stop_requested(stop_requested()) ? by_signal : by_clock; }
+std::string reason_of_stop() {
+  return coupling::any_stop_requested(stop_requested()) ? output::run_status::by_signal : output::run_status::by_clock;
+}
 
 std::string spoken(std::string status) {
   std::erase(status, ':');

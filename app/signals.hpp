@@ -16,11 +16,8 @@ bool stop_requested();
 /// Throws motion::Stopped on every rank if any rank has received a stop signal or passes `too_late` = true (wall-clock limit exceeded). Collective.
 void stop_where_told(bool too_late = false);
 
-/// Reasons for which a run is stopped, as written to `status` of the summary.
-inline const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit";
-
-/// Returns the reason why all ranks have thrown motion::Stopped: `by_signal` if any rank has received a stop signal, otherwise `by_clock`.
-/// Collective.
+/// Returns the status of a run after all ranks have thrown motion::Stopped: run_status::by_signal (record/files/summary.hpp) if any rank has received
+/// a stop signal, otherwise run_status::by_clock. Collective.
 std::string reason_of_stop();
 
 /// Returns a status without its colon, for use within a message.

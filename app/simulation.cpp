@@ -1,3 +1,5 @@
+// A run in time: steps, snapshots, adaptation of meshes, and the reasons for which the run ends.
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -6,6 +8,7 @@
 
 #include "app/runs.hpp"
 #include "app/signals.hpp"
+#include "app/time_steps.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "motion/guarded.hpp"
@@ -28,26 +31,12 @@ namespace tanktread {
 
 namespace {
 
-/// Values of `status` in the summary of a run that ends before its final time: `steady` if the shape has become steady, `past` if all particles have
-/// passed the position `Time/end when past`.
-const std::string steady = "steady", past = "past";
-
-/// Returns the options of the time integration. If steps do not end at snapshot times, they are at most as long as the time between two snapshots, so
-/// that each snapshot has its own step.
-motion::TimeOptions time_options(const Scene& scene) {
-  motion::TimeOptions time = scene.time_options();
-  if (!scene.lands_on_snapshots() && !time.fixed_step)
-    time.maximum_step = std::min(scene.snapshot_interval(), time.maximum_step.value_or(scene.snapshot_interval()));
-  return time;
-}
-
 /// A time-dependent run, from its first to its last step.
 class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
       : scene_(scene), request_(request), particles_(make_particle_system(scene, ranks_, phases_)),
-        results_(scene, request, particles_->body(), particles_->bezier(), ranks_),
-        scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {
+        results_(scene, request, particles_->body(), particles_->bezier(), ranks_), steps_(scene, *particles_) {
     ranks_.measure(phases_);
   }
 
@@ -61,7 +50,7 @@ class Run {
     while (reason.empty() && state_.time < scene_.time.final_time) {
       reason = step();
       if (interrupted_) break;
-      progress.show({state_.time, totals_.step, report_.iterations, first_.particle.rigid() ? 0 : row_.largest("taylor_inertia")});
+      progress.show({state_.time, totals_.step, steps_.report().iterations, first_.particle.rigid() ? 0 : row_.largest("taylor_inertia")});
       if (!reason.empty() || snapshot_due_) save_or_fail();
     }
     progress.close();
@@ -93,7 +82,7 @@ class Run {
 
   /// Adapts the initial mesh to thin films between particles, and between particles and a wall.
   void prepare() {
-    if (!scene_.has_gaps() && !scene_.wall.present) return;
+    if (!scene_.has_gaps() && !scene_.has_films_around_one()) return;
     for (int k = 0; k < 8 && particles_->adapt(state_, totals_); ++k) results_.remesh(particles_->body(), particles_->bezier());
   }
 
@@ -135,7 +124,7 @@ class Run {
     particles_->set_contacts(totals_.contacts);
     if (!error.empty()) fail(error);
     if (!undone.empty()) fail(undone);
-    return by_signal;
+    return output::run_status::by_signal;
   }
 
   /// Runs `act`. Returns the error message if `act` fails on any rank, or an empty text if `act` succeeds or a stop signal interrupts it.
@@ -154,14 +143,14 @@ class Run {
     const bool lands = scene_.lands_on_snapshots();
     motion::State before = state_;
     within_step_.reset();
-    integrate(lands ? snapshot : scene_.time.final_time, before);
+    steps_.advance(state_, lands ? snapshot : scene_.time.final_time, before);
     check_mesh();
     ++totals_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) interpolate_within(before);
     if (within_step_ && scene_.adapts()) {
       within_step_->sampled = sample();
-      particles_->dynamics().set_time(state_.time, began_);
+      particles_->dynamics().set_time(state_.time, steps_.began());
     }
     adapting_ = true;
     adapt();
@@ -175,46 +164,9 @@ class Run {
     if (!particles_->adapt(state_, totals_)) return;
     results_.remesh(particles_->body(), particles_->bezier());
     motion::GuardedDynamics motion(particles_->dynamics(), stop_requested);
-    motion.set_time(state_.time, began_);  // if the flow jumps at the end of the step, the velocity before the jump
+    motion.set_time(state_.time, steps_.began());  // if the flow jumps at the end of the step, the velocity before the jump
     state_.history = {motion.velocity(state_.x)};
     state_.slope_error = 0;
-  }
-
-  /// Makes a step of the time scheme that ends at the time `limit` or earlier. If the motion is not smooth at the start of the step (a kink), the
-  /// scheme restarts there, and `before` becomes the state after the kink.
-  void integrate(double limit, motion::State& before) {
-    motion::GuardedDynamics motion(particles_->dynamics(), stop_requested);
-    try {
-      if (motion::cross_kink(motion, state_)) before = state_;
-      if (!state_.history.front().allFinite()) throw RunFailure("the evaluation of the velocity failed at the start of a step");
-      began_ = state_.time;
-      advance_apart(motion, limit, before);
-    } catch (const RunFailure& failure) {
-      const std::string what = failure.what();
-      const std::string& why = motion.failure();
-      throw RunFailure(what + (why.empty() || why == what ? "" : " after a failed evaluation of the velocity: " + why));
-    }
-  }
-
-  /// Makes a time step. If particles are too close after the step for the contact limiter to keep them apart, repeats the step from the state
-  /// `before` with half its size.
-  void advance_apart(motion::GuardedDynamics& motion, double limit, const motion::State& before) {
-    motion::StepReport discarded;  // sums over the steps that are repeated
-    for (;;) {
-      report_ = scheme_->advance(motion, state_, limit);
-      report_.iterations += discarded.iterations, report_.rejected += discarded.rejected;
-      if (particles_->enforce_gaps(state_, report_.step)) return;
-      if (scene_.time.fixed_step)
-        throw RunFailure(
-            "after a step of fixed length particles are too close for Contact/limiter to hold them apart: set a smaller Time/fixed step");
-      discarded.iterations = report_.iterations, discarded.rejected = report_.rejected + 1;
-      Net frozen = std::move(state_.frozen);
-      const double frozen_time = state_.frozen_time;
-      state_ = before;
-      if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // they belong to the old operator
-      state_.frozen = std::move(frozen), state_.frozen_time = frozen_time;
-      state_.step = report_.step / 2;
-    }
   }
 
   /// Returns the kernel evaluations of this part of the run on all ranks. Collective.
@@ -240,7 +192,7 @@ class Run {
     const std::string at = reason + formatted(" at time %.6g, step %d", state_.time, totals_.step), where = results_.directory().string();
     std::string unsaved;
     if (results_.last_saved() != totals_.step) unsaved = error_of([this] { save(); });
-    error_of([&] { results_.close(account("failed: " + at), phases_); });
+    error_of([&] { results_.close(account(output::run_status::failed + at), phases_); });
     if (unsaved.empty()) throw RunFailure(at + "; the checkpoint of the last good step is in " + where);
     throw RunFailure(at + formatted("; the newest checkpoint, of step %d, is in ", results_.last_saved()) + where +
                      ", because a newer one cannot be written: " + unsaved);
@@ -257,8 +209,8 @@ class Run {
 
   void record() {
     const auto clock = phases_.time("diagnostics");
-    particles_->dynamics().set_time(state_.time, began_);
-    row_ = particles_->next_row(state_, {.step = report_, .wall_seconds = earlier_wall_seconds_ + seconds_here()});
+    particles_->dynamics().set_time(state_.time, steps_.began());
+    row_ = particles_->next_row(state_, {.step = steps_.report(), .wall_seconds = earlier_wall_seconds_ + seconds_here()});
     {
       const auto output = phases_.time("output");
       results_.record(row_);
@@ -296,7 +248,7 @@ class Run {
   /// Evaluates and returns the snapshot that is due, at the end of the last step or at a time within the step.
   Results::Sampled sample() {
     const motion::State& shown = within_step_ ? within_step_->state : state_;
-    particles_->dynamics().set_time(shown.time, began_);
+    particles_->dynamics().set_time(shown.time, steps_.began());
     return results_.sample(particles_->snapshot(shown), shown.time);
   }
 
@@ -331,25 +283,26 @@ class Run {
     const bool signalled = coupling::any_stop_requested(stop_requested()), late = scene_.output.too_late(ranks_.seconds_since(start_));
     const auto tolerance = scene_.time.steady_tolerance;
     const bool flow_changes = scene_.flow.history && scene_.flow.history->lasts(state_.time);
-    if (tolerance && !flow_changes && row_.largest("shape_velocity") < *tolerance) return steady;
-    if (scene_.time.end_when_past && least_axial_position(scene_, particles_->body(), row_) > *scene_.time.end_when_past) return past;
+    if (tolerance && !flow_changes && row_.largest("shape_velocity") < *tolerance) return output::run_status::steady;
+    if (scene_.time.end_when_past && least_axial_position(scene_, particles_->body(), row_) > *scene_.time.end_when_past)
+      return output::run_status::past;
     if (!(state_.time < scene_.time.final_time)) return {};
-    return signalled ? by_signal : late ? by_clock : std::string();
+    return signalled ? output::run_status::by_signal : late ? output::run_status::by_clock : "";
   }
 
   Account account(const std::string& status) const {
-    return {plan(scene_, particles_->body(), ranks_.size()), counts(totals_), status, {}, false, earlier_seconds_, {}, {}};
+    return {plan(scene_, particles_->body(), ranks_.size()), counts(totals_), status, {}, earlier_seconds_, {}, {}};
   }
 
   /// Closes the results and returns the exit code. `reason` is the reason for an early end, or empty.
   int end(const std::string& reason) {
     if (scene_.output.surface_text) results_.write_surface(particles_->snapshot(state_).surface);
-    Account last = account(reason.empty() ? "done" : reason);
-    last.whole = reason.empty() || reason == steady || reason == past;
+    Account last = account(reason.empty() ? output::run_status::done : reason);
+    const bool whole = output::reached_end(last.status);
     if (!reason.empty() && !request_.of_ladder) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
-    if (!last.whole && !request_.of_ladder) last.remark += "; --resume " + results_.directory().string() + " continues the run";
+    if (!whole && !request_.of_ladder) last.remark += "; --resume " + results_.directory().string() + " continues the run";
     const int code = results_.close(last, phases_);
-    return last.whole ? code : stopped;
+    return whole ? code : Exit::stopped;
   }
 
   const Scene& scene_;
@@ -361,10 +314,8 @@ class Run {
   coupling::Ranks ranks_;
   std::unique_ptr<ParticleSystem> particles_;
   Results results_;
-  std::unique_ptr<motion::Integrator> scheme_;
+  TimeSteps steps_;
   motion::State state_;
-  motion::StepReport report_;
-  double began_ = 0;  // time at which the last step began
   RunTotals totals_;
   Columns row_;
   bool snapshot_due_ = false;

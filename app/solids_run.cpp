@@ -1,3 +1,5 @@
+// The flow through a periodic cell that contains plates or posts but no particles.
+
 #include <utility>
 
 #include "app/runs.hpp"

@@ -1,3 +1,5 @@
+// Searches for steady and periodic shapes, branches of steady shapes, and spectra.
+
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -176,16 +178,16 @@ class SteadyRun {
     account.plan = chosen_;
     pool_.count(totals_);
     account.counts = counts(totals_);
-    if (!failure_.empty()) account.status = "failed: " + failure_, account.whole = false;
+    if (!failure_.empty()) account.status = output::run_status::failed + failure_;
     if (!stopped_.empty()) {
-      account.status = stopped_, account.whole = false;
+      account.status = stopped_;
       account.remark = spoken(stopped_) + "; the results so far are in " + results_.directory().string();
     }
     int k = 0;
     for (const motion::Mode& mode : found_.modes) account.modes.emplace_back(std::to_string(++k), motion::name(mode.kind));
     const int code = results_.close(account, phases_);
     if (!failure_.empty()) throw RunFailure(failure_ + "; the results so far are in " + results_.directory().string());
-    return stopped_.empty() ? code : stopped;
+    return stopped_.empty() ? code : Exit::stopped;
   }
 
   const Clock::time_point start_ = Clock::now();

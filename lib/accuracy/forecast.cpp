@@ -1,3 +1,5 @@
+// Prediction of the levels and seconds that a requested accuracy takes, from pilot runs of coarse levels.
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +11,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "motion/guarded.hpp"
+#include "record/files/file.hpp"
 #include "system/parallel/agreement.hpp"
 
 namespace tanktread::accuracy {
@@ -56,13 +59,19 @@ std::vector<std::string> forecast(const LadderRequest& task, const Program& prog
   std::size_t n = 0;
   for (int k = 0; k <= last_pilot && n < enough; ++k) {
     const Level level = same(k);
-    const std::string text = program.deck(settings(task.values, level));
-    const fs::path place = directory.path / ("level_" + std::to_string(k));
-    try {
-      if (program.run(text, place, false, task.options.wall_clock_limit) == stopped) throw motion::Stopped();
-    } catch (const RunFailure& error) {  // climb() goes on, too
+    const fs::path place = directory.path / output::level_folder(std::to_string(k));
+    std::string text;
+    const auto fail = [&](const std::string& why) { failure = formatted("level %d failed: ", k) + why; };
+    try {  // climb() continues after the same failures
+      text = program.deck(settings(task.values, level));
+      if (program.run(text, place, false, task.options.wall_clock_limit) == Exit::stopped) throw motion::Stopped();
+    } catch (const RunFailure& error) {
       const std::string what = error.what();
-      failure = formatted("level %d failed: ", k) + what.substr(0, what.find("; the checkpoint"));  // which is deleted with the directory
+      fail(what.substr(0, what.find("; the checkpoint")));  // the checkpoint is deleted with the directory
+      continue;
+    } catch (const UserError& error) {
+      if (n == 0) throw;
+      fail(error.what());
       continue;
     }
     coupling::decided([&] {

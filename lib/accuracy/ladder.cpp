@@ -12,6 +12,7 @@
 #include "base/text_file.hpp"
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
+#include "record/files/checkpoint.hpp"
 #include "record/files/file.hpp"
 #include "system/parallel/agreement.hpp"
 #include "system/parallel/ranks.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using output::failure_file, output::ladder_file, output::summary_file;
 
 /// Calls `choose` on the first rank only, and returns its result (a number, or true or false) on all ranks. Collective.
 double decided(const auto& choose) { return coupling::decided([&] { return std::vector{static_cast<double>(choose())}; })[0]; }
@@ -29,10 +31,8 @@ double decided(const auto& choose) { return coupling::decided([&] { return std::
 /// Decision about a level: it is finished, it failed with the same deck and is not run again, it is resumed, or it is run anew.
 enum class Start { finished, failed, resume, anew };
 
-/// File in the directory of a level whose search for a steady or periodic shape failed. It holds the deck of the level and the reason, so that a
-/// resumed ladder (runs on finer and finer levels) does not search again. Time-dependent runs that failed are continued from their checkpoint
-/// instead.
-constexpr const char* failure_file = "failure.txt";
+/// Text between deck and reason in `failure_file`, which is written for a level whose search for a steady or periodic shape failed, so that a resumed
+/// ladder (runs on finer and finer levels) does not search again. Time-dependent runs that failed are continued from their checkpoint instead.
 constexpr const char* before_reason = "\n--- failed: ";
 
 class Ladder {
@@ -43,17 +43,17 @@ class Ladder {
     if (!task_.resume) check_start();
     serially([this] { prepare(); });
     for (int k = 0; k < task_.options.levels && k <= last_level; ++k) {
-      if (const std::string why = is_over(k) ? "" : reason_to_stop(k); !why.empty()) return conclude(stopped, why);
-      if (k >= balanced_from && count_ == k && !balanced_ && !within_reach(k) && balance() == stopped)
-        return conclude(stopped, "a run that balances the parts was stopped");
+      if (const std::string why = is_over(k) ? "" : reason_to_stop(k); !why.empty()) return conclude(Exit::stopped, why);
+      if (k >= balanced_from && count_ == k && !balanced_ && !within_reach(k) && balance() == Exit::stopped)
+        return conclude(Exit::stopped, "a run that balances the parts was stopped");
       const int code = run(k);
-      if (code == stopped) return conclude(stopped, formatted("level %d was stopped", k));
-      if (count_ >= 3 && failure_of_last_.empty() && judge(k)) return conclude(met, "");
-      if (hopeless()) return conclude(missed, "finer levels are not expected to reduce the error");
+      if (code == Exit::stopped) return conclude(Exit::stopped, formatted("level %d was stopped", k));
+      if (count_ >= 3 && failure_of_last_.empty() && judge(k)) return conclude(Exit::done, "");
+      if (hopeless()) return conclude(Exit::missed, "finer levels are not expected to reduce the error");
     }
     if (count_ == 0) throw RunFailure("no accuracy level was completed: " + failure_);
-    if (!failure_of_last_.empty()) return conclude(missed, formatted("level %d failed: ", task_.options.levels - 1) + failure_);
-    return conclude(missed, formatted("level %d is the finest one that Accuracy/levels allows", task_.options.levels - 1));
+    if (!failure_of_last_.empty()) return conclude(Exit::missed, formatted("level %d failed: ", task_.options.levels - 1) + failure_);
+    return conclude(Exit::missed, formatted("level %d is the finest one that Accuracy/levels allows", task_.options.levels - 1));
   }
 
  private:
@@ -61,7 +61,7 @@ class Ladder {
   // error. The shares are measured at level 2, so levels 0 to 2 cannot use them.
   static constexpr int balanced_from = 3;
 
-  fs::path directory(const std::string& name) const { return task_.directory / ("level_" + name); }
+  fs::path directory(const std::string& name) const { return task_.directory / output::level_folder(name); }
 
   /// Runs `act` on the first rank. All ranks throw if it fails.
   void serially(const std::function<void()>& act) const { coupling::together(ranks_.rank() == 0, act); }
@@ -84,8 +84,6 @@ class Ladder {
     if (!task_.resume) {
       if (!task_.overwrite) output::check_vacant(task_.directory);
       output::start_directory(task_.directory);
-      std::error_code absent;
-      for (const auto& level : fs::directory_iterator(task_.directory)) fs::remove(level.path() / failure_file, absent);
     }
     output::write_whole(task_.directory / ladder_file, task_.deck);
   }
@@ -96,7 +94,7 @@ class Ladder {
     return decided([&] {
       std::error_code absent;
       const fs::path place = directory(std::to_string(k));
-      return task_.resume && (fs::exists(place / "summary.yaml", absent) || fs::exists(place / failure_file, absent));
+      return task_.resume && (fs::exists(place / summary_file, absent) || fs::exists(place / failure_file, absent));
     }) != 0;
   }
 
@@ -118,11 +116,12 @@ class Ladder {
 
   double seconds_here() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-  /// Runs level k, unless it is finished already. Returns `stopped` if the run was interrupted and can be resumed, or 0 if the run ended or failed.
+  /// Runs level k, unless it is finished already. Returns Exit::stopped if the run was interrupted and can be resumed, or 0 if the run ended or
+  /// failed.
   int run(int k) {
     std::optional<Outcome> outcome;
     const int code = run_level(level_at(k), std::to_string(k), outcome);
-    if (code == stopped || !failure_of_last_.empty()) return code;
+    if (code == Exit::stopped || !failure_of_last_.empty()) return code;
     if (ranks_.rank() == 0) levels_.push_back(std::move(*outcome));
     ++count_;
     return 0;
@@ -140,12 +139,14 @@ class Ladder {
 
   /// Measures which shares of the error are due to time integration and to quadrature, and stores them in shares_. For this, runs level 2 again with
   /// a looser time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all series for which the user requests
-  /// an accuracy that is not met yet, without series that are zero up to their error (RequestResult::vanishes). Returns `stopped` if a run was
+  /// an accuracy that is not met yet, without series that are zero up to their error (RequestResult::vanishes). Returns Exit::stopped if a run was
   /// interrupted and can be resumed, otherwise 0.
   int balance() {
     balanced_ = true;
     std::optional<Outcome> quadrature;
-    if (run_level({2, 1, 2}, "2_time", looser_) == stopped || run_level({2, 2, 1}, "2_quadrature", quadrature) == stopped) return stopped;
+    if (run_level(same_but_looser(2, &Level::time), "2_time", looser_) == Exit::stopped ||
+        run_level(same_but_looser(2, &Level::quadrature), "2_quadrature", quadrature) == Exit::stopped)
+      return Exit::stopped;
     const auto found = coupling::decided([&] {
       std::vector<double> most;
       for (const Request& request : task_.options.requests) {
@@ -162,9 +163,9 @@ class Ladder {
     return 0;
   }
 
-  /// Runs one level in its directory, unless it is finished already. Sets `outcome` on the first rank. Returns `stopped` if the run was interrupted
-  /// and can be resumed, or 0 if the run ended or failed. If the deck of a new level is invalid (UserError) and a coarser level is finished, the
-  /// level counts as failed.
+  /// Runs one level in its directory, unless it is finished already. Sets `outcome` on the first rank. Returns Exit::stopped if the run was
+  /// interrupted and can be resumed, or 0 if the run ended or failed. If the deck of a new level is invalid (UserError) and a coarser level is
+  /// finished, the level counts as failed.
   int run_level(const Level& level, const std::string& name, std::optional<Outcome>& outcome) try {
     failure_of_last_.clear();
     resuming_ = false;
@@ -183,7 +184,7 @@ class Ladder {
       const double left = decided([&] { return limit ? std::max(1e-3, *limit - before) : 0; });
       const int code = run_deck(name, deck, start == Start::resume, limit ? std::optional(left) : std::nullopt);
       seconds = seconds_here() - before;
-      if (code == stopped || !failure_of_last_.empty()) {
+      if (code == Exit::stopped || !failure_of_last_.empty()) {
         seconds_ += seconds;
         return code;
       }
@@ -204,13 +205,13 @@ class Ladder {
   }
 
   /// Runs a deck in the directory of the level `name`. If a search for a steady or periodic shape fails, stores the reason in `failure_file`. Returns
-  /// `stopped` if the run was interrupted and can be resumed, or 0 if it ended or failed.
+  /// Exit::stopped if the run was interrupted and can be resumed, or 0 if it ended or failed.
   int run_deck(const std::string& name, const std::string& deck, bool resume, std::optional<double> limit) {
     try {
-      if (program_.run(deck, directory(name), resume, limit) == stopped) return stopped;
+      if (program_.run(deck, directory(name), resume, limit) == Exit::stopped) return Exit::stopped;
       return 0;
     } catch (const motion::Stopped&) {
-      return stopped;
+      return Exit::stopped;
     } catch (const RunFailure& failure) {
       fail(name, failure.what());
     }
@@ -245,13 +246,11 @@ class Ladder {
     std::error_code absent;
     if (!task_.runs_in_time || !fs::is_directory(place, absent)) return Start::anew;
     try {
-      if (!resumes(output::RunRecord::load(place / "run.h5").deck(), deck)) return Start::anew;
+      if (!resumes(output::RunRecord::load(place / output::record_file).deck(), deck)) return Start::anew;
     } catch (const UserError&) {  // there is no record, or it is damaged
       return Start::anew;
     }
-    for (const auto& entry : fs::directory_iterator(place))
-      if (const std::string name = entry.path().filename(); name.starts_with("snapshot_") && name.ends_with(".hdf")) return Start::resume;
-    return Start::anew;
+    return output::snapshots(place).empty() ? Start::anew : Start::resume;
   }
 
   /// Estimates the error for each request from the finished levels. Called only on the first rank.
@@ -284,28 +283,28 @@ class Ladder {
   }
 
   /// Publishes the finest finished level as the results, and returns the exit code.
-  int conclude(Code code, const std::string& why) {
+  int conclude(Exit::Code code, const std::string& why) {
     if (decided([&] { return levels_.size(); }) == 0) {
-      if (code == stopped) {
+      if (code == Exit::stopped) {
         if (ranks_.rank() == 0) report(code, why, "");
-        return stopped;
+        return Exit::stopped;
       }
       throw RunFailure("no accuracy level was completed" + (failure_.empty() ? "" : ": " + failure_));
     }
-    const std::string status = code == stopped ? program_.reason_of_stop() : "";
+    const std::string status = code == Exit::stopped ? program_.reason_of_stop() : "";
     return static_cast<int>(decided([&] {
       answer_all();
       const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_, answers_), {status, why}, seconds_);
       report(code, why, missed_expectations);
-      return code == met && !missed_expectations.empty() ? missed : code;
+      return code == Exit::done && !missed_expectations.empty() ? Exit::missed : code;
     }));
   }
 
-  void report(Code code, const std::string& why, const std::string& missed_expectations) const {
-    std::string line = code == met ? "" : "the requested accuracy is not reached: " + why;
-    if (code == stopped) line += "; --resume " + task_.directory.string() + " continues the run";
+  void report(Exit::Code code, const std::string& why, const std::string& missed_expectations) const {
+    std::string line = code == Exit::done ? "" : "the requested accuracy is not reached: " + why;
+    if (code == Exit::stopped) line += "; --resume " + task_.directory.string() + " continues the run";
     for (const RequestResult& one : answers_)
-      if (code != met && !one.met) line += "; " + sentence(one);
+      if (code != Exit::done && !one.met) line += "; " + sentence(one);
     if (!missed_expectations.empty()) line += (line.empty() ? "" : "; ") + missed_expectations;
     if (!line.empty()) std::fprintf(stderr, "tanktread: %s\n", line.c_str());
     if (!task_.quiet) std::printf("  results     %s\n", task_.directory.c_str());

@@ -196,9 +196,10 @@ void check_levels(const Values& deck) {
   if (plates && !reads.has("Wall/elements per period"))
     throw UserError("Accuracy needs Wall/elements per period, because the levels refine the walls of a Domain in proportion to it.");
   for (const std::string& prefix : particles(deck))
-    for (const char* key : {"initial shape/file", "initial shape/run"})
-      if (reads.has(of_particle(prefix, key)))
-        throw UserError("Accuracy and " + of_particle(prefix, key) +
+    for (const std::string& key : {of_particle(prefix, "initial shape/file"), of_particle(prefix, "initial shape/run"),
+                                   prefix + "Membrane/stress-free file"})
+      if (reads.has(key))
+        throw UserError("Accuracy and " + key +
                         " contradict each other: the shape is given on one mesh, and the errors are estimated from several meshes.");
 }
 

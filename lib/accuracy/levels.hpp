@@ -17,10 +17,19 @@ struct Level {
 
   bool operator==(const Level&) const = default;
 };
-static_assert(sizeof(Level) == 3 * sizeof(int), "a new part must be set in same(), balanced(), settings(), expected_error() and ladder.cpp");
+static_assert(sizeof(Level) == 3 * sizeof(int),
+              "a new part must be set in same(), balanced(), settings() and expected_error(); its share of the error is measured in ladder.cpp and "
+              "used in expected_errors() and cancelled() (outcome.cpp); publication.cpp and ladder.cpp print levels");
 
 /// Returns the level k of all parts.
 constexpr Level same(int k) { return {k, k, k}; }
+
+/// Returns the level k of all parts except `part`, which is one level looser.
+constexpr Level same_but_looser(int k, int Level::* part) {
+  Level level = same(k);
+  --(level.*part);
+  return level;
+}
 
 /// Largest level that has settings.
 constexpr int last_level = 11;
@@ -63,8 +72,8 @@ Level balanced(int k, double time, double quadrature);
 /// - Other tolerances of solvers and searches are lowered if they are too large for these two tolerances.
 std::vector<std::string> settings(const Values& deck, const Level& level);
 
-/// Throws UserError if the deck gives an initial shape on one mesh, because every level has another mesh. Also throws UserError if a Domain has
-/// plates and `Wall/elements per period`, from which the levels compute the meshes of the plates, is missing.
+/// Throws UserError if the deck gives an initial shape or a stress-free shape on one mesh, because every level has another mesh. Also throws
+/// UserError if a Domain has plates and `Wall/elements per period`, from which the levels compute the meshes of the plates, is missing.
 void check_levels(const Values& deck);
 
 /// Returns the text `deck` of an effective deck (a deck with the values of all keys) without the section `section`.

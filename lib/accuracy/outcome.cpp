@@ -16,16 +16,9 @@ namespace {
 
 /// Returns the text of the summary of a run; empty if there is none.
 std::string summary_of(const std::filesystem::path& directory) {
-  const std::filesystem::path path = directory / "summary.yaml";
+  const std::filesystem::path path = directory / output::summary_file;
   if (std::error_code absent; !std::filesystem::exists(path, absent)) return {};
   return text_of_file(path, path.string(), 10'000'000);
-}
-
-/// Returns the status in a summary, without quotes; empty if there is no summary.
-std::string status_of(const std::filesystem::path& directory) {
-  const std::string text = summary_of(directory), head = "status: \"";
-  if (!text.starts_with(head)) return {};
-  return text.substr(head.size(), text.find('"', head.size()) - head.size());
 }
 
 bool holds(const output::RunRecord& record, const std::string& name) {
@@ -53,6 +46,9 @@ std::vector<Curve> changes(const std::string& series, Of of, const std::vector<O
   return found;
 }
 
+/// Returns the error of time integration at a level divided by the error of time integration at level 2.
+double relative_time_error(const Level& level) { return std::pow(time_ratio, 2 - level.time); }
+
 /// Returns the errors to expect at the levels, up to a common factor; estimated() uses them. By default these are expected_error() of each level. If
 /// there are at least 4 levels and level 2 was also computed with a looser time tolerance (`looser`), the part of the error due to time integration
 /// is measured. This part is assumed to decrease with the time tolerance, and the rest of the error like expected_error().
@@ -66,8 +62,7 @@ std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Re
   const double share = part_error(request, levels[2], *looser, time_ratio) / whole;
   if (!(share > 0)) return sizes;
   const double of_time = std::min(share, 0.8);
-  for (std::size_t k = 0; k < sizes.size(); ++k)
-    sizes[k] = (1 - of_time) * sizes[k] / size + of_time * std::pow(time_ratio, 2 - levels[k].level.time);
+  for (std::size_t k = 0; k < sizes.size(); ++k) sizes[k] = (1 - of_time) * sizes[k] / size + of_time * relative_time_error(levels[k].level);
   return sizes;
 }
 
@@ -112,10 +107,9 @@ bool resumes(const std::string& one, const std::string& other) {
 }
 
 std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck) {
-  const std::string ended = status_of(directory);
-  if (ended != "done" && ended != "steady" && ended != "past") return {};
+  if (!output::reached_end(output::status_of(summary_of(directory)))) return {};
   try {
-    Outcome found{level, directory, output::RunRecord::load(directory / "run.h5"), 0};
+    Outcome found{level, directory, output::RunRecord::load(directory / output::record_file), 0};
     if (found.record.deck() != deck) return {};
     if (holds(found.record, "wall_seconds")) found.seconds = found.record.values("wall_seconds").back();
     return found;
@@ -159,7 +153,7 @@ double cancelled(const Request& request, const std::vector<Outcome>& levels, dou
   if (!looser || levels.size() < 4) return 0;
   const Level &fine = levels.back().level, &coarse = levels[levels.size() - 2].level;
   const double of_level_2 = part_error(request, levels[2], *looser, time_ratio);
-  const auto of_time = [&](const Level& level) { return of_level_2 * std::pow(time_ratio, 2 - level.time); };
+  const auto of_time = [&](const Level& level) { return of_level_2 * relative_time_error(level); };
   const double change = of_time(coarse) - of_time(fine);
   if (!(change > much * last)) return 0;
   return predicted_error(last + change, expected_error(coarse), expected_error(fine), expected_error(fine)) + of_time(fine);

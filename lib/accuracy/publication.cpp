@@ -80,23 +80,7 @@ std::string accuracy_text(const LadderRequest& task, const std::vector<Outcome>&
   return text;
 }
 
-/// Returns the summary of a run without the section `estimated errors`, because the sections `error` and `accuracy` replace it.
-std::string without_statement(std::string summary) {
-  const std::size_t begin = summary.find("\nestimated errors:\n");
-  if (begin == std::string::npos) return summary;
-  std::size_t end = summary.find('\n', begin + 1);
-  while (end != std::string::npos && summary.compare(end, 3, "\n  ") == 0) end = summary.find('\n', end + 1);
-  return summary.erase(begin, end == std::string::npos ? end : end - begin);
-}
-
 void print_warning(const std::string& sentence) { std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str()); }
-
-/// Returns the text of the summary in which the empty section `expect` is replaced by `section`. If there is none, appends `section`.
-std::string with_expect(const std::string& summary, const std::string& section) {
-  const std::size_t at = summary.find("\nexpect: []\n");
-  if (at == std::string::npos) return summary + section;
-  return summary.substr(0, at + 1) + section + summary.substr(at + std::string("\nexpect: []\n").size());
-}
 
 }  // namespace
 
@@ -126,19 +110,20 @@ std::string publish(const LadderRequest& task, const std::vector<Outcome>& level
     record.add_error({one.name, one.unit,
                       one.untrusted.empty() ? "estimated error of the series" : "no error: it cannot be estimated, because " + one.untrusted,
                       one.values, one.si});
-  record.move(task.directory / "run.h5");
+  record.move(task.directory / output::record_file);
   record.write(output::Durable::yes);
 
   const std::vector<deck::Verdict> verdicts = deck::verdicts(task.expect.all, table);
-  std::string text = text_of_file(finest.directory / "summary.yaml", "summary.yaml", 10'000'000);
+  std::string text = text_of_file(finest.directory / output::summary_file, output::summary_file, 10'000'000);
   for (const std::string& one : output::listed(text, "warnings")) print_warning(one);
-  if (!end.status.empty()) text.replace(0, text.find('\n'), "status: " + in_quotes(end.status));
-  text = with_expect(without_statement(text), output::yaml(verdicts, estimates(task.expect, errors, table.at("time"))));
+  if (!end.status.empty()) text = output::with_entry(text, "status", output::yaml_status(end.status));
+  text = output::with_entry(text, "expect", output::yaml(verdicts, estimates(task.expect, errors, table.at("time"))));
+  text = output::with_entry(text, "estimated errors", "");  // the sections `error` and `accuracy` replace it
   text += "error:\n";
   for (const SeriesError& one : errors)
     text += "  " + (deck::is_plain(one.name) ? one.name : in_quotes(one.name)) + ": " + real_text(one.values.back()) + "\n";
   text += accuracy_text(task, levels, answers, end.reason, seconds);
-  output::write_whole(task.directory / "summary.yaml", text, output::Durable::yes);
+  output::write_whole(task.directory / output::summary_file, text, output::Durable::yes);
   return deck::missed(verdicts, print_warning);
 }
 

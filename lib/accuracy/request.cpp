@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <iterator>
-#include <string_view>
 
 #include "base/errors.hpp"
 #include "base/text_file.hpp"
@@ -15,12 +14,12 @@ namespace tanktread::accuracy {
 
 namespace {
 
-constexpr std::array<std::string_view, 36> without_error{
+constexpr std::array<std::string_view, 35> without_error{
     "time", "time_step", "step_error", "rejected_steps", "iterations", "evaluations", "assemblies", "solver_iterations", "velocity_iterations",
     "wall_seconds", "n_control_points", "first_of_gap", "second_of_gap", "particle_at_wall", "refit_error", "volume_error", "power_residual",
     "disturbance_flux", "force_imbalance", "cap_velocity", "pressure_drop_by_flux", "pressure_drop_by_force", "drag_error",
     "drag_error_of_traction", "torque_error", "pressure_l2_error", "normal_l2_error", "fold", "unstable_modes", "kernel_evaluations",
-    "surfactant_mass", "volume_fraction", "shape_velocity", "normal_velocity", "contact_force", "phase_of_flow"};
+    "surfactant_mass", "volume_fraction", "shape_velocity", "normal_velocity", "contact_force"};
 
 [[noreturn]] void refuse_form(const std::string& text, const std::string& why) {
   throw UserError("Accuracy/requests: " + deck::in_quotes(deck::shortened(text, 80)) + " " + why +
@@ -93,6 +92,8 @@ std::string setting_of(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) all += (all.empty() ? "" : ", ") + trimmed(text);
   return "Accuracy/requests=" + deck::in_quotes(all);
 }
+
+std::span<const std::string_view> series_without_error() { return without_error; }
 
 bool has_error(const std::string& series) {
   const std::string name = series.substr(series.rfind('/') + 1);

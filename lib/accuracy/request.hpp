@@ -2,7 +2,9 @@
 // Requested accuracy of results: section `Accuracy` of the deck.
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "deck/forward.hpp"
@@ -48,5 +50,8 @@ void check_series(const std::vector<Request>& requests, const std::vector<std::s
 /// Returns whether an error of the series is estimated. No error is estimated for the time, for indices, for series that are errors themselves, and
 /// for series that describe the work of a run (for example `wall_seconds`).
 bool has_error(const std::string& series);
+
+/// Returns the names of series without an error, except vectors, which has_error() finds by the beginning of their names.
+std::span<const std::string_view> series_without_error();
 
 }  // namespace tanktread::accuracy

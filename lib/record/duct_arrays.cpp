@@ -1,6 +1,8 @@
 #include "record/duct_arrays.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "spline/basis.hpp"
 #include "surface/geometry.hpp"
@@ -107,6 +109,22 @@ WallLine along_wall(const coupling::ChannelFlow& flow) {
 
 }  // namespace
 
+std::vector<output::Array> described_channel_arrays() {
+  return {{"s", "length", "arc length s along the centre line of the channel", {}, {}},
+          {"centre", "length", "points of the centre line of the channel", {}, {}},
+          {"factor", "1", "factors of the cross-section at s, along x2 (direction before a bend) and x3", {}, {}},
+          {"wall", "length", "points of the wall at s: on both sides along x2 (direction before a bend), then on both sides along x3", {}, {}},
+          {"velocity", "length/time", "velocity in the empty channel on the centre line", {}, {}},
+          {"section_s", "length", "arc lengths of the cross-sections of `flow_rate`", {}, {}},
+          {"flow_rate", "length^3/time", "flow rate of the empty channel through these cross-sections", {}, {}},
+          {"pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel", {}, {}},
+          {"extra_pressure_drop", "force/length^2",
+           "pressure drop of the empty channel minus that of a straight tube of the same length with the inlet's cross-section", {}, {}},
+          {"wall_s", "length", "arc length along the line of the wall on which the outline begins", {}, {}},
+          {"wall_shear_stress", "force/length^2", "magnitude of the tangential traction on this line in the empty channel", {}, {}},
+          {"wall_pressure", "force/length^2", "pressure on this line in the empty channel, 0 at the outlet", {}, {}}};
+}
+
 std::vector<output::Array> channel_arrays(const coupling::ChannelFlow& flow) {
   const surface::Channel& channel = flow.channel();
   const auto [low, high] = channel.outline().box();
@@ -129,40 +147,24 @@ std::vector<output::Array> channel_arrays(const coupling::ChannelFlow& flow) {
     rate_s.push_back(channel.start() + (channel.end() - channel.start()) * (0.2 + 0.6 * k / (sections - 1)));
   const std::vector<double> rate = flow.flow_rates_at(rate_s);
   const std::size_t n = s.size();
-  std::vector<output::Array> all{
-      {"s", "length", "arc length s along the centre line of the channel", s, {n}},
-      {"centre", "length", "points of the centre line of the channel", flat(centre), {n, 3}},
-      {"factor", "1", "factors of the cross-section at s, along x2 (direction before a bend) and x3", factor, {n, 2}},
-      {"wall",
-       "length",
-       "points of the wall at s: on both sides along x2 (direction before a bend), then on both sides along x3",
-       [&] {
-         std::vector<double> sides;
-         for (const auto& line : lines)
-           for (const double x : flat(line)) sides.push_back(x);
-         return sides;
-       }(),
-       {4, n, 3}},
-      {"velocity", "length/time", "velocity in the empty channel on the centre line", velocity, {n, 3}},
-      {"section_s", "length", "arc lengths of the cross-sections of `flow_rate`", rate_s, {rate_s.size()}},
-      {"flow_rate", "length^3/time", "flow rate of the empty channel through these cross-sections", rate, {rate.size()}},
-      {"pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel", {flow.pressure_drop()}, {}},
-      {"extra_pressure_drop",
-       "force/length^2",
-       "pressure drop of the empty channel minus that of a straight tube of the same length with the inlet's cross-section",
-       {flow.extra_pressure_drop()},
-       {}}};
-  if (channel.repeats())
-    return all;  // the layer density on the wall of a periodic channel is not the traction, so no wall data are plotted
-  const WallLine wall = along_wall(flow);
-  all.push_back({"wall_s", "length", "arc length along the line of the wall on which the outline begins", wall.s, {wall.s.size()}});
-  all.push_back({"wall_shear_stress",
-                 "force/length^2",
-                 "magnitude of the tangential traction on this line in the empty channel",
-                 wall.shear,
-                 {wall.s.size()}});
-  all.push_back(
-      {"wall_pressure", "force/length^2", "pressure on this line in the empty channel, 0 at the outlet", wall.pressure, {wall.s.size()}});
+  std::vector<output::Array> all = described_channel_arrays();
+  const auto set = [&all](const char* name, std::vector<double> values, std::vector<std::size_t> shape) {
+    output::Array& one = *std::ranges::find(all, name, &output::Array::name);
+    one.values = std::move(values), one.shape = std::move(shape);
+  };
+  std::vector<double> sides;
+  for (const auto& side : lines)
+    for (const double x : flat(side)) sides.push_back(x);
+  set("s", s, {n}), set("centre", flat(centre), {n, 3}), set("factor", factor, {n, 2}), set("wall", sides, {4, n, 3});
+  set("velocity", velocity, {n, 3}), set("section_s", rate_s, {rate_s.size()}), set("flow_rate", rate, {rate.size()});
+  set("pressure_drop", {flow.pressure_drop()}, {}), set("extra_pressure_drop", {flow.extra_pressure_drop()}, {});
+  if (!channel.repeats()) {
+    const WallLine wall = along_wall(flow);
+    const std::size_t m = wall.s.size();
+    set("wall_s", wall.s, {m}), set("wall_shear_stress", wall.shear, {m}), set("wall_pressure", wall.pressure, {m});
+  } else {  // the layer density on the wall of a periodic channel is not the traction
+    std::erase_if(all, [](const output::Array& one) { return one.values.empty(); });
+  }
   return all;
 }
 

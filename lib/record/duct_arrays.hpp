@@ -1,4 +1,5 @@
 #pragma once
+// Arrays of the files `duct.h5` and `channel.h5`: cross-section, wall and flow of an empty tube or channel, for plots.
 
 #include <vector>
 
@@ -15,6 +16,9 @@ namespace tanktread {
 ///   maximum (3)      x2, x3 of the largest velocity, and this velocity
 ///   pressure_gradient, mean_velocity, radius (R_T)
 std::vector<output::Array> duct_arrays(const stokes::DuctFlow& flow);
+
+/// Returns the arrays of the file `channel.h5` with their names, units and descriptions, without values.
+std::vector<output::Array> described_channel_arrays();
 
 /// Returns the shape of a channel and the flow through the empty channel, for plots: the arrays of the file `channel.h5` of a run's results.
 /// Collective.

@@ -75,18 +75,6 @@ output::Entries<double> with_earlier(const Phases& phases, const output::Entries
   return seconds;
 }
 
-std::string kept_surface(const ParticleKind& kind) { return (kind.name.empty() ? "particle" : kind.name) + ".iga"; }
-
-std::string kept_initial(const ParticleKind& kind) {
-  return (kind.name.empty() ? "particle" : kind.name) + "_initial" + (kind.particle.shape.initial->file ? ".iga" : ".h5");
-}
-
-std::string kept_stress_free(const ParticleKind& kind) { return (kind.name.empty() ? "particle" : kind.name) + "_stress_free.iga"; }
-
-std::string kept_places(const ParticleKind& kind) { return kind.name + ".csv"; }
-
-std::string kept_name(const std::string& file) { return std::filesystem::path(file).filename(); }
-
 output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks) {
   const bool chooses = ranks.rank() == 0;
   std::optional<output::Saved> saved;
@@ -132,7 +120,7 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
   write([&] {
     occupation_.emplace(directory_);
     request.resume ? output::tidy_directory(directory_) : begin();
-    if (!channel.empty()) output::write_arrays(directory_ / "channel.h5", channel);
+    if (!channel.empty()) output::write_arrays(directory_ / output::channel_file, channel);
   });
   remesh(body, map);
 }
@@ -143,8 +131,8 @@ void Results::begin() {
   for (const auto& [file, name] : scene_.files) keep(file, name);  // first, because it may be a result of the run that is overwritten
   output::start_directory(directory_);
   run_ = identifier();
-  if (body_->duct) output::write_arrays(directory_ / "duct.h5", duct_arrays(stokes::DuctFlow(*body_->duct)));
-  record_.emplace(directory_ / "run.h5", request_.deck_text, origin());
+  if (body_->duct) output::write_arrays(directory_ / output::duct_file, duct_arrays(stokes::DuctFlow(*body_->duct)));
+  record_.emplace(directory_ / output::record_file, request_.deck_text, origin());
   series_.emplace(directory_);
   declare_series();
 }
@@ -192,7 +180,7 @@ std::optional<Resumed> Results::resumed() {
 void Results::load_record(const output::Checkpoint& checkpoint, const std::string& chosen) {
   if (!checkpoint.texts.contains("run") || !checkpoint.texts.contains("record")) throw another_version(directory_);
   run_ = checkpoint.texts.at("run");
-  record_.emplace(output::RunRecord::load(directory_ / "run.h5"));
+  record_.emplace(output::RunRecord::load(directory_ / output::record_file));
   const auto rows = static_cast<std::size_t>(last_saved_) + 1;
   const auto& origin_of_record = record_->provenance();
   if (const auto run = origin_of_record.find("run"); run == origin_of_record.end() || run->second != run_)
@@ -265,7 +253,7 @@ void Results::add_obstacle(const std::string& kind) {
 }
 
 void Results::write_surface(const Net& surface) {
-  write([&] { output::write_whole(directory_ / "surface.iga", spline::iga_text(body_->space, surface), durable()); });
+  write([&] { output::write_whole(directory_ / output::surface_file, spline::iga_text(body_->space, surface), durable()); });
 }
 
 Results::Sampled Results::sample(const SurfaceSnapshot& snapshot, double time) {
@@ -307,13 +295,13 @@ int Results::close(const Account& account, const Phases& phases) {
     if (!unwritten_snapshots_.empty() || rows_written_ != record_->rows()) write_files();
     missed = finish(account, phases);
   });
-  if (!account.whole) missed.clear();
+  if (!output::reached_end(account.status)) missed.clear();
   if (writes_) {
     if (!request_.quiet) std::fputs(output::closing_table(phases, account.counts, directory_).c_str(), stdout);
     const std::string line = account.remark + (account.remark.empty() || missed.empty() ? "" : "; ") + missed;
     if (!line.empty()) std::fprintf(stderr, "tanktread: %s\n", line.c_str());
   }
-  return ranks_.any(!missed.empty()) ? 1 : 0;
+  return ranks_.any(!missed.empty()) ? Exit::missed : Exit::done;
 }
 
 /// Returns estimates of the errors of time integration and quadrature, and the remark that the error of the mesh is unknown.
@@ -358,10 +346,10 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   summary.errors = known_errors();
   summary.warnings = warnings_;
   summary.obstacles = obstacles_;
-  output::write_whole(directory_ / "summary.yaml", output::yaml(summary));
+  output::write_whole(directory_ / output::summary_file, output::yaml(summary));
   series_->write();
   if (durable() == output::Durable::yes)
-    for (const char* name : {"summary.yaml", "run.hdf.series", "."}) output::sync(directory_ / name);
+    for (const char* name : {output::summary_file, output::snapshot_list_file, "."}) output::sync(directory_ / name);
   return missed;
 }
 

@@ -13,10 +13,12 @@
 #include "base/columns.hpp"
 #include "motion/integrator.hpp"
 #include "record/files/checkpoint.hpp"
+#include "record/files/exit_code.hpp"
 #include "record/files/file.hpp"
 #include "record/files/nodes.hpp"
 #include "record/files/run_record.hpp"
 #include "record/files/snapshot.hpp"
+#include "record/files/summary.hpp"
 #include "scene/body.hpp"
 #include "scene/particles/particle_system.hpp"
 #include "scene/scene.hpp"
@@ -42,22 +44,13 @@ struct RunRequest {
   std::map<std::string, std::string> provenance;  ///< data of the program: version, git_commit, compiler
 };
 
-/// Names of files in the results directory that are copies of files named by the deck. With the copies, a run can be resumed without the originals.
-constexpr const char* kept_flow_history = "flow_history.csv";
-std::string kept_surface(const ParticleKind& kind);  ///< returns the name of the copy of a particle's shape file
-std::string kept_initial(const ParticleKind& kind);  ///< returns the name of the copy of the file, or of the snapshot, with the initial shape
-std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name of the copy of the file of the stress-free shape
-std::string kept_places(const ParticleKind& kind);   ///< returns the name of the copy of the file named by `Particles/<name>/copies/file`
-/// Returns the name of the copy of a file with an outline or with a channel's points: the name of the original file without its folder.
-std::string kept_name(const std::string& file);
-
 /// Data of a finished run for its summary and its messages.
 struct Account {
   output::Entries<std::string> plan;
   output::Entries<long> counts;
-  std::string status = "done";  ///< status in summary.yaml: `done`, `steady`, `stopped: ...` or `failed: ...`
+  /// status in summary.yaml (output::run_status). A missed value of Expect fails the run only if the run has reached its end (output::reached_end)
+  std::string status = output::run_status::done;
   std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expected values
-  bool whole = true;            ///< true if the run reached its end; only then can a missed value of Expect fail the run
   output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run
   output::Entries<Vec3> vectors;    ///< drag and torque of a body with prescribed motion, for Summary::final_vectors
   output::Entries<std::string> modes;  ///< modes of a spectrum
@@ -76,8 +69,8 @@ std::string stored_deck(const std::string& directory);
 /// Throws UserError if the directory holds results that the request does not allow to delete, or if another run writes to it. Collective.
 void check_vacant(const RunRequest& request);
 
-/// Files of a run (README.md, Results). The first rank samples snapshots and writes all files. Every call is collective, and all ranks throw
-/// together: RunFailure if writing fails, UserError if a run cannot begin in its directory.
+/// Files of a run (inputs/manual/results/index.md). The first rank samples snapshots and writes all files. Every call is collective, and all ranks
+/// throw together: RunFailure if writing fails, UserError if a run cannot begin in its directory.
 ///
 /// During the first second of a run, files are not flushed to the disk, and snapshots after the first one wait in memory until `run.h5` is written
 /// next: repeating the last steps after a kill takes less time than writing `run.h5` for each snapshot. Afterwards, each snapshot and the rows of
@@ -120,8 +113,8 @@ class Results {
   /// Writes the surface as Bezier-extraction text, `surface.iga`.
   void write_surface(const Net& surface);
 
-  /// Compares the series with `Expect`, writes the summary, and prints the closing table. Returns the exit code: 1 if an expectation was missed and
-  /// the run reached its end, otherwise 0.
+  /// Compares the series with `Expect`, writes the summary, and prints the closing table. Returns the exit code: Exit::missed if an expectation was
+  /// missed and the run reached its end, otherwise Exit::done.
   int close(const Account& account, const Phases& phases);
 
   /// Returns the step of the last checkpoint, or -1 if no checkpoint has been saved yet.

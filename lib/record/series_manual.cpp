@@ -52,9 +52,14 @@ constexpr Entry fields[] = {
      "error p - p_exact of the pressure on the rigid body, if the exact solution is known"},
 };
 
-constexpr Entry entries[] = {
-    {"status", "", "all",
-     "why the run ended: `done`, `steady`, `past` (Time/end when past), `stopped: ` and the cause, or `failed: ` and the reason"},
+std::string in_code(const char* word) { return "`" + std::string(word) + "`"; }
+
+const std::string status_words = "why the run ended: " + in_code(output::run_status::done) + ", " + in_code(output::run_status::steady) + ", " +
+                                 in_code(output::run_status::past) + " (Time/end when past), " + in_code(output::run_status::by_signal) + ", " +
+                                 in_code(output::run_status::by_clock) + ", or " + in_code(output::run_status::failed) + " and the reason";
+
+const Entry entries[] = {
+    {"status", "", "all", status_words.c_str()},
     {"final", "", "all", "last value of every series; for a prescribed body also the vectors `drag` and `torque`"},
     {"final in SI", "", "all", "last value of every series in SI units, as a text with number and unit, if the deck has the section Units"},
     {"expect", "", "all",
@@ -144,6 +149,8 @@ std::string table(const char* heading, const List& list) {
 
 }  // namespace
 
+Columns columns_of_all_runs() { return all_columns().first; }
+
 std::string series_manual(const Registry& registry) {
   surface::TubeOptions circle;
   circle.radius = 1;
@@ -169,6 +176,9 @@ std::string series_manual(const Registry& registry) {
   text += "\n## The empty tube\n\nThe file `duct.h5` of a run in a tube.\n\n| array | unit | description |\n|---|---|---|\n";
   for (const output::Array& one : duct_arrays(stokes::DuctFlow(circle, 1, 1)))
     text += line(one.name, one.unit, "", one.description);
+  text += "\n## The empty channel\n\nThe file `channel.h5` of a run in a channel. A periodic channel has no arrays whose names begin with "
+          "`wall_`.\n\n| array | unit | description |\n|---|---|---|\n";
+  for (const output::Array& one : described_channel_arrays()) text += line(one.name, one.unit, "", one.description);
   text += "\n## Summary\n\nThe file `summary.yaml`.\n" + table("entry", entries);
   const RunTotals none;
   each_count(none, [&](const char* name, const char* of, const char* description, auto) {

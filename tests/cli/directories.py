@@ -87,7 +87,9 @@ def a_failed_write_to_standard_output_is_an_error():
 
     from harness import command
 
-    for words in ([deck(DECK), "--check"], ["--help"], ["--reference"]):
+    request = ["--accuracy", "taylor_inertia=50%"]
+    for words in ([deck(DECK), "--check"], [deck(DECK), "--check", *request], [deck(DECK), "--cite"], ["--cite"], ["--help"], ["--version"],
+                  ["--reference"], ["--reference-series"], ["--rejections"], ["--schema"], ["--new", "drop"]):
         with open("/dev/full", "w") as full:
             result = subprocess.run(command(*words), stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
         check(result.returncode == 3 and "cannot write to standard output" in result.stderr, words, result)

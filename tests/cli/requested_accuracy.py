@@ -159,6 +159,8 @@ def levels_that_the_deck_does_not_allow_count_as_failed():
     said = run("deck.yaml", *words, code=1).stderr.splitlines()[-1]  # the levels have meshes of 56, 98 and 152 points
     check("level 2 failed: Adaptation/largest number of points must be above" in said, said)
     check(len(summary("few")["accuracy"]["levels"]) == 2, summary("few")["accuracy"])
+    predicted = run("deck.yaml", *words, "--set", "Adaptation/largest number of points=60", "--check").stdout
+    check("no level can be predicted, because level 3 failed: Adaptation/largest number of points" in predicted, predicted[-400:])
     run("deck.yaml", *words, "--overwrite", "--set", "Adaptation/largest number of points=153", "--set", "Adaptation/surface tolerance=1e-9", code=1)
     check("largest number of points" in summary("few")["accuracy"]["requests"][0]["untrusted"], summary("few")["accuracy"])
 
@@ -199,6 +201,21 @@ def results_are_kept_if_the_new_scene_cannot_start():
     said = run("deck.yaml", "--accuracy", "one/taylor_inertia=5%", "--overwrite", "--quiet", "--output", "kept", code=2).stderr
     check("overlap" in said, said)
     check(sorted(pathlib.Path("kept").rglob("*")) == before, "results were deleted")
+
+
+def only_files_of_levels_are_deleted():
+    deck(DROP.replace("final time: 1.0", "final time: 0.1"))
+    words = ("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/levels=3", "--quiet", "--output", "out")
+    own = [pathlib.Path("out/mine/failure.txt"), pathlib.Path("out/mine/run.h5"), pathlib.Path("out/failure.txt")]
+    own[0].parent.mkdir(parents=True)
+    for path in own:
+        path.touch()
+    run(*words, code=1)
+    failed = pathlib.Path("out/level_0/failure.txt")  # of an earlier search
+    failed.touch()
+    run(*words, "--overwrite", code=1)
+    check(all(path.exists() for path in own), "a file of the user was deleted")
+    check(not failed.exists(), "the failure of an earlier level was kept")
 
 
 def the_interval_of_a_finished_level_may_change():
@@ -394,6 +411,9 @@ def wrong_requests_are_rejected():
         refused(words, "deck.yaml", "--accuracy", request)
     refused(["initial shape/run"], "deck.yaml", "--accuracy", "area=1%", "--set", "Particle/initial shape/run=results/other")
     refused(["is missing"], "deck.yaml", "--set", "Accuracy/levels=4")
+    stress_free = ["Membrane/law=neo-Hookean", "Membrane/stress-free shape=file", "Membrane/stress-free file=sphere.iga"]
+    refused(["Accuracy and Membrane/stress-free file contradict", "one mesh"], "deck.yaml", "--accuracy", "area=1%",
+            *(word for setting in stress_free for word in ("--set", setting)))
     refused(["area@mean", "branch"], deck(BRANCH), "--accuracy", "area@mean=1%")
 
 

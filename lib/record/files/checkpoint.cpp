@@ -24,10 +24,9 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 /// Returns the step in a snapshot's file name, or -1 if `name` is not the file name of a snapshot.
 int step_of(const std::string& name) {
-  constexpr std::string_view before = "snapshot_", after = ".hdf";
-  if (!name.starts_with(before) || !name.ends_with(after)) return -1;
+  if (!name.starts_with(snapshot_start) || !name.ends_with(snapshot_end)) return -1;
   int step = -1;
-  const char *first = name.data() + before.size(), *last = name.data() + name.size() - after.size();
+  const char *first = name.data() + snapshot_start.size(), *last = name.data() + name.size() - snapshot_end.size();
   const auto [end, error] = std::from_chars(first, last, step);
   return error == std::errc() && end == last ? step : -1;
 }
@@ -48,7 +47,7 @@ std::map<std::string, double> numbers(const hdf::Id& file) {
 
 }  // namespace
 
-std::string snapshot_name(int step) { return formatted("snapshot_%06d.hdf", step); }
+std::string snapshot_name(int step) { return std::string(snapshot_start) + formatted("%06d", step) + std::string(snapshot_end); }
 
 std::string checksum(const Checkpoint& checkpoint) {
   Checksum sum;

@@ -1,5 +1,6 @@
 #include "record/files/file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -19,23 +20,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view unfinished = ".part", damaged = ".damaged", ladder = "ladder.yaml", level = "level_";
+constexpr std::string_view unfinished = ".part", damaged = ".damaged";
 
 bool is_result(const std::string& name) {
-  return name == "run.h5" || name == "duct.h5" || name == "channel.h5" || name == "run.hdf.series" || name == "summary.yaml" ||
-         name == "surface.iga" ||
-         (name.starts_with("snapshot_") && (name.ends_with(".hdf") || name.find(std::string(".hdf").append(damaged)) != name.npos));
+  constexpr std::array<std::string_view, 6> files{record_file, snapshot_list_file, summary_file, duct_file, channel_file, surface_file};
+  return std::ranges::find(files, name) != files.end() ||
+         (name.starts_with(snapshot_start) &&
+          (name.ends_with(snapshot_end) || name.find(std::string(snapshot_end).append(damaged)) != name.npos));
 }
 
 /// Returns true if the result shows that a run has recorded something. The flow in a duct is recorded before the first row.
-bool is_of_run(const std::string& name) { return is_result(name) && name != "duct.h5" && name != "channel.h5"; }
+bool is_of_run(const std::string& name) { return is_result(name) && name != duct_file && name != channel_file; }
 
 bool is_unfinished(const std::string& name) {
   return name.ends_with(unfinished) && is_result(name.substr(0, name.size() - unfinished.size()));
 }
 
-/// Returns true if the entry of a directory is a folder `level_<k>`, which holds one run of an accuracy ladder (lib/accuracy).
+/// Returns true if the entry of a directory is a folder `level_<k>` (level_folder()), which holds one run of an accuracy ladder (lib/accuracy).
 bool is_level(const fs::directory_entry& entry) {
+  constexpr std::string_view level = level_start;
   const std::string name = entry.path().filename();
   return entry.is_directory() && name.size() > level.size() && name.starts_with(level) && name[level.size()] >= '0' && name[level.size()] <= '9';
 }
@@ -113,7 +116,7 @@ void check_vacant(const fs::path& directory) {
   std::error_code absent;
   if (!fs::is_directory(directory, absent)) return;
   in_directory(directory, [&] {
-    if (fs::exists(directory / ladder) || !files_where(directory, is_of_run).empty())
+    if (fs::exists(directory / ladder_file) || !files_where(directory, is_of_run).empty())
       throw UserError(directory.string() + " holds the results of a run: --resume " + directory.string() +
                       " continues it, --overwrite deletes it first, --output chooses another directory.");
   });
@@ -130,10 +133,10 @@ void start_results(const fs::path& directory) {
 void start_directory(const fs::path& directory) {
   start_results(directory);
   in_directory(directory, [&] {
-    if (!fs::exists(directory / ladder)) return;  // folders `level_<k>` are not those of a ladder
+    if (!fs::exists(directory / ladder_file)) return;  // folders `level_<k>` are not those of a ladder
     for (const auto& entry : fs::directory_iterator(directory))
-      if (is_level(entry)) start_results(entry.path());
-    fs::remove(directory / ladder);
+      if (is_level(entry)) start_results(entry.path()), fs::remove(entry.path() / failure_file);
+    fs::remove(directory / ladder_file);
   });
 }
 

@@ -13,6 +13,20 @@
 
 namespace tanktread::output {
 
+/// Names of the files that a run writes into its directory, in addition to snapshots (snapshot_name()) and to copies of files that the deck names. A
+/// new name must be added to is_result() (file.cpp), so that the file is deleted before another run writes into the directory.
+constexpr const char *record_file = "run.h5", *snapshot_list_file = "run.hdf.series", *summary_file = "summary.yaml";
+constexpr const char *duct_file = "duct.h5", *channel_file = "channel.h5", *surface_file = "surface.iga";
+constexpr std::string_view snapshot_start = "snapshot_", snapshot_end = ".hdf";  ///< start and end of the name of a snapshot; the step is in between
+
+/// Names in the directory of an accuracy ladder (lib/accuracy: runs of one deck on finer and finer levels).
+constexpr const char* ladder_file = "ladder.yaml";      ///< deck with its requests; a directory with this file is that of a ladder
+constexpr const char* level_start = "level_";           ///< start of the name of the folder of a level, see level_folder()
+constexpr const char* failure_file = "failure.txt";     ///< in the folder of a level: the deck of a search that failed, and the reason
+
+/// Returns the name of the folder of a level: `level_3` for the level `3`.
+inline std::string level_folder(const std::string& level) { return level_start + level; }
+
 /// Checksum that depends on every bit of the added data (a chain of invertible steps, with the constants of FNV-1a).
 class Checksum {
  public:
@@ -58,8 +72,9 @@ std::filesystem::path set_aside(const std::filesystem::path& path);
 /// Throws UserError if a directory holds results of a run.
 void check_vacant(const std::filesystem::path& directory);
 
-/// Prepares `directory` for a run: creates it, and removes the results of an earlier run, the runs of an accuracy ladder (lib/accuracy), and
-/// unfinished files. Removes only files with names that a run writes. Throws UserError if that fails.
+/// Prepares `directory` for a run: creates it, and removes the results of an earlier run, the results and failure files of an accuracy ladder
+/// (lib/accuracy) in the folders of its levels, and unfinished files. Removes only files with names that a run or a ladder writes. Throws UserError
+/// if that fails.
 void start_directory(const std::filesystem::path& directory);
 
 /// Creates `directory` if necessary and removes the results and unfinished files in it, but keeps the runs of an accuracy ladder (lib/accuracy: one

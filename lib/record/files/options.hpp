@@ -1,4 +1,5 @@
 #pragma once
+// Options of the results: the section `Output` of the deck.
 
 #include <optional>
 #include <string>

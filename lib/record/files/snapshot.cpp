@@ -81,7 +81,7 @@ void SnapshotSeries::write() const {
     text += &entry == entries_.data() ? "\n" : ",\n";
     text += "{\"name\":\"" + snapshot_name(entry.step) + "\",\"time\":" + deck::real_text(entry.time) + "}";
   }
-  write_whole(directory_ / "run.hdf.series", text + "\n]}\n");
+  write_whole(directory_ / snapshot_list_file, text + "\n]}\n");
 }
 
 }  // namespace tanktread::output

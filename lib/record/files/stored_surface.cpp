@@ -1,10 +1,9 @@
 #include "record/files/stored_surface.hpp"
 
-#include <cstdlib>
 #include <stdexcept>
 
 #include "base/errors.hpp"
-#include "base/text_file.hpp"
+#include "record/files/checkpoint.hpp"
 #include "record/files/file.hpp"
 #include "record/files/hdf.hpp"
 
@@ -29,15 +28,8 @@ StoredSurface read_surface(const fs::path& snapshot) try {
 
 std::vector<std::pair<std::string, double>> snapshot_times(const fs::path& directory) {
   std::vector<std::pair<std::string, double>> found;
-  const fs::path path = directory / "run.hdf.series";
-  if (std::error_code absent; !fs::exists(path, absent)) return found;
-  const std::string text = text_of_file(path, path.string(), 100'000'000), name = "\"name\":\"", time = "\"time\":";
-  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at)) {
-    at += name.size();
-    const std::size_t end = text.find('"', at), value = text.find(time, end);
-    if (value == std::string::npos) break;
-    found.emplace_back(text.substr(at, end - at), std::strtod(text.c_str() + value + time.size(), nullptr));
-  }
+  for (const Snapshot& one : snapshots(directory))
+    if (const auto label = snapshot_label(one.path)) found.emplace_back(one.path.filename(), label->time);
   return found;
 }
 

@@ -20,7 +20,7 @@ struct StoredSurface {
 /// Reads the surface of a snapshot. Throws RunFailure if the file cannot be read.
 StoredSurface read_surface(const std::filesystem::path& snapshot);
 
-/// Returns the names and times of the snapshots in a directory, as `run.hdf.series` lists them; empty if there is no list.
+/// Returns the names and times of all readable snapshots in a directory, in the order of their steps.
 std::vector<std::pair<std::string, double>> snapshot_times(const std::filesystem::path& directory);
 
 /// Copies the snapshot `from` to `to` and adds the field `name`, one value per node. Throws RunFailure if reading or writing fails.

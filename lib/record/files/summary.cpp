@@ -1,5 +1,6 @@
 #include "record/files/summary.hpp"
 
+#include <algorithm>
 #include <iomanip>
 #include <sstream>
 
@@ -47,8 +48,10 @@ std::string yaml(const std::vector<deck::Verdict>& verdicts, const std::vector<d
   return text;
 }
 
+std::string yaml_status(const std::string& status) { return "status: " + scalar(status) + "\n"; }
+
 std::string yaml(const Summary& summary) {
-  std::string text = "status: " + scalar(summary.status) + "\n";
+  std::string text = yaml_status(summary.status);
   text += map("final", summary.final) + lines(summary.final_vectors);
   if (!summary.final_in_si.empty()) text += map("final in SI", summary.final_in_si);
   text += yaml(summary.expect);
@@ -62,6 +65,24 @@ std::string yaml(const Summary& summary) {
   if (!summary.obstacles.empty()) text += "obstacles:\n";
   for (const std::string& one : summary.obstacles) text += "  - " + scalar(one) + "\n";
   return text;
+}
+
+bool reached_end(std::string_view status) { return status == run_status::done || status == run_status::steady || status == run_status::past; }
+
+std::string status_of(const std::string& summary) {
+  const std::string head = "status: \"";
+  if (!summary.starts_with(head)) return {};
+  return summary.substr(head.size(), summary.find('"', head.size()) - head.size());
+}
+
+std::string with_entry(std::string summary, const std::string& name, const std::string& entry) {
+  const std::string head = name + ":";
+  const auto next_line = [&](std::size_t at) { return std::min(summary.find('\n', at), summary.size() - 1) + 1; };
+  std::size_t begin = 0;
+  while (begin < summary.size() && summary.compare(begin, head.size(), head) != 0) begin = next_line(begin);
+  std::size_t end = begin;
+  while (end < summary.size() && (end == begin || summary[end] == ' ')) end = next_line(end);
+  return summary.replace(begin, end - begin, entry);
 }
 
 std::vector<std::string> listed(const std::string& summary, const std::string& name) {

@@ -52,6 +52,11 @@ TEST(Levels, ChangeOnePartOnly) {
   EXPECT_TRUE(sets(plain, {1, 3, 1}, "Quadrature/tolerance=5e-04"));
 }
 
+TEST(Levels, DifferInOnePartToMeasureItsError) {
+  EXPECT_EQ(same_but_looser(2, &Level::time), (Level{2, 1, 2}));
+  EXPECT_EQ(same_but_looser(2, &Level::quadrature), (Level{2, 2, 1}));
+}
+
 TEST(Levels, KeepTheRatiosOfSeveralMeshes) {
   const Values deck{{"Particles/a/Surface/mesh", "cube"},       {"Particles/a/Surface/elements per side", "12"},
                     {"Particles/b/Surface/mesh", "cube"},       {"Particles/b/Surface/elements per side", "6"},
@@ -127,7 +132,9 @@ TEST(Levels, HalveFixedSteps) {
 
 TEST(Levels, RejectShapesOfOneMesh) {
   EXPECT_NO_THROW(check_levels(plain));
-  EXPECT_THROW(check_levels(with(plain, {{"Particle/initial shape/run", "results/a"}})), UserError);
+  for (const char* key : {"Particle/initial shape/run", "Membrane/stress-free file", "Particles/one/initial shape/file",
+                          "Particles/one/Membrane/stress-free file"})
+    EXPECT_THROW(check_levels(with(plain, {{key, "results/a"}})), UserError) << key;
 }
 
 TEST(Levels, AreBalancedByTheSharesOfTheirParts) {

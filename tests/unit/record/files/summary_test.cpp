@@ -64,6 +64,26 @@ assert s['warnings'] == ['the load: "strong" # it fails']
   EXPECT_NO_THROW(printed_by("/usr/bin/python3 " + (scratch / "check.py").string() + " " + (scratch / "summary.yaml").string()));
 }
 
+TEST(Summary, StatesHowTheRunEnded) {
+  for (const char* status : {run_status::done, run_status::steady, run_status::past}) {
+    EXPECT_TRUE(reached_end(status)) << status;
+    EXPECT_EQ(status_of(yaml(Summary{.status = status})), status);
+  }
+  for (const std::string status : {run_status::by_signal, run_status::by_clock, run_status::failed, ""}) EXPECT_FALSE(reached_end(status)) << status;
+  EXPECT_EQ(status_of(""), "");
+}
+
+TEST(Summary, IsChangedEntryByEntry) {
+  const std::string summary = "status: \"done\"\nexpect: []\nestimated errors:\n  mesh: \"unknown\"\n  time: \"1\"\nwarnings:\n  - \"a\"\n";
+  EXPECT_EQ(with_entry(summary, "status", yaml_status(run_status::by_clock)),
+            "status: \"stopped: at the wall-clock limit\"\n" + summary.substr(summary.find("expect")));
+  EXPECT_EQ(with_entry(summary, "estimated errors", ""), "status: \"done\"\nexpect: []\nwarnings:\n  - \"a\"\n");
+  EXPECT_EQ(with_entry(summary, "warnings", "warnings: []\n"),
+            "status: \"done\"\nexpect: []\nestimated errors:\n  mesh: \"unknown\"\n  time: \"1\"\nwarnings: []\n");
+  EXPECT_EQ(with_entry(summary, "time", "time: 1\n"), summary + "time: 1\n");  // a key of a map is no entry
+  EXPECT_EQ(with_entry("", "expect", "expect: []\n"), "expect: []\n");
+}
+
 TEST(Summary, WithoutContentIsAMapOfItsParts) {
   EXPECT_EQ(yaml(Summary{}), "status: \"done\"\nfinal: {}\nexpect: []\ncounts: {}\nseconds: {}\nplan: {}\nnumbers: {}\nwarnings: []\n");
 }
