@@ -1,6 +1,7 @@
 #include "base/columns.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -20,6 +21,7 @@ void Columns::add(const Eigen::Ref<const Eigen::VectorXd>& values, std::string_v
   std::istringstream names{std::string(components)};
   std::string component;
   for (Eigen::Index k = 0; names >> component; ++k) {
+    assert(k < values.size());
     Column one = column;
     one.name += component;
     if (const auto at = one.description.find('#'); at != std::string::npos) one.description.replace(at, 1, component);

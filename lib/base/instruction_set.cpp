@@ -9,8 +9,8 @@
 namespace tanktread {
 namespace {
 
-constexpr std::array<const char*, 3> names{"baseline", "avx2", "avx512"};  // names of the instruction sets, in the order of the enumeration
-                                                                           // InstructionSet
+constexpr std::array<const char*, n_instruction_sets> names{"baseline", "avx2", "avx512"};  // in the order of the enumeration
+static_assert(static_cast<std::size_t>(InstructionSet::avx512) + 1 == n_instruction_sets);
 
 InstructionSet widest() {
 #ifdef SEVERAL_INSTRUCTION_SETS

@@ -141,7 +141,7 @@ struct DirectSolver::Impl {
   }
 
   /// Replaces x by A^-1 x, block by block.
-  void solve_blocks(Columns& x) const {
+  void solve_blocks(RightHandSides& x) const {
     for (const Kind& kind : kinds) {
       Eigen::MatrixXd all(kind.size, x.cols() * static_cast<Eigen::Index>(kind.starts.size()));
       const auto each = [&](const auto& use) {
@@ -246,7 +246,7 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
   throw RunFailure("A sparse system of " + std::to_string(a.rows()) + " unknowns could not be factored by KLU2: " + trouble + ".");
 }
 
-void DirectSolver::solve(const Columns& b, Columns& x) const {
+void DirectSolver::solve(const RightHandSides& b, RightHandSides& x) const {
   if (impl_->kinds.empty()) {
     x = impl_->solved(b);
   } else {
@@ -256,7 +256,7 @@ void DirectSolver::solve(const Columns& b, Columns& x) const {
 }
 
 Net DirectSolver::solve(const Net& b) const {
-  Columns x = b;
+  RightHandSides x = b;
   solve(x, x);
   return x;
 }

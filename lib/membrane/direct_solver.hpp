@@ -11,7 +11,7 @@
 namespace tanktread::membrane {
 
 /// Up to three right-hand sides or solutions, one per column.
-using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, Eigen::Dynamic, 3>;
+using RightHandSides = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, Eigen::Dynamic, 3>;
 
 /// Direct solver of Amesos2 for a matrix that every rank holds completely. Every rank solves the whole system, because short vectors are replicated
 /// on all ranks. So there is no communication, the result does not depend on the number of ranks, and KLU2's faulty solve on several ranks (Trilinos
@@ -30,7 +30,7 @@ class DirectSolver {
   void factor(const Eigen::SparseMatrix<double>& a);
 
   /// Computes x = A^-1 b. b and x have the same shape and may be the same object.
-  void solve(const Columns& b, Columns& x) const;
+  void solve(const RightHandSides& b, RightHandSides& x) const;
   Net solve(const Net& b) const;
 
  private:

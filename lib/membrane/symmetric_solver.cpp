@@ -71,7 +71,7 @@ Net SymmetricSolver::solve(const Net& b, std::span<const int> components) const 
   const auto asked = [&](int c) { return std::ranges::find(components, c) != components.end(); };
   Net x = Net::Zero(b.rows(), 3);
   if (parts_.empty() && !components.empty()) {
-    Columns some = b(Eigen::all, components);
+    RightHandSides some = b(Eigen::all, components);
     whole_.solve(some, some);
     x(Eigen::all, components) = some;
   }
@@ -79,7 +79,7 @@ Net SymmetricSolver::solve(const Net& b, std::span<const int> components) const 
     std::vector<int> mine;
     std::ranges::copy_if(part.components, std::back_inserter(mine), asked);
     if (mine.empty()) continue;
-    Columns some = part.images.asDiagonal() * b(part.points, mine);
+    RightHandSides some = part.images.asDiagonal() * b(part.points, mine);
     part.solver.solve(some, some);
     for (std::size_t k = 0; k < mine.size(); ++k)
       for (Eigen::Index a = 0; a < x.rows(); ++a)

@@ -21,7 +21,9 @@ struct PastPosition {
 };
 
 /// Complete state of a time integration, part of a checkpoint. A run that continues from this state gives bitwise the results of an uninterrupted
-/// run.
+/// run. A new member also needs a decision in: forget(); record/files/checkpoint.cpp (stored and read); `of_shape`, `put_back` and `transferred` in
+/// scene/series/surface_fields.cpp (fields, other mesh); scene/particles/adaptation.cpp; `hold_centre` in scene/particles/drift.cpp; `advance_apart`
+/// in app/time_steps.cpp.
 struct State {
   double time = 0;
   double step = 0;              ///< the step that the controller proposes next
@@ -70,7 +72,7 @@ class Integrator {
   virtual ~Integrator() = default;
 
   /// Advances by one accepted step, not beyond `limit` or the next kink of the motion. Throws RunFailure if the step falls below `Time/minimum step`.
-  /// The state is then unchanged, unless cross_kink() has restarted it.
+  /// Time, position and slopes are then unchanged, unless cross_kink() has restarted the state.
   virtual StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) = 0;
 };
 

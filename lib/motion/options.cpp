@@ -25,7 +25,7 @@ void state_idle_keys(deck::Section& section, const std::string& scheme) {
 }  // namespace
 
 void TimeOptions::declare(deck::Section& section) {
-  section.key("scheme", scheme, deck::Choice{"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"},
+  section.key("scheme", scheme, schemes,
               "time integration scheme. `auto`: `bs3`, `tr-bdf2` or `rkc2` according to the measured stiffness, but `tr-bdf2` if every velocity "
               "needs the solution of a linear system (viscosity ratio other than 1). `tr-bdf2`: implicit, L-stable, order 3 by extrapolation. "
               "`bdf3`: implicit, multistep, order 3. `bs3`: explicit Runge-Kutta, order 3. `rkc2`: explicit stabilised Runge-Kutta, order 2, "

@@ -2,12 +2,15 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tanktread::deck {
 class Section;
 }
 
 namespace tanktread::motion {
+
+inline const std::vector<std::string> schemes{"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"};  ///< words of Time/scheme
 
 /// Options of the time integration, `Time/*` of the deck.
 struct TimeOptions {

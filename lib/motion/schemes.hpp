@@ -111,12 +111,12 @@ int rkc2_stages(double dt, double rho);
 /// velocity evaluation if nothing is assembled.
 double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations);
 
-/// Measures the stiffness (4.7) at the state, with three iterations if it was measured on a mesh of as many control points before, otherwise eight.
-/// Sets `stiffness`, unless the result is not finite, `age` (0) and `points` in the memory of a scheme. Returns the number of iterations.
+/// Measures the stiffness (4.7) at the state, with three iterations if the direction of an earlier measurement on the same mesh is known, otherwise
+/// with eight. Sets `stiffness`, unless the result is not finite, `age` (0) and `points` in the memory of a scheme. Returns the number of iterations.
 template <class Memory>
 int measure_stiffness(coupling::Dynamics& dynamics, State& state, Memory& memory) {
   const auto points = static_cast<double>(state.x.rows());
-  const int iterations = memory.points == points ? 3 : 8;
+  const int iterations = memory.points == points && state.direction.rows() == state.x.rows() ? 3 : 8;
   dynamics.set_time(state.time, state.time);
   const double found = stiffness(dynamics, state.x, state.history.front(), state.direction, iterations);
   if (std::isfinite(found)) memory.stiffness = found;

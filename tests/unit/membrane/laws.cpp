@@ -11,6 +11,7 @@ namespace {
 
 const Law neo_hookean = NeoHookean{1.3}, skalak = Skalak{1.3, 2.5}, mooney = MooneyRivlin{1.3, 0.4}, evans = EvansSkalak{1.3, 2.5},
           interface = SurfaceTension{1.3}, spring = MaxwellSpring{1.3, 2.5};
+static_assert(std::variant_size_v<Law> == 8, "add the new law to the lists of the tests");  // AreaElasticity and UserLaw have tests of their own
 
 TEST(Laws, AnUnstretchedMembraneHasNoEnergyAndNoTension) {
   for (const Law& law : {neo_hookean, skalak, mooney, evans}) {

@@ -42,7 +42,7 @@ State start(double step) {
 bool never() { return false; }
 
 TEST(GuardedDynamics, AFailedEvaluationShortensTheStepInEveryScheme) {
-  for (const char* scheme : {"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"}) {
+  for (const std::string& scheme : schemes) {
     TimeOptions options;
     options.scheme = scheme;
     options.tolerance = 0.1;
