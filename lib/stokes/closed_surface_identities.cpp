@@ -60,7 +60,7 @@ void subtract_identities(const LayerSources& sources, std::span<const int> sites
     for (std::size_t j = near.first[k]; j < near.first[k + 1]; ++j) {
       const auto b = std::ranges::find(points, near.point[j]) - points.begin();
       if (b == basis.size()) continue;
-      for (std::size_t c = 0; c < 6; ++c) entries[6 * j + c] -= basis[b] * m(upper[c][0], upper[c][1]);
+      for (std::size_t c = 0; c < kernel_entries; ++c) entries[kernel_entries * j + c] -= basis[b] * m(upper[c][0], upper[c][1]);
     }
   }
 }

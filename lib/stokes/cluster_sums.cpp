@@ -27,7 +27,10 @@ void ClusterSums::repeat(std::vector<Vec3> images) {
 
 void ClusterSums::set_sums(LayerSources& sources, const LayerMedium& medium, const LayerTargets& targets, Net& u) {
   place(sources, medium, targets);
-  sources.single() ? set_sums_of_forces(sources, medium, targets, u) : set_sums_of_stresslets(sources, targets, u);
+  switch (sources.kernel()) {
+    case LayerKernel::single_layer: set_sums_of_forces(sources, medium, targets, u); break;
+    case LayerKernel::double_layer: set_sums_of_stresslets(sources, targets, u); break;
+  }
   sources.evaluations.far += tree_.interactions();
 }
 
@@ -52,7 +55,10 @@ void ClusterSums::place(LayerSources& sources, const LayerMedium& medium, const 
       wanted.push_back(static_cast<int>(k + static_cast<std::ptrdiff_t>(g * at_.size())));
     }
   tree_.want(wanted);
-  if (sources.single()) return;
+  switch (sources.kernel()) {
+    case LayerKernel::single_layer: return;
+    case LayerKernel::double_layer: break;  // the constants f0 are multiplied by the sum of T_ijk n_k
+  }
   assert(reflections == 0);
   stress_.resize(6 * at_.size());
   const auto& normal = sources.normal;

@@ -83,7 +83,7 @@ void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
   Net at(u.rows(), 3), f0 = Net::Zero(u.rows(), 3);
   for (const int i : in_tree) at.row(i) = surface.site(i).transpose();
   for (const int i : far_rows)
-    if (!single()) f0.row(i) = surface.value(i, sources_.bezier_f).transpose();
+    if (subtracts_density(sources_.kernel())) f0.row(i) = surface.value(i, sources_.bezier_f).transpose();
   integrate({sites, far_rows, at, f0, in_tree, true, no_row}, nullptr, u);
 }
 
@@ -163,7 +163,7 @@ Layer::Near Layer::near(const Net& at, std::span<const int> targets, int first_i
       for (const int e : surface.near(y, {})) {
         const std::size_t first = kept.moments.size();
         kept.panels.push_back(e);
-        kept.moments.resize(first + static_cast<std::size_t>(6) * surface.panels[e].table->n_bernstein);
+        kept.moments.resize(first + static_cast<std::size_t>(kernel_entries) * surface.panels[e].table->n_bernstein);
         const PointTable& table = surface.near_field.rule(e, y, {});
         sources_.moments_beyond_far_sum(e, table, nullptr, y, &kept.moments[first]);
         sources_.evaluations.near += table.points + surface.panels[e].table->n_nodes;
@@ -183,7 +183,7 @@ void Layer::add_kept(const LayerTargets& targets, const Near& kept, Net& u) cons
       const Panel& panel = sources_.surface.panels[kept.panels[pair]];
       const int n_b = panel.table->n_bernstein;
       const double* f = &sources_.bezier_f[panel.first_bezier];
-      for (int b = 0; b < n_b; ++b, m += 6) {
+      for (int b = 0; b < n_b; ++b, m += kernel_entries) {
         const double f1 = f[b] - targets.f0(i, 0), f2 = f[n_b + b] - targets.f0(i, 1), f3 = f[2 * n_b + b] - targets.f0(i, 2);
         sum[0] += m[0] * f1 + m[1] * f2 + m[2] * f3;
         sum[1] += m[1] * f1 + m[3] * f2 + m[4] * f3;

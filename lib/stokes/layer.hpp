@@ -91,7 +91,7 @@ class Layer {
   void apply(const Net& f, std::span<const int> sites, Net& u);
 
   /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density. For each pair of a point and a close panel,
-  /// the corrections are stored as moments: 6 per Bernstein polynomial of the panel.
+  /// the corrections are stored as moments: kernel_entries per Bernstein polynomial of the panel.
   struct Near {
     std::vector<std::size_t> first;  ///< for each target, index in `panels` at which the list of the target's close panels begins
     std::vector<int> panels;
@@ -149,11 +149,8 @@ class Layer {
   const Phases& phases() const { return sources_.phases; }
 
  private:
-  bool single() const { return sources_.single(); }
-  /// Returns the tolerance of the sum by clusters. For the single layer it is the tolerance of the deck. For the double layer it is half of this
-  /// tolerance, with which the measured error is a quarter of the deck's tolerance. The options of a double layer contain an eighth of the deck's
-  /// tolerance.
-  double cluster_tolerance() const { return (single() ? 1 : 4) * sources_.surface.options.tolerance; }
+  /// Returns the tolerance of the sum by clusters.
+  double cluster_tolerance() const { return cluster_tolerance_factor(sources_.kernel()) * sources_.surface.options.tolerance; }
   void use_clusters();
   void require_no_medium() const;
   void use(std::unique_ptr<LayerMedium> medium);

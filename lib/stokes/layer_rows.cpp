@@ -60,17 +60,17 @@ struct FarBasis {
   }
 };
 
-/// Adds the Bernstein moments of panel e, moments[6 b + c], to the sums of one target: sums[n (6 rows[A] + c)] for each basis function A, with n =
-/// assembly_block.
+/// Adds the Bernstein moments of panel e, moments[m b + c] with m = kernel_entries, to the sums of one target: sums[n (m rows[A] + c)] for each basis
+/// function A, with n = assembly_block.
 template <class Real>
 void add_moments(const Panels& panels, int e, const int* rows, const double* moments, Real* sums) {
   const int n_b = panels[e].table->n_bernstein;
   const Eigen::Map<const Rows<double>> extraction(panels.extraction(e), panels[e].functions, n_b);
-  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>> moment(moments, n_b, 6);
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, kernel_entries, Eigen::RowMajor>> moment(moments, n_b, kernel_entries);
   for (int a = 0; a < panels[e].functions; ++a) {
-    const Eigen::Matrix<double, 1, 6> row = extraction.row(a).lazyProduct(moment);
-    Real* to = sums + static_cast<std::ptrdiff_t>(6 * assembly_block) * rows[a];
-    for (int c = 0; c < 6; ++c) to[assembly_block * c] += static_cast<Real>(row[c]);
+    const Eigen::Matrix<double, 1, kernel_entries> row = extraction.row(a).lazyProduct(moment);
+    Real* to = sums + static_cast<std::ptrdiff_t>(kernel_entries * assembly_block) * rows[a];
+    for (int c = 0; c < kernel_entries; ++c) to[assembly_block * c] += static_cast<Real>(row[c]);
   }
 }
 
@@ -83,7 +83,7 @@ void write_rows(int row, int n_points, const Real* sums, Rows<Real>& a) {
   for (int i = 0; i < 3; ++i) {
     Real* to = &a(row + i, 0);
     const Real* from = sums;
-    for (int p = 0; p < n_points; ++p, from += 6 * assembly_block, to += 3)
+    for (int p = 0; p < n_points; ++p, from += kernel_entries * assembly_block, to += 3)
       for (int j = 0; j < 3; ++j) to[j] = scale * from[assembly_block * entry[3 * i + j]];
   }
 }
@@ -115,11 +115,11 @@ class RowSums {
       : sources_(sources), medium_(medium), at_(at), copies_(copies), shifts_(displacements(medium, copies)) {}
 
   FarBasis<Real> basis;
-  std::vector<Real> sums;  ///< sums[m (6 row + c) + l], with m = assembly_block: integral of kernel entry c (11, 12, 13, 22, 23, 33) times the basis
-                           ///< function of control point `row`, at target l
+  std::vector<Real> sums;  ///< sums[n (m row + c) + l], with n = assembly_block and m = kernel_entries: integral of kernel entry c (11, 12, 13, 22,
+                           ///< 23, 33) times the basis function of control point `row`, at target l
 
   void add(std::span<const int> targets, int rows) {
-    sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
+    sums.assign(static_cast<std::size_t>(kernel_entries) * assembly_block * (rows + 1), Real(0));
     skip_.assign(basis.panels.size(), 0u);
     for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], l);
     for (const Vec3& image : wrapped() ? medium_.node_shifts() : shifts_) {
@@ -154,7 +154,7 @@ class RowSums {
   void add_panel(int e, const PointTable& table, SelfPair* pair, const Vec3& x0, int l) {
     const Panels& panels = sources_.surface.panels;
     const auto k = static_cast<std::size_t>(basis.index[e]);
-    moments_.resize(static_cast<std::size_t>(6) * panels[e].table->n_bernstein);
+    moments_.resize(static_cast<std::size_t>(kernel_entries) * panels[e].table->n_bernstein);
     if (copies_ != Copies::surfaces) {
       sources_.moments_beyond_far_sum(e, table, pair, x0, moments_.data());
     } else {
@@ -168,11 +168,13 @@ class RowSums {
   void add_far_panel(std::size_t k, const double* place, int n_targets) {
     const int first = sources_.surface.panels[basis.panels[k]].first_node;
     PanelNodes<Real> nodes = basis.nodes(sources_.surface, wrapped() ? medium_.nodes(sources_) : sources_.surface.node, k);
-    if (sources_.single())
-      nodes.weight = &sources_.weight[first];
-    else
-      for (int c = 0; c < 3; ++c) nodes.normal[c] = &sources_.normal[c][first];
-    kernel_.resize(static_cast<std::size_t>(6) * assembly_block * nodes.n_nodes);
+    switch (sources_.kernel()) {
+      case LayerKernel::single_layer: nodes.weight = &sources_.weight[first]; break;
+      case LayerKernel::double_layer:
+        for (int c = 0; c < 3; ++c) nodes.normal[c] = &sources_.normal[c][first];
+        break;
+    }
+    kernel_.resize(static_cast<std::size_t>(kernel_entries) * assembly_block * nodes.n_nodes);
     far_moments(nodes, place, skip_[k], kernel_.data(), sums.data());
     sources_.evaluations.far += static_cast<long long>(n_targets) * nodes.n_nodes;
   }
@@ -192,13 +194,13 @@ class RowSums {
 /// with f(x).
 template <class Real>
 void subtract_density_at_site(const LayerSources& sources, int site, Real* sums) {
-  double total[6] = {};
+  double total[kernel_entries] = {};
   for (int p = 0; p < sources.surface.n_points; ++p)
-    for (int c = 0; c < 6; ++c) total[c] += sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(p) + c)];
+    for (int c = 0; c < kernel_entries; ++c) total[c] += sums[assembly_block * (kernel_entries * static_cast<std::ptrdiff_t>(p) + c)];
   const auto [panel, basis] = sources.surface.self_field.basis(site, sources.surface.panels);
   for (int b = 0; b < basis.size(); ++b)
-    for (int c = 0; c < 6; ++c)
-      sums[assembly_block * (6 * static_cast<std::ptrdiff_t>(sources.surface.panels.points(panel)[b]) + c)] -=
+    for (int c = 0; c < kernel_entries; ++c)
+      sums[assembly_block * (kernel_entries * static_cast<std::ptrdiff_t>(sources.surface.panels.points(panel)[b]) + c)] -=
           static_cast<Real>(basis[b] * total[c]);
 }
 
@@ -211,7 +213,7 @@ void add_medium_rows(LayerSources& sources, LayerMedium& medium, std::span<const
   for (std::size_t k = 0; k < targets.size(); ++k) {
     block.assign(static_cast<std::size_t>(surface.n_points), Mat3::Zero());
     if (!medium.add_row(sources, at ? Vec3(at->row(targets[k]).transpose()) : surface.site(targets[k]), block)) return;
-    if (!sources.single() && !at) {
+    if (subtracts_density(sources.kernel()) && !at) {
       Mat3 total = Mat3::Zero();
       for (const Mat3& of_point : block) total += of_point;
       const auto [panel, basis] = surface.self_field.basis(targets[k], surface.panels);
@@ -238,7 +240,7 @@ void assemble_copies(LayerSources& sources, const LayerMedium& medium, std::span
     const std::span<const int> some = targets.subspan(first, std::min(block, targets.size() - first));
     rows.add(some, sources.surface.n_points);
     for (std::size_t l = 0; l < some.size(); ++l) {
-      if (!sources.single() && !at) subtract_density_at_site(sources, some[l], &rows.sums[l]);
+      if (subtracts_density(sources.kernel()) && !at) subtract_density_at_site(sources, some[l], &rows.sums[l]);
       write_rows(3 * static_cast<int>(first + l), sources.surface.n_points, &rows.sums[l], a);
     }
   }
@@ -256,7 +258,11 @@ void assemble_rows(LayerSources& sources, LayerMedium& medium, std::span<const i
 template <class Real>
 void Layer::assemble(std::span<const int> sites, Rows<Real>& a) {
   assemble_rows(sources_, *medium_, sites, nullptr, a);
-  if (!single() || !medium_->rows_include_images()) return;
+  if (!medium_->rows_include_images()) return;
+  switch (sources_.kernel()) {
+    case LayerKernel::single_layer: break;
+    case LayerKernel::double_layer: return;  // its rows include only the near images
+  }
   if constexpr (std::is_same_v<Real, double>) {
     const auto clock = sources_.phases.time("assembly");
     medium_->add_remainder(sources_, sites, a);
@@ -278,7 +284,7 @@ void Layer::assemble_images(const Net& at, std::span<const int> targets, Rows<fl
 }
 
 void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) {
-  assert(single());
+  assert(!subtracts_density(sources_.kernel()));
   const auto clock = sources_.phases.time("assembly");
   constexpr std::size_t block = assembly_block;
   const Panels& panels = sources_.surface.panels;
@@ -287,7 +293,7 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
     for (int a = 0; a < panels[e].functions; ++a) panels_of[panels.points(e)[a]].push_back(e);
   RowSums<double> rows(sources_, *medium_, nullptr, copies(*medium_));
   std::vector<int> row_of_point;
-  entries.resize(6 * near.point.size());
+  entries.resize(kernel_entries * near.point.size());
   for (std::size_t first = 0; first < sites.size(); first += block) {
     const std::span<const int> some = sites.subspan(first, std::min(block, sites.size() - first));
     std::vector<int> wanted(near.point.begin() + static_cast<std::ptrdiff_t>(near.first[first]),
@@ -304,8 +310,9 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
     rows.add(some, spare);
     for (std::size_t l = 0; l < some.size(); ++l)
       for (std::size_t j = near.first[first + l]; j < near.first[first + l + 1]; ++j)
-        for (std::size_t c = 0; c < 6; ++c)
-          entries[6 * j + c] = over_8_pi * rows.sums[block * (6 * static_cast<std::size_t>(row_of_point[near.point[j]]) + c) + l];
+        for (std::size_t c = 0; c < kernel_entries; ++c)
+          entries[kernel_entries * j + c] =
+              over_8_pi * rows.sums[block * (kernel_entries * static_cast<std::size_t>(row_of_point[near.point[j]]) + c) + l];
   }
   if (sources_.desingularised()) subtract_identities(sources_, sites, near, entries);
 }

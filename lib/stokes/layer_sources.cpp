@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "stokes/kernels/pair_kernel.hpp"
@@ -9,11 +10,9 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Returns the options, with an eighth of the tolerance for the double layer. Quadrature rules are chosen for the kernel of the single layer. The
-/// kernel of the double layer is singular by one order more, so that its error with the same rule is up to five times as large
-/// (tests/verify/layers.cpp).
+/// Returns the options with the tolerance of quadrature rules for the kernel.
 quadrature::Options for_kernel(quadrature::Options options, LayerKernel kernel) {
-  if (kernel == LayerKernel::double_layer) options.tolerance /= 8;
+  options.tolerance *= tolerance_factor(kernel);
   return options;
 }
 
@@ -21,7 +20,7 @@ quadrature::Options for_kernel(quadrature::Options options, LayerKernel kernel) 
 
 LayerSources::LayerSources(LayerKernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options,
                            std::vector<double> factor)
-    : surface(space, sites, for_kernel(options, kernel), kernel == LayerKernel::double_layer),
+    : surface(space, sites, for_kernel(options, kernel), is_steep(kernel)),
       kernel_(kernel),
       factor_(std::move(factor)) {}
 
@@ -37,14 +36,25 @@ bool LayerSources::set_shape(const Net& x, Measure measure) {
   assert((measure == Measure::current || !reference_.weight.empty()) && "set_reference() comes first");
   if (!surface.set_shape(x) && measure == measure_) return false;
   measure_ = measure;
-  if (!single() || desingularised()) node_normals(surface.panels, surface.bezier, normal);
-  if (single()) weight = reference_.weight, weight.resize(static_cast<std::size_t>(n_nodes()));
-  for (int e = 0; single() && e < surface.panels.size(); ++e)
-    if (!on_reference(e)) node_weights(surface.panels, e, surface.bezier, weight);
-  for (std::vector<double>& values : single() ? std::span(&weight, 1) : std::span(normal))
-    for (int e = 0; !factor_.empty() && e < surface.panels.size(); ++e)
-      for (int k = 0; k < surface.panels[e].table->n_nodes; ++k) values[surface.panels[e].first_node + k] *= factor_[e];
+  const bool weighted = uses_weights(kernel_);
+  if (!weighted || desingularised()) node_normals(surface.panels, surface.bezier, normal);
+  if (weighted) set_weights();
+  multiply_by_factors(weighted ? std::span(&weight, 1) : std::span(normal));
   return true;
+}
+
+/// Sets `weight` without the factors of the surfaces.
+void LayerSources::set_weights() {
+  weight = reference_.weight, weight.resize(static_cast<std::size_t>(n_nodes()));
+  for (int e = 0; e < surface.panels.size(); ++e)
+    if (!on_reference(e)) node_weights(surface.panels, e, surface.bezier, weight);
+}
+
+/// Multiplies arrays of values at the far nodes by the factors of the surfaces.
+void LayerSources::multiply_by_factors(std::span<std::vector<double>> values) const {
+  for (std::vector<double>& component : values)
+    for (int e = 0; !factor_.empty() && e < surface.panels.size(); ++e)
+      for (int k = 0; k < surface.panels[e].table->n_nodes; ++k) component[surface.panels[e].first_node + k] *= factor_[e];
 }
 
 void LayerSources::values(const Net& field, NodeVectors& value) {
@@ -56,7 +66,7 @@ void LayerSources::set_density(const Net& f) {
   const auto clock = phases.time("setup");
   surface.panels.bezier(f, bezier_f);
   node_values(surface.panels, bezier_f, density);
-  if (!single()) return;
+  if (!uses_weights(kernel_)) return;
   for (auto& component : density)
     for (int k = 0; k < n_nodes(); ++k) component[k] *= weight[k];
 }
@@ -106,8 +116,10 @@ const LayerSources::StressletMoments& LayerSources::stresslet_moments_of_constan
 
 Net LayerSources::direct_sum(const NodeVectors& x, std::span<const Vec3> at, std::span<const Vec3> f0) {
   Net sums(at.size(), 3);
-  single() ? far_sums(charges(x, density), at, sums.data())
-           : far_sums(stresslets(x, density, normal), at, f0, sums.data());
+  switch (kernel_) {
+    case LayerKernel::single_layer: far_sums(charges(x, density), at, sums.data()); break;
+    case LayerKernel::double_layer: far_sums(stresslets(x, density, normal), at, f0, sums.data()); break;
+  }
   evaluations.far += static_cast<long long>(at.size()) * n_nodes();
   return sums;
 }
@@ -115,8 +127,10 @@ Net LayerSources::direct_sum(const NodeVectors& x, std::span<const Vec3> at, std
 Vec3 LayerSources::direct_sum(int e, const Vec3& at, const Vec3& f0) const {
   const int first = surface.panels[e].first_node, n = surface.panels[e].table->n_nodes;
   Vec3 sum;
-  single() ? node_sum(charges(surface.node, density).part(first, n), at.data(), sum.data())
-           : node_sum(stresslets(surface.node, density, normal).part(first, n), at.data(), f0.data(), sum.data());
+  switch (kernel_) {
+    case LayerKernel::single_layer: node_sum(charges(surface.node, density).part(first, n), at.data(), sum.data()); break;
+    case LayerKernel::double_layer: node_sum(stresslets(surface.node, density, normal).part(first, n), at.data(), f0.data(), sum.data()); break;
+  }
   return sum;
 }
 
@@ -124,8 +138,10 @@ Vec3 LayerSources::beyond_far_sum(int e, const PointTable& table, SelfPair* pair
   const Panel& panel = surface.panels[e];
   const double *x = &surface.bezier[panel.first_bezier], *f = &bezier_f[panel.first_bezier];
   Vec3 better;
-  single() ? single_sum(table, x, f, area_weights_of(e, table, pair), at.data(), better.data())
-           : double_sum(table, x, f, at.data(), f0.data(), better.data());
+  switch (kernel_) {
+    case LayerKernel::single_layer: single_sum(table, x, f, area_weights_of(e, table, pair), at.data(), better.data()); break;
+    case LayerKernel::double_layer: double_sum(table, x, f, at.data(), f0.data(), better.data()); break;
+  }
   count += table.points + panel.table->n_nodes;
   return factor(e) * better - direct_sum(e, at, f0);
 }
@@ -141,13 +157,22 @@ const Pack* LayerSources::area_weights_of(int e, const PointTable& table, SelfPa
 
 void LayerSources::panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
   const double* bezier = &surface.bezier[surface.panels[e].first_bezier];
-  scratch_.resize(static_cast<std::size_t>(6) * table.packs());
-  if (single())
-    single_moments(table, bezier, area_weights_of(e, table, pair), at.data(), scratch_.data(), moments);
-  else
-    double_moments(table, bezier, at.data(), scratch_.data(), moments);
+  scratch_.resize(static_cast<std::size_t>(kernel_entries) * table.packs());
+  switch (kernel_) {
+    case LayerKernel::single_layer: single_moments(table, bezier, area_weights_of(e, table, pair), at.data(), scratch_.data(), moments); break;
+    case LayerKernel::double_layer: double_moments(table, bezier, at.data(), scratch_.data(), moments); break;
+  }
   if (factor_.empty()) return;
-  for (int k = 0; k < 6 * surface.panels[e].table->n_bernstein; ++k) moments[k] *= factor_[e];
+  for (int k = 0; k < kernel_entries * surface.panels[e].table->n_bernstein; ++k) moments[k] *= factor_[e];
+}
+
+/// Returns the kernel of a far node at the vector r from the target, times the weight of the node.
+Mat3 LayerSources::kernel_at(int node, const Vec3& r) const {
+  switch (kernel_) {
+    case LayerKernel::single_layer: return weight[node] * stokeslet(r);
+    case LayerKernel::double_layer: return stresslet(r, Vec3(normal[0][node], normal[1][node], normal[2][node]));
+  }
+  throw std::logic_error("unknown LayerKernel");
 }
 
 void LayerSources::moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
@@ -158,10 +183,10 @@ void LayerSources::moments_beyond_far_sum(int e, const PointTable& table, SelfPa
     const int node = panel.first_node + k;
     const Vec3 r = Vec3(surface.node[0][node], surface.node[1][node], surface.node[2][node]) - at;
     if (r.squaredNorm() <= coincident(at[0], at[1], at[2])) continue;
-    const Mat3 g = single() ? Mat3(weight[node] * stokeslet(r)) : stresslet(r, Vec3(normal[0][node], normal[1][node], normal[2][node]));
-    const double entries[6] = {g(0, 0), g(0, 1), g(0, 2), g(1, 1), g(1, 2), g(2, 2)};
+    const Mat3 g = kernel_at(node, r);
+    const double entries[kernel_entries] = {g(0, 0), g(0, 1), g(0, 2), g(1, 1), g(1, 2), g(2, 2)};
     for (int b = 0; b < t.n_bernstein; ++b)
-      for (int c = 0; c < 6; ++c) moments[6 * b + c] -= entries[c] * t.value[static_cast<std::size_t>(t.n_nodes * b + k)];
+      for (int c = 0; c < kernel_entries; ++c) moments[kernel_entries * b + c] -= entries[c] * t.value[static_cast<std::size_t>(t.n_nodes * b + k)];
   }
 }
 

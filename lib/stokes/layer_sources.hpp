@@ -10,13 +10,12 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/kernels/kernels.hpp"
+#include "stokes/layer_kernel.hpp"
 #include "stokes/layer_surface.hpp"
 #include "stokes/sums/far_sums.hpp"
 #include "stokes/sums/layer_rule.hpp"
 
 namespace tanktread::stokes {
-
-enum class LayerKernel { single_layer, double_layer };
 
 /// Area to which the density of a single layer refers: unstressed area (3.7), current area (3.6), or a choice between the two for each element
 /// (LayerSources::set_reference).
@@ -34,7 +33,7 @@ class LayerSources {
   LayerSources(LayerKernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options,
                std::vector<double> factor);
 
-  bool single() const { return kernel_ == LayerKernel::single_layer; }
+  LayerKernel kernel() const { return kernel_; }
   int n_nodes() const { return surface.panels.n_nodes(); }
   /// Returns the factor k_p of (2.1) and (2.2) of the surface that contains element e.
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
@@ -43,7 +42,7 @@ class LayerSources {
     return measure_ == Measure::reference || (measure_ == Measure::by_element && !reference_.per_current_area[static_cast<std::size_t>(e)]);
   }
   /// Returns whether the singularity is subtracted by identities of a closed surface, because there are no singular rules.
-  bool desingularised() const { return single() && !has_singular_rules(surface.options.rule); }
+  bool desingularised() const { return has_identities(kernel_) && !has_singular_rules(surface.options.rule); }
 
   /// See Layer::set_reference.
   void set_reference(const Net& unstressed, std::vector<bool> per_current_area);
@@ -79,8 +78,8 @@ class LayerSources {
   /// pair of target and panel if the panel contains the target, otherwise null. `count` is increased by the number of kernel evaluations.
   Vec3 beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count);
 
-  /// Computes the integrals of the kernel times each Bernstein polynomial (six numbers for each: 11, 12, 13, 22, 23, 33) over panel e by the rule
-  /// `table`, times the factor of the panel. moments_beyond_far_sum() subtracts the contribution of the panel to the far sum.
+  /// Computes the integrals of the kernel times each Bernstein polynomial (kernel_entries numbers for each: 11, 12, 13, 22, 23, 33) over panel e by
+  /// the rule `table`, times the factor of the panel. moments_beyond_far_sum() subtracts the contribution of the panel to the far sum.
   void panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments);
   void moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments);
 
@@ -90,8 +89,8 @@ class LayerSources {
 
   LayerSurface surface;
   std::vector<double> bezier_f;   ///< Bezier points of the density
-  std::vector<double> weight;     ///< quadrature weights of the far nodes, times area and the factor k_p of (2.1); single layer only
-  NodeVectors density, normal;    ///< values at the far nodes. density: density f (times `weight` in a single layer). normal: normal times
+  std::vector<double> weight;     ///< quadrature weights of the far nodes, times area and the factor k_p of (2.1), if uses_weights()
+  NodeVectors density, normal;    ///< values at the far nodes. density: density f (times `weight` if uses_weights()). normal: normal times
                                   ///< quadrature weight, area and factor k_p of (2.2)
   Evaluations evaluations;        ///< kernel evaluations since construction
   Phases phases;                  ///< computing times since construction
@@ -102,6 +101,9 @@ class LayerSources {
     std::vector<double> bezier, weight;  // Bezier points, and quadrature weights at the far nodes, which include the area
     std::vector<bool> per_current_area;  // for Measure::by_element: for each element, true if the density is per current area
   };
+  void set_weights();
+  Mat3 kernel_at(int node, const Vec3& r) const;
+  void multiply_by_factors(std::span<std::vector<double>> values) const;
   template <class Values>
   const StressletMoments& set_moments(const Values& f);
 

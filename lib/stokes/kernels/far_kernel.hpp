@@ -80,8 +80,10 @@ struct StokesletKernel {  ///< kernel for TreeSum: maps forces f to the velociti
   static constexpr int in = 3, out = 3;
   static constexpr auto* sum = stokeslet_sum;
 };
-/// Order of the six components of a Stokeslet and of assembled rows: 11, 12, 13, 22, 23, 33.
-constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
+/// Number of entries of a symmetric kernel that are stored.
+constexpr int kernel_entries = 6;
+/// Order of the entries of a symmetric kernel and of assembled rows: 11, 12, 13, 22, 23, 33.
+constexpr int upper[kernel_entries][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 /// Order of the six components of a symmetric stress: 11, 22, 33, 12, 13, 23.
 constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 

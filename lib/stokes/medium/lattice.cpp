@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 
 namespace tanktread::stokes {
 namespace {
@@ -9,6 +10,14 @@ namespace {
 /// Tolerance for the sum over the images that are not near, divided by the tolerance of the layer. The ratio is below 1 because the loads are in
 /// equilibrium, so that velocities are small compared with the sum of the magnitudes of their terms (as in TreeSum).
 constexpr double share_of_remainder = 0.1;
+
+PeriodicKernel::Kind periodic_kind(LayerKernel kernel) {
+  switch (kernel) {
+    case LayerKernel::single_layer: return PeriodicKernel::Kind::stokeslet;
+    case LayerKernel::double_layer: return PeriodicKernel::Kind::stresslet;
+  }
+  throw std::logic_error("unknown LayerKernel");
+}
 
 }  // namespace
 
@@ -24,8 +33,7 @@ void Lattice::set_sources(const LayerSources& sources) {
     }
   }
   if (!sum_ || !sum_->suits(extent)) {
-    const auto kind = sources.single() ? PeriodicKernel::Kind::stokeslet : PeriodicKernel::Kind::stresslet;
-    sum_.emplace(kind, cell_, share_of_remainder * surface.options.tolerance, extent);
+    sum_.emplace(periodic_kind(sources.kernel()), cell_, share_of_remainder * surface.options.tolerance, extent);
   }
   remainder_at_.clear();
   for (auto& component : node_) component.resize(static_cast<std::size_t>(sources.n_nodes()));
@@ -58,18 +66,22 @@ void Lattice::add_remainder(LayerSources& sources, const LayerTargets& targets, 
   std::vector<Vec3> at = rows_of(targets.at, targets.rows);
   for (Vec3& x : at) x = wrapped(x);
   Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
-  if (sources.single()) {
-    sum_->add_remainder(charges(node_, sources.density), at, sums.data());
-  } else {
-    const Vec3 mean = sources.mean_density();
-    if (at != remainder_at_) set_remainder_targets(sources, at);
-    add_stresslets(sources, sources.stresslet_moments(mean), at, sums);
-    for (std::size_t k = 0; k < at.size(); ++k) {
-      const Vec3 value = targets.f0.row(targets.rows[k]).transpose();
-      sums.row(static_cast<Eigen::Index>(k)) -= (remainder_stress_[k] * (value - mean)).transpose();
-    }
+  switch (sources.kernel()) {
+    case LayerKernel::single_layer: sum_->add_remainder(charges(node_, sources.density), at, sums.data()); break;
+    case LayerKernel::double_layer: add_regularised_stresslets(sources, targets, at, sums); break;
   }
   for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.rows[k]) += sums.row(static_cast<Eigen::Index>(k));
+}
+
+/// Adds the double layer of the images that are not near at the targets `at`, after the constant f0 of each target is subtracted from the density.
+void Lattice::add_regularised_stresslets(LayerSources& sources, const LayerTargets& targets, const std::vector<Vec3>& at, Net& sums) {
+  const Vec3 mean = sources.mean_density();
+  if (at != remainder_at_) set_remainder_targets(sources, at);
+  add_stresslets(sources, sources.stresslet_moments(mean), at, sums);
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const Vec3 value = targets.f0.row(targets.rows[k]).transpose();
+    sums.row(static_cast<Eigen::Index>(k)) -= (remainder_stress_[k] * (value - mean)).transpose();
+  }
 }
 
 /// Adds the sum over the images that are not near, of stresslets with these moments, at the targets `at`.
@@ -122,7 +134,7 @@ void Lattice::add_remainder(const LayerSources& sources, std::span<const int> si
     from.col(k).array() *= Eigen::Map<const Eigen::ArrayXd>(sources.weight.data(), sources.n_nodes());
     basis.row(k) = sources.moments({from.col(k).data(), from.col(k).data() + from.rows()}).transpose();
   }
-  for (int c = 0; c < 6; ++c) {
+  for (int c = 0; c < kernel_entries; ++c) {
     const auto [i, j] = upper[c];
     const Eigen::MatrixXd part = over_8_pi * (to * (sum_->between_nodes(c) * basis));
     for (Eigen::Index k = 0; k < part.rows(); ++k)

@@ -44,6 +44,7 @@ class Lattice : public LayerMedium {
   void subtract_surfaces(LayerSources& sources, const LayerTargets& targets, Net& u) const;
   void add_remainder(LayerSources& sources, const LayerTargets& targets, Net& u);
   void set_remainder_targets(LayerSources& sources, const std::vector<Vec3>& at);
+  void add_regularised_stresslets(LayerSources& sources, const LayerTargets& targets, const std::vector<Vec3>& at, Net& sums);
   using Moments = LayerSources::StressletMoments;
   void add_stresslets(const LayerSources& sources, const Moments& moments, const std::vector<Vec3>& at, Net& sums);
   Vec3 pressure_along(const LayerSources& sources, const Moments& moments) const;

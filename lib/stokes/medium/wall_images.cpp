@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "stokes/kernels/image_kernel.hpp"
@@ -24,12 +25,18 @@ std::vector<double> turned(const PlaneWall& wall, const double* bezier, int n_b,
   return own;
 }
 
-ImageSum::Kind kind_of(const LayerSources& sources) { return sources.single() ? ImageSum::Kind::forces : ImageSum::Kind::stresslets; }
+ImageSum::Kind image_kind(LayerKernel kernel) {
+  switch (kernel) {
+    case LayerKernel::single_layer: return ImageSum::Kind::forces;
+    case LayerKernel::double_layer: return ImageSum::Kind::stresslets;
+  }
+  throw std::logic_error("unknown LayerKernel");
+}
 
 }  // namespace
 
 WallImages::WallImages(const PlaneWall& wall, const LayerSources& sources, bool by_clusters)
-    : sum_(kind_of(sources), wall, by_clusters ? std::optional(share_of_clusters * sources.surface.options.tolerance) : std::nullopt) {}
+    : sum_(image_kind(sources.kernel()), wall, by_clusters ? std::optional(share_of_clusters * sources.surface.options.tolerance) : std::nullopt) {}
 
 void WallImages::add(LayerSources& sources, const LayerTargets& targets, Net& u) {
   add_far(sources, targets, u);
@@ -54,14 +61,16 @@ void WallImages::add_far(LayerSources& sources, const LayerTargets& targets, Net
     wanted.push_back(static_cast<int>(std::ranges::lower_bound(targets.in_tree, i) - targets.in_tree.begin()));
   const bool others = sum_.want(std::move(at), std::move(wanted));
   Net sums;
-  if (sources.single()) {
-    sums = sum_.sum(sources.density);
-  } else {
-    const Vec3 mean = sources.mean_density();
-    if (others) compute_image_stress(sources);
-    sums = sum_.sum(sources.stresslet_moments(mean));
-    for (std::size_t k = 0; k < targets.far_rows.size(); ++k)
-      sums.row(static_cast<Eigen::Index>(k)) -= (image_stress_[k] * (targets.f0.row(targets.far_rows[k]).transpose() - mean)).transpose();
+  switch (sources.kernel()) {
+    case LayerKernel::single_layer: sums = sum_.sum(sources.density); break;
+    case LayerKernel::double_layer: {
+      const Vec3 mean = sources.mean_density();
+      if (others) compute_image_stress(sources);
+      sums = sum_.sum(sources.stresslet_moments(mean));
+      for (std::size_t k = 0; k < targets.far_rows.size(); ++k)
+        sums.row(static_cast<Eigen::Index>(k)) -= (image_stress_[k] * (targets.f0.row(targets.far_rows[k]).transpose() - mean)).transpose();
+      break;
+    }
   }
   sources.evaluations.far += sum_.interactions();
   for (std::size_t k = 0; k < targets.far_rows.size(); ++k) u.row(targets.far_rows[k]) += sums.row(static_cast<Eigen::Index>(k));
@@ -90,17 +99,20 @@ Vec3 WallImages::beyond_far_sum(LayerSources& sources, int e, const PointTable& 
   Charges nodes{n, nullptr, nullptr, nullptr, {}};
   std::vector<double> strengths[6];
   const auto &density = sources.density, &normal = sources.normal;
-  if (sources.single()) {
-    image_single_sum(table, x.data(), f.data(), sources.area_weights_of(e, table, nullptr), below.data(), better.data());
-    for (std::size_t c = 0; c < 3; ++c) nodes.q[c] = &density[c][first];
-  } else {
-    image_double_sum(table, x.data(), f.data(), below.data(), value.data(), better.data());
-    for (std::size_t s = 0; s < 6; ++s) {
-      const auto [i, j] = stresses[s];
-      for (int k = first; k < first + n; ++k)
-        strengths[s].push_back(((density[i][k] - f0[i]) * normal[j][k] + (density[j][k] - f0[j]) * normal[i][k]) / 2);
-      nodes.q[s] = strengths[s].data();
-    }
+  switch (sources.kernel()) {
+    case LayerKernel::single_layer:
+      image_single_sum(table, x.data(), f.data(), sources.area_weights_of(e, table, nullptr), below.data(), better.data());
+      for (std::size_t c = 0; c < 3; ++c) nodes.q[c] = &density[c][first];
+      break;
+    case LayerKernel::double_layer:
+      image_double_sum(table, x.data(), f.data(), below.data(), value.data(), better.data());
+      for (std::size_t s = 0; s < 6; ++s) {
+        const auto [i, j] = stresses[s];
+        for (int k = first; k < first + n; ++k)
+          strengths[s].push_back(((density[i][k] - f0[i]) * normal[j][k] + (density[j][k] - f0[j]) * normal[i][k]) / 2);
+        nodes.q[s] = strengths[s].data();
+      }
+      break;
   }
   return sources.factor(e) * (wall.axes().transpose() * better) - sum_.sum(nodes, first, at);
 }
@@ -116,10 +128,12 @@ void WallImages::panel_moments(LayerSources& sources, int e, const Vec3& at, std
   const std::vector<double> x = turned(wall, &sources.surface.bezier[panel.first_bezier], t.n_bernstein, true);
   scratch_.resize(static_cast<std::size_t>(9) * table.packs());
   std::vector<double> own(static_cast<std::size_t>(9) * t.n_bernstein);
-  if (sources.single())
-    image_single_moments(table, x.data(), sources.area_weights_of(e, table, nullptr), below.data(), scratch_.data(), own.data());
-  else
-    image_double_moments(table, x.data(), below.data(), scratch_.data(), own.data());
+  switch (sources.kernel()) {
+    case LayerKernel::single_layer:
+      image_single_moments(table, x.data(), sources.area_weights_of(e, table, nullptr), below.data(), scratch_.data(), own.data());
+      break;
+    case LayerKernel::double_layer: image_double_moments(table, x.data(), below.data(), scratch_.data(), own.data()); break;
+  }
   sources.evaluations.near += table.points;
   moments.resize(static_cast<std::size_t>(t.n_bernstein));
   for (std::size_t b = 0; b < moments.size(); ++b)
