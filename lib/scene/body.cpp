@@ -56,8 +56,7 @@ void lay_out(const ParticleScene& particle_scene, spline::TMesh mesh, Body& body
 bool alike(const ParticleScene& one, const ParticleScene& other) {
   const surface::ParticleShape &here = one.particle.shape, &there = other.particle.shape;
   const auto levels = [](const ParticleScene& particle_scene) { return particle_scene.adaptation.enabled ? particle_scene.adaptation.levels : 0; };
-  return here.shape == there.shape && here.shape != "file" && !here.initial && !there.initial && one.surface == other.surface &&
-         levels(one) == levels(other);
+  return surface::is_linear_image(here, there) && !here.initial && !there.initial && one.surface == other.surface && levels(one) == levels(other);
 }
 
 Body make_body(const ParticleScene& particle_scene) {

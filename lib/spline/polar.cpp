@@ -15,6 +15,10 @@
 namespace tanktread::spline {
 namespace {
 
+std::logic_error unknown_rule(PoleRule rule) {
+  return std::logic_error("no rule for poles has the number " + std::to_string(static_cast<int>(rule)));
+}
+
 /// Returns the blossom (polar form), at three knots (lattice units), of a periodic cubic spline on the initial mesh. The coefficients of the spline
 /// are the cosines (or sines) of the azimuths of the mesh vertices.
 double blossom_of_circle(const Lattice& l, const std::array<double, 3>& knots, bool sine) {
@@ -85,7 +89,7 @@ class Shares {
  public:
   Shares(const TMesh& mesh, const TileFunctions& f, PoleRule poles) : per_pole_(points_per_pole(poles)), shares_(f.anchor.size()) {
     const Lattice& l = *mesh.lattice;
-    const int replaced = per_pole_ == 1 ? 1 : 2;
+    const int replaced = rows_replaced(poles);
     auto to_end = [&](int v) { return std::min(v / l.units, l.rows - v / l.units); };
     int next = per_pole_;
     for (std::size_t a = 0; a < f.anchor.size(); ++a)
@@ -94,25 +98,20 @@ class Shares {
     std::vector<PolePoint> at_pole[2];
     for (std::size_t a = 0; a < f.anchor.size(); ++a) {
       const int v = f.anchor[a];
-      const bool behind = v / l.units < l.rows / 2;
       if (to_end(v) >= replaced) continue;
-      if (per_pole_ == 1)
-        shares_[a] = {{behind ? 0 : next, 1.0}};
-      else
-        at_pole[!behind].push_back(
-            {int(a), to_end(v) == 0, to_end(v) == 0 ? Eigen::Vector2d(0, 0) : place(l, v, f.knots[a].reach, behind)});
+      const bool behind = v / l.units < l.rows / 2;
+      at_pole[!behind].push_back({int(a), to_end(v) == 0, to_end(v) == 0 ? Eigen::Vector2d(0, 0) : place(l, v, f.knots[a].reach, behind)});
     }
-    if (per_pole_ == 3)
-      for (int k : {0, 1}) share_among_three(at_pole[k], k == 0 ? 0 : next, sites_[k]);
+    for (int k : {0, 1}) sites_[k] = share(poles, at_pole[k], k == 0 ? 0 : next);
   }
 
   const std::vector<Share>& operator[](int anchor) const { return shares_[anchor]; }
   int n_points() const { return n_points_; }
   int per_pole() const { return per_pole_; }
 
-  /// Returns where function k of a pole with PoleRule::c1 is collocated: the anchor (vertex with a control point) whose generalised Greville point is
-  /// used, or -1 for the pole itself. `ahead`: true for the pole at the end of the meridian, false for the pole at its start.
-  int site(bool ahead, int k) const { return sites_[ahead][k]; }
+  /// Returns where function k of a pole is collocated: the anchor (vertex with a control point) whose generalised Greville point is used, or -1 for
+  /// the pole itself. `ahead`: true for the pole at the end of the meridian, false for the pole at its start.
+  int site(bool ahead, int k) const { return sites_[ahead].at(k); }
 
  private:
   static Eigen::Vector2d place(const Lattice& l, int v, const int (&reach)[4][2], bool behind) {
@@ -122,7 +121,21 @@ class Shares {
     return height * Eigen::Vector2d(blossom_of_circle(l, knots, false), blossom_of_circle(l, knots, true));
   }
 
-  void share_among_three(const std::vector<PolePoint>& at_pole, int first, std::array<int, 3>& sites) {
+  /// Sets the shares of the anchors at a pole in its control points, which start with the index `first`. Returns the collocation sites of these
+  /// control points, as site() does.
+  std::vector<int> share(PoleRule poles, const std::vector<PolePoint>& at_pole, int first) {
+    switch (poles) {
+      case PoleRule::bezier_transform:
+      case PoleRule::plain:
+        for (const PolePoint& p : at_pole) shares_[p.anchor] = {{first, 1.0}};
+        return {-1};
+      case PoleRule::c1: return share_among_three(at_pole, first);
+    }
+    throw unknown_rule(poles);
+  }
+
+  std::vector<int> share_among_three(const std::vector<PolePoint>& at_pole, int first) {
+    std::vector<int> sites(3);
     std::vector<Eigen::Vector2d> places;
     for (const PolePoint& p : at_pole) places.push_back(p.place);
     const auto middles = largest_triangle(places);
@@ -136,11 +149,12 @@ class Shares {
     const Eigen::Matrix3d barycentric = corners.inverse();
     for (const PolePoint& p : at_pole)
       for (int k = 0; k < 3; ++k) shares_[p.anchor].push_back({first + k, barycentric.row(k).dot(Vec3(1, p.place[0], p.place[1]))});
+    return sites;
   }
 
   int per_pole_, n_points_ = 0;
   std::vector<std::vector<Share>> shares_;
-  std::array<std::array<int, 3>, 2> sites_{};
+  std::array<std::vector<int>, 2> sites_;  // collocation sites of the per_pole_ control points of each pole, see site()
 };
 
 /// Returns knot i of the open uniform knots 0, 0, 0, 0, 1, .. r - 1, r, r, r, r.
@@ -210,11 +224,7 @@ std::vector<std::vector<Site>> sites_on_tiles(const TMesh& mesh, const TileFunct
       out[shares[int(a)][0].point] = tiles_around(mesh, f.tiling, greville(mesh, f.anchor[a], f.knots[a]));
   for (bool ahead : {false, true}) {
     const int first = ahead ? shares.n_points() - shares.per_pole() : 0;
-    if (shares.per_pole() == 1) {
-      out[first] = tiles_at_pole(l, f.tiling, ahead);
-      continue;
-    }
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < shares.per_pole(); ++k) {
       const int a = shares.site(ahead, k);
       out[first + k] = a < 0 ? tiles_at_pole(l, f.tiling, ahead) : tiles_around(mesh, f.tiling, greville(mesh, f.anchor[a], f.knots[a]));
     }
@@ -246,10 +256,6 @@ std::vector<Element> tile_elements(const Lattice& l, const TileFunctions& f, con
   return out;
 }
 
-std::logic_error unknown_rule(PoleRule rule) {
-  return std::logic_error("no rule for poles has the number " + std::to_string(static_cast<int>(rule)));
-}
-
 const char* name(PoleRule rule) {
   switch (rule) {
     case PoleRule::bezier_transform: return "poles by Bezier transform";
@@ -266,6 +272,15 @@ int points_per_pole(PoleRule rule) {
     case PoleRule::bezier_transform:
     case PoleRule::plain: return 1;
     case PoleRule::c1: return 3;
+  }
+  throw unknown_rule(rule);
+}
+
+int rows_replaced(PoleRule rule) {
+  switch (rule) {
+    case PoleRule::bezier_transform:
+    case PoleRule::plain: return 1;
+    case PoleRule::c1: return 2;
   }
   throw unknown_rule(rule);
 }
@@ -289,19 +304,25 @@ bool replaces_elements(PoleRule rule) {
 }
 
 std::vector<PolarAnchor> polar_anchors(const PolarMesh& mesh) {
-  const int m = mesh.azimuthal, r = mesh.meridional;
-  const bool three = points_per_pole(mesh.poles) == 3;
+  const int m = mesh.azimuthal, r = mesh.meridional, replaced = rows_replaced(mesh.poles);
   std::vector<PolarAnchor> out;
-  const auto pole = [&](double u, double row) {
-    if (!three) return out.push_back({u, 0, 1});
+  const auto three = [&](double row) {
     std::vector<Eigen::Vector2d> place;
     for (int k = 0; k < m; ++k) place.emplace_back(std::cos(2 * std::numbers::pi * k / m), std::sin(2 * std::numbers::pi * k / m));
     const auto middles = largest_triangle(place);
     for (const Eigen::Vector2d& corner : around({place[middles[0]], place[middles[1]], place[middles[2]]}))
       out.push_back({row, std::atan2(corner[1], corner[0]) * m / (2 * std::numbers::pi), corner.norm()});
   };
+  const auto pole = [&](double u, double row) {
+    switch (mesh.poles) {
+      case PoleRule::bezier_transform:
+      case PoleRule::plain: return out.push_back({u, 0, 1});
+      case PoleRule::c1: return three(row);
+    }
+    throw unknown_rule(mesh.poles);
+  };
   pole(0, 1.0 / 3);
-  for (int row = three ? 2 : 1; row <= r + (three ? 0 : 1); ++row) {
+  for (int row = replaced; row <= r + 2 - replaced; ++row) {
     const double u = (open_knot(row + 1, r) + open_knot(row + 2, r) + open_knot(row + 3, r)) / 3;
     for (int k = 0; k < m; ++k) out.push_back({u, double(k), 1});
   }

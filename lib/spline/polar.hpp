@@ -25,6 +25,10 @@ inline const std::vector<std::string> pole_rules{"bezier transform", "plain", "c
 /// Returns the number of control points whose functions are not zero at a pole.
 int points_per_pole(PoleRule rule);
 
+/// Returns the number of rows of the tensor-product net that the control points of a pole replace: 1 if only the row at the pole is replaced, 2 if
+/// the row next to it is replaced, too.
+int rows_replaced(PoleRule rule);
+
 /// Returns whether the surface has a normal at the poles. If not, loads and the identities of closed surfaces cannot be evaluated there.
 bool has_normal_at_poles(PoleRule rule);
 

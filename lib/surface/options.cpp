@@ -84,8 +84,7 @@ spline::PolarMesh MeshOptions::polar_mesh() const {
 double MeshOptions::n_points() const {
   if (!polar()) return 6.0 * *elements_per_side * *elements_per_side + 2;
   const double m = *azimuthal_elements, r = *meridional_elements;
-  const int per_pole = spline::points_per_pole(poles.value());
-  return (per_pole == 1 ? r + 1 : r - 1) * m + 2 * per_pole;
+  return (r + 3 - 2 * spline::rows_replaced(poles.value())) * m + 2 * spline::points_per_pole(poles.value());
 }
 
 double MeshOptions::n_elements() const {

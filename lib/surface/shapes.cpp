@@ -102,6 +102,13 @@ Vec3 red_cell(const Vec3& x) {
 
 namespace {
 
+/// Returns the point of the unit sphere that red_cell() maps to `x`. If `x` is close to the red cell, the result is close to its point.
+Vec3 sphere_of_red_cell(const Vec3& x) {
+  const double r2 = x[0] * x[0] + x[1] * x[1];
+  const auto [c0, c1, c2] = red_cell_profile;
+  return Vec3(x[0], x[1], 2 * x[2] / (c0 + c1 * r2 + c2 * r2 * r2)).normalized();
+}
+
 /// Returns the linear map to the shape, relative to its centre, from the unit sphere or (for a red cell) from the red cell of unit radius.
 Mat3 map_of(const ParticleShape& shape) {
   const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value_or(1));
@@ -120,9 +127,11 @@ Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const Part
 }
 
 Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape) {
-  if (!shape.ellipsoidal()) return net;
+  if (shape.shape == "file" || shape.shape == "cylinder") return net;
   const LeastSquaresFit fit(space);
   Net sphere = (net.rowwise() - shape.center.transpose()) * map_of(shape).inverse().transpose();
+  if (shape.shape == "red cell") sphere = fit.fit_image(sphere, sphere_of_red_cell);
+  else if (!shape.ellipsoidal()) throw std::logic_error("fitted_again() does not know Particle/shape " + shape.shape);
   for (int k = 0; k < 3; ++k) sphere = fit.fit_image(sphere, [](const Vec3& x) -> Vec3 { return x.normalized(); });
   return resting_shape(fit, sphere, shape);
 }
@@ -130,6 +139,15 @@ Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape
 Net placed_again(const Net& net, const ParticleShape& from, const ParticleShape& to) {
   const Mat3 one = map_of(from), other = map_of(to), map = one == other ? Mat3(Mat3::Identity()) : Mat3(other * one.inverse());
   return ((net.rowwise() - from.center.transpose()) * map.transpose()).rowwise() + to.center.transpose();
+}
+
+bool is_linear_image(const ParticleShape& from, const ParticleShape& to) {
+  if (from.shape != to.shape) return false;
+  if (from.ellipsoidal()) return true;
+  if (from.shape == "red cell") return true;   // red_cell_profile is a ratio to the radius
+  if (from.shape == "cylinder") return false;  // its length is the period of the domain, which does not change with the radius
+  if (from.shape == "file") return false;      // surfaces of two files are not compared
+  throw std::logic_error("is_linear_image() does not know Particle/shape " + from.shape);
 }
 
 Net resting_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape) {

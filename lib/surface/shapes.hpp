@@ -53,12 +53,17 @@ Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const Part
 Net resting_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
 Net resting_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape);
 
-/// If the shape is a sphere or ellipsoid, fits its resting shape `net` again by least squares on `space`. Returns any other shape unchanged.
+/// Fits the resting shape `net` again by least squares on `space`, after refinement of its mesh. Returns a surface of the shape `file` or `cylinder`
+/// unchanged.
 Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape);
 
 /// Converts the resting shape `net` of the particle `from` to the resting shape of the particle `to` on the same mesh. `to` may have another size,
-/// position and orientation.
+/// position and orientation. Requires is_linear_image().
 Net placed_again(const Net& net, const ParticleShape& from, const ParticleShape& to);
+
+/// Returns true if placed_again() can convert the resting shape `from` to the resting shape `to`, because `to` is a linear image of `from`. Shapes
+/// with different words are not compared: the result is false, even for a sphere and an ellipsoid.
+bool is_linear_image(const ParticleShape& from, const ParticleShape& to);
 
 /// Returns the surface read from a file. Its centroid is moved to the centre given in the deck, and the surface is rotated about this centre.
 Net imported_shape(const ParticleShape& shape);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -12,15 +13,26 @@
 namespace tanktread::spline {
 namespace {
 
-const PoleRule every_rule[] = {PoleRule::plain, PoleRule::bezier_transform, PoleRule::c1};
+const std::vector<PoleRule> every_rule = [] {
+  std::vector<PoleRule> all;
+  for (std::size_t k = 0; k < pole_rules.size(); ++k) all.push_back(static_cast<PoleRule>(k));
+  return all;
+}();
 
 TEST(Polar, HasTheControlPointsOfThePaper) {
   for (const auto& [m, r, n] : {std::array{8, 4, 42}, {16, 8, 146}, {32, 16, 546}, {64, 32, 2114}, {40, 20, 842}, {20, 10, 222}}) {
     for (const PoleRule rule : every_rule) {
-      const Space s = space({m, r, rule});
-      EXPECT_EQ(s.n_points, rule == PoleRule::c1 ? (r - 1) * m + 6 : n);
+      const PolarMesh mesh{m, r, rule};
+      const Space s = space(mesh);
+      if (points_per_pole(rule) == 1) {
+        EXPECT_EQ(s.n_points, n);
+      }
+      if (rule == PoleRule::c1) {
+        EXPECT_EQ(s.n_points, (r - 1) * m + 6);
+      }
+      EXPECT_EQ(s.n_points, int(polar_anchors(mesh).size()));
       EXPECT_EQ(int(s.collocation.size()), s.n_points);
-      EXPECT_EQ(int(s.elements.size()), rule == PoleRule::bezier_transform ? m * (r - 2) + 2 * m * 12 : m * r);
+      EXPECT_EQ(int(s.elements.size()), replaces_elements(rule) ? m * (r - 2) + 2 * m * 12 : m * r);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -16,7 +17,11 @@ namespace tanktread::surface {
 namespace {
 
 using spline::PoleRule;
-const PoleRule every_rule[] = {PoleRule::plain, PoleRule::bezier_transform, PoleRule::c1};
+const std::vector<PoleRule> every_rule = [] {
+  std::vector<PoleRule> all;
+  for (std::size_t k = 0; k < spline::pole_rules.size(); ++k) all.push_back(static_cast<PoleRule>(k));
+  return all;
+}();
 
 /// Semi-axes of the paper's spheroid: V = 1, b/a = 1.5, poles on the long axis.
 const Vec3 spheroid_axes(0.5419260701, 0.5419260701, 0.8128891052);
@@ -69,6 +74,18 @@ TEST(PolarSphere, ErrorOfTheTransformAtThePolesIsProportionalToTheAngleOfAPiece)
     before = added;
   }
   EXPECT_LT(before, 0.3 * plain);
+}
+
+TEST(PolarSphere, HasTheNumberOfControlPointsOfTheOptions) {
+  for (const PoleRule rule : every_rule)
+    for (const auto& [m, r] : {std::array{4, 4}, {9, 5}, {16, 8}}) {
+      MeshOptions options;
+      options.mesh = "polar", options.azimuthal_elements = m, options.meridional_elements = r, options.poles = rule;
+      const spline::PolarMesh mesh = options.polar_mesh();
+      const spline::Space space = spline::space(mesh);
+      EXPECT_EQ(options.n_points(), space.n_points);
+      EXPECT_EQ(unit_sphere(mesh, space).rows(), space.n_points);
+    }
 }
 
 TEST(PolarSphere, IsClosedWithOutwardNormals) {
