@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include <Eigen/QR>
 
@@ -46,8 +47,15 @@ void SpectrumOptions::declare(deck::Section& section) {
 }
 
 const char* name(ModeKind kind) {
-  constexpr const char* names[] = {"shape", "translation", "rotation", "labels", "volume", "mass"};
-  return names[static_cast<int>(kind)];
+  switch (kind) {
+    case ModeKind::shape: return "shape";
+    case ModeKind::translation: return "translation";
+    case ModeKind::rotation: return "rotation";
+    case ModeKind::labels: return "labels";
+    case ModeKind::volume: return "volume";
+    case ModeKind::mass: return "mass";
+  }
+  throw std::logic_error("this kind of mode has no name");
 }
 
 void add_columns(const std::complex<double>& rate, const std::string& number, Columns& to) {

@@ -107,7 +107,7 @@ void check_names(const Scene& scene) {
   for (const ParticleKind& kind : scene.particles) check_name(kind.name, kind.path());
   for (const Post& post : scene.posts) check_name(post.name, post.path());
   for (const auto& [file, kept] : scene.files)
-    if (kept == output::surface_file)
+    if (output::is_result(kept))
       throw UserError("The copy of " + file + " would have the name of a file of the results, " + kept +
                       ": give another name to the particle, or to the file.");
 }

@@ -12,6 +12,15 @@ const deck::Choice motion_words{"deforming", "prescribed", "free"};
 
 }  // namespace
 
+bool ParticleOptions::rigid() const {
+  switch (motion) {
+    case Motion::deforming: return false;
+    case Motion::prescribed: return true;
+    case Motion::free: return true;
+  }
+  throw std::logic_error("this Motion is neither that of a rigid body nor of a deforming particle");
+}
+
 std::string text(Motion motion) { return "`" + motion_words[static_cast<std::size_t>(motion)] + "`"; }
 
 std::string ParticleOptions::choice() const { return "Particle/motion " + text(motion); }

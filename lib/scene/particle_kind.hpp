@@ -20,7 +20,7 @@ namespace tanktread {
 
 struct ParticleScene;
 
-/// `Particle/motion`.
+/// `Particle/motion`. A new motion needs a decision wherever Motion is asked: see the recipe of a kind of particle in lib/README.md.
 enum class Motion { deforming, prescribed, free };
 
 std::string text(Motion motion);  ///< returns the name of the motion in the deck, in backquotes
@@ -37,7 +37,7 @@ struct ParticleOptions {
   std::optional<std::string> drift;      ///< motion of the centroid, `free` or `held`; if not set, holds_centre() decides
   std::optional<std::string> forces;     ///< how forces on a `prescribed` body are computed: `reciprocal`, `integral`
 
-  bool rigid() const { return motion != Motion::deforming; }
+  bool rigid() const;  ///< returns whether particles with this motion are rigid bodies
   std::string choice() const;  ///< returns for example "Particle/motion `free`", for messages
   void declare(deck::Section& section);
   void reject(const ParticleScene& particle_scene, Rejections& to) const;  ///< adds the choices that contradict the motion of the particle

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -153,6 +154,7 @@ std::unique_ptr<coupling::Tube> make_tube(const SharedOptions& shared, const Bod
   parameters.walls = shared.walls;
   if (const auto channel = std::dynamic_pointer_cast<const coupling::ChannelFlow>(body.duct))
     return std::make_unique<coupling::Tube>(channel, body.space, parameters, phases);
+  if (body.wall->channel) throw std::logic_error("the flow of this duct has no Tube");
   return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
 }
 

@@ -22,12 +22,16 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view unfinished = ".part", damaged = ".damaged";
 
+}  // namespace
+
 bool is_result(const std::string& name) {
   constexpr std::array<std::string_view, 6> files{record_file, snapshot_list_file, summary_file, duct_file, channel_file, surface_file};
   return std::ranges::find(files, name) != files.end() ||
          (name.starts_with(snapshot_start) &&
           (name.ends_with(snapshot_end) || name.find(std::string(snapshot_end).append(damaged)) != name.npos));
 }
+
+namespace {
 
 /// Returns true if the result shows that a run has recorded something. The flow in a duct is recorded before the first row.
 bool is_of_run(const std::string& name) { return is_result(name) && name != duct_file && name != channel_file; }

@@ -14,10 +14,13 @@
 namespace tanktread::output {
 
 /// Names of the files that a run writes into its directory, in addition to snapshots (snapshot_name()) and to copies of files that the deck names. A
-/// new name must be added to is_result() (file.cpp), so that the file is deleted before another run writes into the directory.
+/// new name must be added to is_result(), so that the file is deleted before another run writes into the directory.
 constexpr const char *record_file = "run.h5", *snapshot_list_file = "run.hdf.series", *summary_file = "summary.yaml";
 constexpr const char *duct_file = "duct.h5", *channel_file = "channel.h5", *surface_file = "surface.iga";
 constexpr std::string_view snapshot_start = "snapshot_", snapshot_end = ".hdf";  ///< start and end of the name of a snapshot; the step is in between
+
+/// Returns true if a file of this name in the directory of a run is one of its results. Copies of files that the deck names have other names.
+bool is_result(const std::string& name);
 
 /// Names in the directory of an accuracy ladder (lib/accuracy: runs of one deck on finer and finer levels).
 constexpr const char* ladder_file = "ladder.yaml";      ///< deck with its requests; a directory with this file is that of a ladder

@@ -110,7 +110,11 @@ Columns run_columns(const Scene& scene, bool every) {
   RunRow().add_columns(scene, all);
   if (!scene.only_solids && !scene.in_system()) {
     const ParticleScene one = scene.first();
-    one.particle.motion == Motion::free ? RigidRow().add_columns(one, all) : PrescribedRow().add_columns(one, all);
+    switch (one.particle.motion) {
+      case Motion::free: RigidRow().add_columns(one, all); break;
+      case Motion::prescribed: PrescribedRow().add_columns(one, all); break;
+      case Motion::deforming: break;  // in_system() is true
+    }
   }
   if (!scene.only_solids) add_series_of<RunSeries>(scene, all);
   put_in_order(all);

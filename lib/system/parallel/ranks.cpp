@@ -181,6 +181,7 @@ void Ranks::add_all(std::span<const std::span<double>> several) const {
 }
 
 stokes::Evaluations Ranks::of_all(const stokes::Evaluations& own) const {
+  static_assert(sizeof(own) == 3 * sizeof(long long), "add the new count here and wherever Evaluations are added, printed or stored");
   std::array sum = {static_cast<double>(own.far), static_cast<double>(own.near), static_cast<double>(own.self)};
   add(sum);
   return {std::llround(sum[0]), std::llround(sum[1]), std::llround(sum[2])};

@@ -33,6 +33,9 @@ TEST(BlockSystem, MultipliersAndProjectionGiveTheSameVelocity) {
     Capsule by_projection = eliminated.capsule(), by_multipliers = kept.capsule();
     const Net x = eliminated.sheared(), v = by_projection.velocity(x);
     EXPECT_LT((by_multipliers.velocity(x) - v).norm(), of_residual * v.norm()) << ratio;
+    Evaluation one = *by_projection.evaluate(x), other = *by_multipliers.evaluate(x);  // a pressure is no load on the membrane
+    EXPECT_LT((other.load() - one.load()).norm(), of_residual * one.load().norm()) << ratio;
+    EXPECT_LT((other.stresslet() - one.stresslet()).norm(), of_residual * one.stresslet().norm()) << ratio;
     EXPECT_GT(by_multipliers.counts().velocity_iterations, 0) << ratio;  // also at ratio 1, where the projection needs no system
     EXPECT_EQ(by_projection.counts().velocity_iterations > 0, ratio != 1) << ratio;
   }

@@ -81,7 +81,10 @@ struct TubeParameters {
 ///   flow v_inf             ParticleData, pressure_correction(), pressure_of_velocity(), pressure_driven_velocity(), freeze()
 ///   wall                   Wall::is_for(), flow_of_forces() and flow_of_double_layer(); WallPoints (means over points only in channels)
 ///   geometry and checks    checks(), cap_velocity(), gap(), inside()
-///   other files            BlockSystem (known velocity of images), scene/memory.cpp, walls in record/plan.cpp
+///   system                 BlockSystem (known velocity of images), corrects_walls(), fits_other_mesh(), the single inlet in Wall and FlowWeights
+///   scene                  scene/tube.cpp (make_duct to make_tube, checks of the start); symmetry and repulsion in scene/body.cpp; free_motions()
+///                          in scene/searches/searches.cpp; films in scene/particles/adaptation.cpp; scene/memory.cpp
+///   record                 walls in record/plan.cpp, channel.h5 in record/results.cpp
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
