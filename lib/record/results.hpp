@@ -76,6 +76,8 @@ void check_vacant(const RunRequest& request);
 /// next: repeating the last steps after a kill takes less time than writing `run.h5` for each snapshot. Afterwards, each snapshot and the rows of
 /// `run.h5` up to its step are flushed before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a second, all
 /// its files are flushed. `run.hdf.series` is written for the first time after a second, or at the end of the run.
+///
+/// Order of calls: resumed() if the run continues another one, then record() and save() for each recorded state, and close() last.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);

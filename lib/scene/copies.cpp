@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 
 #include <Eigen/Geometry>
 
@@ -211,6 +212,12 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
   return copies;
 }
 
+/// Returns the volume of the cell in which copies are placed. A cell with fewer than three periods has no volume.
+double volume_of(const stokes::PeriodicCell& cell) {
+  if (cell.n() != 3) throw std::logic_error("copies need a cell with three periods");
+  return cell.volume();
+}
+
 /// Returns the number of copies on the lattice or at random positions. Throws UserError if the number is too large. `of_one`: volume of a particle.
 int count(const CopiesOptions& how, double of_one, const std::optional<stokes::PeriodicCell>& cell, const std::string& list) {
   constexpr double most = 1e6;
@@ -220,7 +227,7 @@ int count(const CopiesOptions& how, double of_one, const std::optional<stokes::P
   } else if (how.number) {
     number = *how.number;
   } else {
-    const double room = how.box ? how.box->prod() : how.ball ? ball_volume(*how.ball) : cell->volume();
+    const double room = how.box ? how.box->prod() : how.ball ? ball_volume(*how.ball) : volume_of(*cell);
     number = std::max(1.0, std::round(*how.volume_fraction * room / of_one));
   }
   if (number > most)
@@ -328,7 +335,7 @@ std::vector<std::vector<Copy>> all_places(const std::vector<ParticleKind>& kinds
     throw UserError(
         formatted("Particles/%s/copies: the circumscribed spheres of the particles fill %.3g of the cell and cannot be placed there "
                   "without overlap: give fewer copies, a larger cell, or a smaller `least gap`.",
-                  in_cell->name.c_str(), volume / cell->volume()));
+                  in_cell->name.c_str(), volume / volume_of(*cell)));
   }
   auto sphere = taken.begin();
   for (std::size_t k = 0; k < kinds.size(); ++k) {

@@ -80,10 +80,13 @@ struct TubeParameters {
 ///                          Capsule::evaluated_about()
 ///   flow v_inf             ParticleData, pressure_correction(), pressure_of_velocity(), pressure_driven_velocity(), freeze()
 ///   wall                   Wall::is_for(), flow_of_forces() and flow_of_double_layer(); WallPoints (means over points only in channels)
+///   one pressure drop      respond_open(), frozen_response(), flow_rate(), flow_rate_reduction(), work(); BlockSystem (its unknown);
+///                          PowerBalance::flow_power(); the pressure correction of RigidTractions; FreeBodyInTube::pressure_drop()
 ///   geometry and checks    checks(), cap_velocity(), gap(), inside()
 ///   system                 BlockSystem (known velocity of images), corrects_walls(), fits_other_mesh(), the single inlet in Wall and FlowWeights
 ///   scene                  scene/tube.cpp (make_duct to make_tube, checks of the start); symmetry and repulsion in scene/body.cpp; free_motions()
-///                          in scene/searches/searches.cpp; films in scene/particles/adaptation.cpp; scene/memory.cpp
+///                          in scene/searches/searches.cpp; films in scene/particles/adaptation.cpp; scene/memory.cpp; TubeRow and
+///                          least_axial_position() in scene/tube.cpp
 ///   record                 walls in record/plan.cpp, channel.h5 in record/results.cpp
 class Tube {
  public:
