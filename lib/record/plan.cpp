@@ -86,13 +86,24 @@ void add_fluid(Lines& lines, const Scene& scene, const VelocityUnknowns& of_velo
 
 /// Returns the line of the plan about the time scheme and the size of the frozen operator (the single layer in the Jacobian of implicit steps).
 /// `n`: number of control points. `rows`: number of control points whose rows are assembled.
-std::string time_line(const Scene& scene, double n, double rows, int ranks) {
+std::string time_line(const Scene& scene, const VelocityUnknowns& unknowns, double n, double rows, int ranks) {
   const bool chosen = scene.time.scheme == "auto";
   const std::string scheme = scene.time.scheme + (chosen ? ", bs3 or tr-bdf2 by the measured stiffness" : "");
   if (!scene.time.assembles() && !chosen) return scheme + ", explicit in the fluid: nothing is assembled";
-  const bool contrast = std::ranges::any_of(scene.particle_scenes(), [](const ParticleScene& one) { return one.particle.viscosity_ratio != 1; });
-  if (!scene.solvers.assembles_frozen(contrast, n)) return scheme + ", frozen single layer by one node per control point, not assembled";
-  return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * n * rows) + on_ranks(ranks);
+  const std::vector<ParticleScene> all = scene.particle_scenes();
+  const bool contrast = std::ranges::any_of(all, [](const ParticleScene& one) { return one.particle.viscosity_ratio != 1; });
+  const bool slides = std::ranges::any_of(all, [](const ParticleScene& one) {
+    return !one.particle.rigid() && one.interface_motion() != coupling::MeshMotion::material;
+  });
+  const bool assembled = scene.solvers.assembles_frozen(contrast, n);
+  std::string line = scheme + ", frozen single layer ";
+  if (assembled) line += formatted("of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * n * rows) + on_ranks(ranks);
+  else line += "by one node per control point, not assembled";
+  if (scene.domain.present && !scene.tube.present) line += ", without images on the lattice";
+  if (scene.wall.present && !scene.wall.solid && !assembled) line += ", without images in the wall";
+  if ((unknowns.iterates || unknowns.tractions) && (slides || unknowns.bodies || unknowns.walls))
+    line += "; each evaluation of a step solves the system for velocities";
+  return line;
 }
 
 /// Adds the lines about steady shapes, periodic motions, branches and spectra, which replace the line `time` of the plan.
@@ -223,7 +234,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
                                  scene.contact.limit));
   lines.emplace_back("volume", deck::word(coupling::volume_constraints, scene.volume.constraint) + (several ? ", of each" : ""));
   if (scene.runs_in_time())
-    lines.emplace_back("time", time_line(scene, n, static_cast<double>(body.symmetry.fundamental().size()), ranks));
+    lines.emplace_back("time", time_line(scene, unknowns, n, static_cast<double>(body.symmetry.fundamental().size()), ranks));
   else
     add_steady(lines, scene, body);
   lines.emplace_back("blocks", blocks_line(scene, unknowns));

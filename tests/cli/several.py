@@ -87,10 +87,13 @@ def volumes_as_multipliers_give_the_same_run():
 
 
 def the_plan_names_unknown_and_eliminated_blocks():
-    def blocks(text, *settings):
+    def line(name, text, *settings):
         words = [word for setting in settings for word in ("--set", setting)]
         plan = run(deck(text, "plan.yaml"), *words, "--check").stdout
-        return re.search(r"^ *blocks +(.*)$", plan, re.MULTILINE)[1]
+        return re.search(rf"^ *{name} +(.*)$", plan, re.MULTILINE)[1]
+
+    def blocks(text, *settings):
+        return line("blocks", text, *settings)
 
     check(blocks(REFINED) == "velocities computed without a system; eliminated: volume multipliers (projection)", blocks(REFINED))
     kept = blocks(REFINED, "Solvers/volume=multipliers")
@@ -102,6 +105,9 @@ def the_plan_names_unknown_and_eliminated_blocks():
     check(mixed == "velocities, double-layer densities of rigid bodies; eliminated: volume multipliers (projection)", mixed)
     tractions = blocks(CONFINED, "Solvers/rigid bodies=first kind", "Solvers/tube=block")
     check("tractions of rigid bodies; eliminated:" in tractions and "wall traction and pressure drop (response)" in tractions, tractions)
+    implicit = "Time/scheme=tr-bdf2"
+    check("each evaluation" in line("time", MIXED, implicit) and "each evaluation" not in line("time", REFINED, implicit),
+          "the plan says when implicit steps solve for velocities")
 
 
 def meshes_that_change_resume_on_other_ranks():

@@ -109,17 +109,29 @@ std::vector<Warning> Warnings::of_step(const StepFindings& signs) {
   return all;
 }
 
-std::string Warnings::choice() const {
-  if (scene_.elastic() && scene_.membrane.load == "strong")
+namespace {
+
+/// Returns the warning about choices of the deck for a particle; empty if there is none.
+std::string choice_of(const ParticleScene& one) {
+  if (one.elastic() && one.membrane.load == "strong")
     return "the load is computed in the strong form, which amplifies errors of the shape until the time step vanishes: set Membrane/load "
            "to weak";
-  if (!scene_.surface.has_normal_at_poles() && scene_.quadrature.rule == quadrature::LayerRule::fixed)
+  if (!one.surface.has_normal_at_poles() && one.quadrature.rule == quadrature::LayerRule::fixed)
     return "a fixed Gauss rule does not converge on elements of plain poles: set Surface/poles to bezier transform, or Quadrature/rule to "
            "adaptive";
-  if (const double k = scene_.membrane.global_area_dilatation;
-      k > stiff_area && k * scene_.modulus() > stiff_area * scene_.bending_modulus() / (scene_.radius() * scene_.radius()))
+  if (const double k = one.membrane.global_area_dilatation;
+      k > stiff_area && k * one.modulus() > stiff_area * one.bending_modulus() / (one.radius() * one.radius()))
     return "the total area is so stiff that many time steps are needed: a Membrane/global area dilatation of 1e4 conserves it nearly as "
            "well";
+  return {};
+}
+
+}  // namespace
+
+std::string Warnings::choice() const {
+  if (deforming_.empty()) return choice_of(scene_);
+  for (const ParticleScene& one : deforming_)
+    if (std::string sentence = choice_of(one); !sentence.empty()) return sentence;
   return {};
 }
 

@@ -87,6 +87,14 @@ TEST(Warnings, ReportCompressionOfAnyOfSeveralParticles) {
   EXPECT_TRUE(names(run.of_run->memory().shown.front().sentence, "40 % of the membrane"));
 }
 
+// The choices of the second particle cause the warning, too.
+TEST(Warnings, ReportChoicesOfAnyParticle) {
+  Told run({"Particles/one/center=[4, 0, 0]", "Particles/two/center=[-4, 0, 0]", "Particles/two/Membrane/global area dilatation=1e7"});
+  StepFindings signs = at(0.1, 0);
+  signs.smallest_tension = {0, 0}, signs.compressed_area = {0, 0};
+  EXPECT_TRUE(names(run.first(signs), "total area"));
+}
+
 TEST(Warnings, ReportAFixedStepBeyondTheStabilityLimit) {
   Told run({"Time/scheme=bs3", "Time/fixed step=0.2"});  // rho is 80 on these elements at Ca = 0.3
   EXPECT_TRUE(names(run.first(at(0.2, 0)), "Time/scheme"));
