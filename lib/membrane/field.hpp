@@ -29,7 +29,7 @@ class Field {
   /// Sets the shape x and the coefficients q to which load(), rate() and energy() refer. Throws RunFailure if the state is not admissible.
   virtual void set_state(const Net& x, const Eigen::VectorXd& q) = 0;
 
-  virtual Net load() const = 0;                              ///< load as virtual work (3.6), shape (N, 3), added to dE/dx
+  virtual Net load() const = 0;                              ///< load as virtual work (3.6), shape (N, 3), added to dE/dx; no net force or torque
   virtual Eigen::VectorXd rate(const Net& slip) const = 0;   ///< dq/dt
   virtual double energy() const = 0;                         ///< energy stored in the field
   /// power that the field dissipates as heat in the membrane; dissipation in the surface flow is not included

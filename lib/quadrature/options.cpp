@@ -20,8 +20,8 @@ void Options::declare(deck::Section& section) {
   section.key("far sum", far_sum, deck::Choice{"auto", "dense", "tree"},
               "evaluation of boundary integrals over elements far from the target point, as sums over quadrature nodes. `dense`: every "
               "target sums over every far node. `tree`: distant targets and nodes interact as clusters, to the same Quadrature/tolerance, "
-              "in a time proportional to the number of elements. `auto`: the faster of the two, and `dense` for a Spectrum, whose finite "
-              "differences need sums that are smooth functions of the shape");
+              "in a time proportional to the number of elements. `auto`: the faster of the two, but `dense` for Steady and Spectrum, which "
+              "need sums that are smooth functions of the shape");
   if (rule == LayerRule::adaptive) section.without_effect({"points"}, "with Quadrature/rule `adaptive`");
 }
 

@@ -126,7 +126,8 @@ void add_steady(Lines& lines, const Scene& scene, const Body& body) {
 
 std::string symmetry_line(const Scene& scene, const Body& body) {
   if (body.symmetry.order() == 1 && scene.symmetry.use == "none") return "none used";
-  if (body.symmetry.order() == 1) return body.wall && !body.wall->channel ? "not searched for in a tube" : "none found";
+  if (const std::string where = lacks_symmetry(scene.first(), body); !where.empty()) return "not searched for " + where;
+  if (body.symmetry.order() == 1) return "none found";
   const int evaluated = static_cast<int>(body.symmetry.fundamental().size());
   return body.symmetry.description() +
          formatted(
@@ -147,7 +148,11 @@ std::string solvers_line(const Scene& scene, const VelocityUnknowns& unknowns) {
     if (scene.tube.present) add("traction", solvers.traction);
     return line.empty() ? "no iterative solver" : line;
   }
-  if (unknowns.iterates) add("velocity", solvers.velocity);
+  if (unknowns.iterates) {
+    add("velocity", solvers.velocity);
+    const bool slides = unknowns.deforms && scene.first_deforming().interface_motion() != coupling::MeshMotion::material;
+    if (slides || unknowns.bodies) line += ", without an initial guess";
+  }
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
   if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);

@@ -348,8 +348,9 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   summary.obstacles = obstacles_;
   output::write_whole(directory_ / output::summary_file, output::yaml(summary));
   series_->write();
-  if (durable() == output::Durable::yes)
-    for (const char* name : {output::summary_file, output::snapshot_list_file, "."}) output::sync(directory_ / name);
+  std::set<std::string> copies;
+  for (const auto& [file, name] : scene_.files) copies.insert(name);
+  if (!young()) output::sync_results(directory_, copies);
   return missed;
 }
 

@@ -75,7 +75,8 @@ void check_vacant(const RunRequest& request);
 /// During the first second of a run, files are not flushed to the disk, and snapshots after the first one wait in memory until `run.h5` is written
 /// next: repeating the last steps after a kill takes less time than writing `run.h5` for each snapshot. Afterwards, each snapshot and the rows of
 /// `run.h5` up to its step are flushed before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a second, all
-/// its files are flushed. `run.hdf.series` is written for the first time after a second, or at the end of the run.
+/// its results and the copies of files that the deck names are flushed. `run.hdf.series` is written for the first time after a second, or at the end
+/// of the run.
 ///
 /// Order of calls: resumed() if the run continues another one, then record() and save() for each recorded state, and close() last.
 class Results {

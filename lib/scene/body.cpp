@@ -117,13 +117,20 @@ void check_in_medium(const ParticleScene& particle_scene, const Body& body) {
                   particle_scene.domain.kind + "` at the start.");
 }
 
+std::string lacks_symmetry(const ParticleScene& particle_scene, const Body& body) {
+  if (particle_scene.particle.rigid()) return "for a rigid body";
+  if (body.wall && !body.wall->channel) return "in a tube";
+  if (!particle_scene.domain.present) return "";
+  if (body.wall) return "in a channel that repeats";
+  if (!particle_scene.posts.empty()) return "among posts";
+  return particle_scene.adaptation.enabled ? "on an adaptive mesh in a lattice" : "";
+}
+
 surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body, const Net& x) {
-  const bool channel = body.wall && body.wall->channel;
-  const bool unused = particle_scene.domain.present && (channel || particle_scene.adaptation.enabled || !particle_scene.posts.empty());
-  if (particle_scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
+  if (!lacks_symmetry(particle_scene, body).empty()) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
   const coupling::LoadList loads = make_loads(particle_scene, body, body.wall.get()).all();
-  if (channel) return coupling::symmetry(particle_scene.symmetry, body.space, nets, *body.wall, loads);
+  if (body.wall) return coupling::symmetry(particle_scene.symmetry, body.space, nets, *body.wall, loads);
   const auto medium = particle_scene.medium();
   const auto walls = particle_scene.wall.planes();  // meshed plates, if there is no medium
   return coupling::symmetry(particle_scene.symmetry, body.space, nets, body.flow, loads, medium || walls.empty() ? medium.get() : &walls.front(),

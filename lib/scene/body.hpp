@@ -70,6 +70,9 @@ bool alike(const ParticleScene& one, const ParticleScene& other);
 /// Sets the mesh of the body, and builds on it the spline space that the deck requests.
 void lay_out(const ParticleScene& particle_scene, spline::TMesh mesh, Body& body);
 
+/// Returns where no symmetry is searched for, such as "in a tube", or an empty string if symmetries are searched for.
+std::string lacks_symmetry(const ParticleScene& particle_scene, const Body& body);
+
 /// Returns the common symmetry of the scene, the body and the current shape x, restricted to the symmetries that the deck allows the program to use.
 surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body, const Net& x);
 

@@ -1,7 +1,6 @@
 #include "scene/copies.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -12,139 +11,14 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "base/text_file.hpp"
+#include "scene/packing.hpp"
 #include "scene/scene.hpp"
 
 namespace tanktread {
 
-double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
-
-double least_distance(const PackedSphere& a, const PackedSphere& b, double gap) {
-  return a.radius + b.radius + gap * std::max(a.radius, b.radius);
-}
-
 namespace {
 
 double ball_volume(double radius) { return 4 * std::numbers::pi / 3 * std::pow(radius, 3); }
-
-constexpr int most_sweeps = 20000, thermal_sweeps = 200;
-constexpr double clear = 1.01;  // overlapping spheres are pushed apart to this multiple of least_distance()
-
-class Packing {
- public:
-  Packing(std::vector<PackedSphere>& spheres, const stokes::PeriodicCell& cell, std::uint64_t seed) : spheres_(spheres), cell_(cell), random_(seed) {
-    for (const PackedSphere& one : spheres) longest_ = std::max(longest_, least_distance(one, one));
-    skin_ = longest_ / 4;
-    std::array<int, 3> most{};
-    const double reach = clear * longest_ + 2 * skin_;
-    for (int d = 0; d < 3; ++d) most[static_cast<std::size_t>(d)] = static_cast<int>(reach / cell.spacing(d) + 0.5);
-    images_ = cell.around(most);
-  }
-
-  bool push_apart() {
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-      find_neighbours();
-      bool apart = true;
-      for (std::size_t i = 0; i < spheres_.size(); ++i)
-        for (const Neighbour& other : neighbours_[i])
-          if (other.number > i) apart = push(i, other) && apart;
-      if (apart) return true;
-    }
-    return false;
-  }
-
-  void shake() {
-    double step = skin_ / 2;
-    for (int sweep = 0; sweep < thermal_sweeps; ++sweep) {
-      find_neighbours();
-      int taken = 0;
-      for (std::size_t i = 0; i < spheres_.size(); ++i) taken += stepped(i, step);
-      step = std::min(skin_ / 2, step * (2 * taken > static_cast<int>(spheres_.size()) ? 1.1 : 0.9));
-    }
-  }
-
- private:
-  struct Neighbour {
-    std::size_t number;
-    Vec3 image;  // lattice vector from the neighbour's centre to the centre of its image that is close to the sphere
-  };
-
-  /// Lists, for each sphere, all spheres that it can overlap as long as no sphere moves by more than `skin_`. If no sphere has moved by half of
-  /// `skin_` since the lists were built, keeps the lists.
-  void find_neighbours() {
-    double farthest = found_at_.empty() ? 2 * skin_ : 0;
-    for (std::size_t i = 0; i < found_at_.size(); ++i) farthest = std::max(farthest, (spheres_[i].centre - found_at_[i]).norm());
-    if (farthest < skin_ / 2) return;
-    neighbours_.assign(spheres_.size(), {});
-    found_at_.clear();
-    for (const PackedSphere& one : spheres_) found_at_.push_back(one.centre);
-    for (std::size_t i = 0; i < spheres_.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j) {
-        const Vec3 apart = spheres_[j].centre - spheres_[i].centre, nearest = -cell_.shift(apart);
-        const double reach = clear * least_distance(spheres_[i], spheres_[j]) + 2 * skin_;
-        for (const Vec3& image : images_) {
-          if ((apart + nearest + image).squaredNorm() > reach * reach) continue;
-          neighbours_[i].push_back({j, nearest + image});
-          neighbours_[j].push_back({i, -nearest - image});
-        }
-      }
-  }
-
-  Vec3 apart(std::size_t i, const Neighbour& other) const { return spheres_[other.number].centre + other.image - spheres_[i].centre; }
-
-  /// Returns true if the two spheres do not overlap. Otherwise moves them apart, in a random direction if their centres coincide.
-  bool push(std::size_t i, const Neighbour& other) {
-    PackedSphere &a = spheres_[i], &b = spheres_[other.number];
-    const Vec3 between = apart(i, other);
-    const double distance = between.norm(), least = least_distance(a, b);
-    if (distance >= least || (a.fixed && b.fixed)) return true;  // two fixed spheres may overlap; check_apart tests their surfaces
-    const Vec3 direction = distance > 1e-12 * least ? Vec3(between / distance) : direction_at_random();
-    const double all = clear * least - distance, of_a = a.fixed ? 0 : b.fixed ? 1 : 0.5;
-    a.centre -= of_a * all * direction;
-    b.centre += (1 - of_a) * all * direction;
-    return false;
-  }
-
-  /// Moves sphere i by a random step of at most the length `longest`. Undoes the step and returns false if the sphere then overlaps another sphere.
-  /// The same applies if the sphere has moved by more than `skin_` since find_neighbours() built the neighbour lists.
-  bool stepped(std::size_t i, double longest) {
-    if (spheres_[i].fixed) return false;
-    const Vec3 before = spheres_[i].centre;
-    spheres_[i].centre += longest * uniform(random_) * direction_at_random();
-    const auto overlaps = [&](const Neighbour& other) {
-      return apart(i, other).norm() < least_distance(spheres_[i], spheres_[other.number]);
-    };
-    const bool far = (spheres_[i].centre - found_at_[i]).norm() > skin_;
-    if (!far && std::ranges::none_of(neighbours_[i], overlaps)) return true;
-    spheres_[i].centre = before;
-    return false;
-  }
-
-  Vec3 direction_at_random() {
-    for (;;) {
-      Vec3 place;
-      for (int c = 0; c < 3; ++c) place[c] = 2 * uniform(random_) - 1;
-      if (const double length = place.norm(); length > 0.1 && length < 1) return place / length;
-    }
-  }
-
-  std::vector<PackedSphere>& spheres_;
-  const stokes::PeriodicCell& cell_;
-  std::mt19937_64 random_;
-  double longest_ = 0, skin_ = 0;
-  std::vector<Vec3> images_, found_at_;
-  std::vector<std::vector<Neighbour>> neighbours_;
-};
-
-}  // namespace
-
-bool pack(std::vector<PackedSphere>& spheres, const stokes::PeriodicCell& cell, std::uint64_t seed) {
-  Packing packing(spheres, cell, seed);
-  if (!packing.push_apart()) return false;
-  packing.shake();
-  return true;
-}
-
-namespace {
 
 /// Centre and orientation of a copy; the orientation is a rotation vector in degrees.
 struct Copy {
@@ -183,15 +57,39 @@ std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   return copies;
 }
 
-/// Returns copies at random positions in a box or ball. Draws positions one by one and discards a position that is too close to a sphere in `taken`.
-/// Adds the spheres of the copies to `taken`.
-std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<PackedSphere>& taken,
-                            const std::string& list) {
+/// Returns half the side lengths of a box around the region of the copies, a box or ball.
+Vec3 half_sides(const CopiesOptions& how) {
+  switch (how.region()) {
+    case CopiesOptions::Region::box: return *how.box / 2;
+    case CopiesOptions::Region::ball: return Vec3::Constant(*how.ball);
+    case CopiesOptions::Region::cell: break;
+  }
+  throw std::logic_error("this region of copies is neither a box nor a ball");
+}
+
+/// Returns whether a sphere is inside the region of the copies, for positions that at_random() draws from a box. `centre`: centre of the sphere
+/// relative to the centre of the region.
+bool is_inside(const CopiesOptions& how, const Vec3& centre, double radius) {
+  switch (how.region()) {
+    case CopiesOptions::Region::box: return true;
+    case CopiesOptions::Region::ball: return centre.norm() <= *how.ball - radius;
+    case CopiesOptions::Region::cell: break;
+  }
+  throw std::logic_error("this region of copies is neither a box nor a ball");
+}
+
+/// Returns copies at random positions in a box or ball. Draws positions one by one and discards a position that is too close to a sphere in `taken`
+/// or to one of its images on the lattice of `cell`, if given. Adds the spheres of the copies to `taken`.
+std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, const std::optional<stokes::PeriodicCell>& cell,
+                            std::vector<PackedSphere>& taken, const std::string& list) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
-  const Vec3 half = how.box ? Vec3(*how.box / 2) : Vec3::Constant(*how.ball);
+  const Vec3 half = half_sides(how);
   if ((half.array() < radius).any())
     throw UserError(formatted("%s: a particle of radius %g does not fit into the box or ball of the copies; give a larger one.", list.c_str(),
                               radius));
+  PackedSphere largest{origin, radius};
+  for (const PackedSphere& one : taken) largest.radius = std::max(largest.radius, one.radius);
+  const std::vector<Vec3> images = cell ? images_within(*cell, least_distance(largest, largest, how.least_gap)) : std::vector<Vec3>{Vec3::Zero()};
   std::vector<Copy> copies;
   const long most = 20000L * number;
   for (long trial = 0; static_cast<int>(copies.size()) < number; ++trial) {
@@ -202,9 +100,13 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
                     list.c_str(), copies.size(), number, most));
     Vec3 place;
     for (int c = 0; c < 3; ++c) place[c] = (2 * uniform(random) - 1) * (half[c] - radius);
-    if (how.ball && place.norm() > *how.ball - radius) continue;
+    if (!is_inside(how, place, radius)) continue;
     const PackedSphere here{origin + place, radius, how.least_gap, true};
-    const auto meets = [&](const PackedSphere& other) { return (here.centre - other.centre).norm() < least_distance(here, other, how.least_gap); };
+    const auto meets = [&](const PackedSphere& other) {
+      const Vec3 apart = here.centre - other.centre, nearest = cell ? Vec3(apart - cell->shift(apart)) : apart;
+      const double least = least_distance(here, other, how.least_gap);
+      return std::ranges::any_of(images, [&](const Vec3& image) { return (nearest + image).norm() < least; });
+    };
     if (std::ranges::any_of(taken, meets)) continue;
     taken.push_back(here);
     copies.push_back({place});
@@ -218,8 +120,19 @@ double volume_of(const stokes::PeriodicCell& cell) {
   return cell.volume();
 }
 
-/// Returns the number of copies on the lattice or at random positions. Throws UserError if the number is too large. `of_one`: volume of a particle.
-int count(const CopiesOptions& how, double of_one, const std::optional<stokes::PeriodicCell>& cell, const std::string& list) {
+/// Returns the volume to which the volume fraction of the copies refers.
+double volume_of_region(const CopiesOptions& how, const std::optional<stokes::PeriodicCell>& cell) {
+  switch (how.region()) {
+    case CopiesOptions::Region::box: return how.box->prod();
+    case CopiesOptions::Region::ball: return ball_volume(*how.ball);
+    case CopiesOptions::Region::cell: return volume_of(cell.value());
+  }
+  throw std::logic_error("this region of copies has no volume");
+}
+
+/// Returns the number of copies on the lattice or at random positions. Throws UserError if the number is too large, or if it follows from a volume
+/// fraction and the volume of a particle is not known.
+int count(const CopiesOptions& how, const surface::ParticleShape& shape, const std::optional<stokes::PeriodicCell>& cell, const std::string& list) {
   constexpr double most = 1e6;
   double number = 0;
   if (how.lattice) {
@@ -227,8 +140,11 @@ int count(const CopiesOptions& how, double of_one, const std::optional<stokes::P
   } else if (how.number) {
     number = *how.number;
   } else {
-    const double room = how.box ? how.box->prod() : how.ball ? ball_volume(*how.ball) : volume_of(*cell);
-    number = std::max(1.0, std::round(*how.volume_fraction * room / of_one));
+    const std::optional<double> of_one = shape.kept_volume();
+    if (!of_one)
+      throw UserError(list + "/volume fraction cannot be used with Particle/initial shape/volume `own` and a shape from a file or run, because the "
+                             "volume of a copy is not known when copies are counted: give `number`.");
+    number = std::max(1.0, std::round(*how.volume_fraction * volume_of_region(how, cell) / *of_one));
   }
   if (number > most)
     throw UserError(list + formatted(" may ask for at most %.0f copies, because more surfaces do not fit into memory, but asks for %.0f.", most,
@@ -257,6 +173,7 @@ std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::P
   const std::string list = kind.path() + "/copies";
   try {
     if (!shape.sized()) shape.check();
+    if (shape.initial) shape.initial->check();
   } catch (const UserError& error) {
     throw UserError(kind.path() + ": " + error.what());
   }
@@ -266,10 +183,10 @@ std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::P
     return {};
   }
   how.check(list, cell && cell->n() == 3);
-  const int number = how.file ? 0 : count(how, ball_volume(shape.equivalent_radius()), cell, list);
+  const int number = how.file ? 0 : count(how, shape, cell, list);
   if (how.random()) {
-    if (how.in_cell()) return in_cell(how, number, radius, shape.center, *cell, taken);
-    return at_random(how, number, radius, shape.center, taken, list);
+    if (how.in_cell()) return in_cell(how, number, radius, shape.center, cell.value(), taken);
+    return at_random(how, number, radius, shape.center, cell, taken, list);
   }
   const std::vector<Copy> copies = how.file ? in_file(*how.file, list) : on_lattice(*how.lattice, *how.spacing);
   for (const Copy& copy : copies) taken.push_back({shape.center + copy.centre, radius, 0, true});

@@ -1,5 +1,7 @@
 // Keys of a particle: declarations, and rejections of combinations.
 
+#include <stdexcept>
+
 #include "base/errors.hpp"
 #include "scene/posts.hpp"
 #include "scene/scene.hpp"
@@ -8,7 +10,21 @@ namespace tanktread {
 
 namespace {
 
-const deck::Choice motion_words{"deforming", "prescribed", "free"};
+std::string motion_word(Motion motion) {
+  switch (motion) {
+    case Motion::deforming: return "deforming";
+    case Motion::prescribed: return "prescribed";
+    case Motion::free: return "free";
+  }
+  throw std::logic_error("this Motion has no word");
+}
+
+/// Returns the words for `Particle/motion` in the order of the enumerators.
+deck::Choice motion_words() {
+  deck::Choice words;
+  for (int k = 0; k <= static_cast<int>(last_motion); ++k) words.push_back(motion_word(static_cast<Motion>(k)));
+  return words;
+}
 
 }  // namespace
 
@@ -21,7 +37,7 @@ bool ParticleOptions::rigid() const {
   throw std::logic_error("this Motion is neither that of a rigid body nor of a deforming particle");
 }
 
-std::string text(Motion motion) { return "`" + motion_words[static_cast<std::size_t>(motion)] + "`"; }
+std::string text(Motion motion) { return "`" + motion_word(motion) + "`"; }
 
 std::string ParticleOptions::choice() const { return "Particle/motion " + text(motion); }
 
@@ -73,7 +89,7 @@ void ParticleOptions::declare(deck::Section& section) {
               "lambda: viscosity of the fluid inside the particle divided by the viscosity of the outer fluid, at most 1e14 x "
               "Solvers/tolerance. Above 1e4, Time/scheme `bs3` takes fewer steps than implicit schemes. Above 1e5 the particle hardly "
               "deforms; for a rigid particle use Particle/motion `free`");
-  section.key("motion", motion, motion_words,
+  section.key("motion", motion, motion_words(),
               "motion of the particle. `deforming`: its surface moves with the velocity of the fluid. `prescribed`: it is rigid and moves "
               "with Particle/velocity and Particle/angular velocity; for a single particle, the flow and the force are computed once, without time "
               "steps. `free`: it is rigid and moves such that Particle/force and Particle/torque, zero by default, balance the forces of the "

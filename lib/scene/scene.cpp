@@ -86,7 +86,7 @@ void list_idle_keys(Scene& scene) {
 
 /// Sets the members of options that follow from several sections and that no section reads while it is declared.
 void complete_derived(Scene& scene) {
-  if (scene.spectrum.present) scene.quadrature.choose_smooth_sums();
+  if (scene.spectrum.present || scene.steady.present) scene.quadrature.choose_smooth_sums();
   scene.periodic.driven = scene.flow.history.has_value();
   if (const auto& sides = scene.domain.side_lengths; scene.tube.present && scene.domain.present && sides && !sides->empty())
     scene.tube.period = sides->front();
@@ -266,17 +266,18 @@ std::string_view why_in_system(const SharedOptions& shared, const ParticleKind& 
 }
 
 /// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for several bodies of
-/// up to 1500 control points, all with adaptive meshes, or for the only particle in a duct, of up to 2000. For a film of a tenth of the radius,
-/// `first kind` needs a third of the points of `second kind`. With 1538 points both take the same time for a sphere of 0.8 tube radii, and the
-/// pressure drop has errors of 2e-8 and 1e-5.
+/// up to 1500 control points, all with adaptive meshes or with integrals of a tolerance of at most 1e-7, or for the only particle in a duct, of up to
+/// 2000. For a film of a tenth of the radius, `first kind` needs a third of the points of `second kind`. With 1538 points both take the same time for
+/// a sphere of 0.8 tube radii, and the pressure drop has errors of 2e-8 and 1e-5.
 bool Scene::by_tractions() const {
   using enum coupling::BodyEquation;
   if (solvers.rigid_bodies != automatic || !runs_in_time()) return solvers.rigid_bodies == first_kind;
   const bool alone = tube.present && particles.size() == 1 && solvers.eliminates_walls();
+  const bool accurate = quadrature.rule == quadrature::LayerRule::adaptive && quadrature.tolerance <= 1e-7;
   double bodies = 0, points = 0;
   for (const ParticleKind& kind : particles) {
     if (!kind.particle.rigid()) continue;
-    if (!kind.adaptation.enabled && !alone) return false;
+    if (!kind.adaptation.enabled && !accurate && !alone) return false;
     ++bodies, points += kind.particle.shape.imported ? kind.particle.shape.imported->space.n_points : kind.surface.n_points();
   }
   return alone ? bodies > 0 && points <= 2000 : bodies > 1 && points <= 1500;

@@ -47,7 +47,11 @@ Vec2 uphill(const Height& h, const Vec2& at) {
   return 0.25 * h.gradient / (h.gradient.norm() + std::numeric_limits<double>::min());
 }
 
-/// Returns the local maximum of sign * x_c that an ascent from the point `at` of the patch reaches, and the parameters of the maximum.
+/// Newton's method stops after a step that is shorter than this, in local coordinates. The error is then of the order of the square of the step.
+constexpr double converged = 1e-6;
+
+/// Returns the local maximum of sign * x_c that an ascent from the point `at` of the patch reaches, and the parameters of the maximum. Shorter steps
+/// than `converged` are Newton steps near the maximum. They are accepted without a comparison, because round-off exceeds the change of x_c.
 std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) {
   Height here = height(patch, c, sign, at);
   for (int iteration = 0; iteration < 50; ++iteration) {
@@ -56,13 +60,13 @@ std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) 
     for (int halving = 0; halving < 12; ++halving, step *= 0.5) {
       const Vec2 next = (at + step).cwiseMax(0).cwiseMin(1);
       const Height there = height(patch, c, sign, next);
-      if (there.value < here.value) continue;
+      if (there.value < here.value && step.norm() > converged) continue;
       moved = (next - at).norm();
       at = next;
       here = there;
       break;
     }
-    if (moved < 1e-9) break;  // the error of the maximum is of the order of the square of this step
+    if (moved < 1e-9) break;  // the error of the place is of the order of the square of this step
   }
   return {here.value, at};
 }
@@ -91,9 +95,6 @@ double largest_coordinate(const Patches& surface, int c, double sign, double rea
   }
   return best;
 }
-
-/// Newton's method stops after a step that is shorter than this, in local coordinates. The error is then of the order of the square of the step.
-constexpr double converged = 1e-6;
 
 /// Point of the section curve (the intersection of the surface with the plane x2 = centre_2) in one element.
 struct Crossing {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <tuple>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -188,11 +187,6 @@ void ParticleShape::check() const {
   }
 }
 
-bool ParticleShape::same_rest(const ParticleShape& other) const {
-  const auto rest = [](const ParticleShape& s) { return std::tie(s.shape, s.radius, s.semi_axes, s.file, s.center, s.orientation); };
-  return rest(*this) == rest(other);
-}
-
 Mat3 ParticleShape::rotation() const {
   const Vec3 turn = orientation * (std::numbers::pi / 180.0);
   const double angle = turn.norm();
@@ -224,6 +218,14 @@ double ParticleShape::equivalent_radius() const {
   }
   if (imported) return std::cbrt(volume(imported->space, imported->net) * 3.0 / (4.0 * std::numbers::pi));
   return std::cbrt(semi_axes.value().prod());
+}
+
+std::optional<double> ParticleShape::kept_volume() const {
+  const double resting = 4 * std::numbers::pi / 3 * std::pow(equivalent_radius(), 3);
+  if (!initial || initial->volume != "own") return resting;
+  const auto map = initial->affine(rotation());
+  if (!map) return std::nullopt;
+  return resting * std::abs(map->determinant());
 }
 
 }  // namespace tanktread::surface

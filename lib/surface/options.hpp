@@ -74,8 +74,9 @@ struct InitialShape {
 
 inline const std::vector<std::string> particle_shapes{"sphere", "spheroid", "ellipsoid", "red cell", "cylinder", "file"};  ///< words for `shape`
 
-/// Options `Particle/*` of the deck that give the resting shape and the initial shape of the particle.
-struct ParticleShape {
+/// Options `Particle/*` of the deck that give the resting shape. All keys of the resting shape are members of this structure, because
+/// ParticleShape::same_rest() compares its members only.
+struct RestingShape {
   std::string shape = "sphere";     ///< one of particle_shapes
   std::optional<double> radius;     ///< radius of the sphere or cylinder, or of the disc of a red cell; not set for other shapes
   std::optional<std::string> axis;  ///< periodic direction along which a cylinder lies; not set for other shapes
@@ -83,6 +84,12 @@ struct ParticleShape {
   std::optional<std::string> file;  ///< path of the Bezier-extraction file with surface and spline space; set for the shape `file`
   Vec3 center = Vec3::Zero();       ///< centre of the resting shape
   Vec3 orientation = Vec3::Zero();  ///< rotation vector (axis times angle) in degrees from the space-fixed axes to the body-fixed axes
+
+  bool operator==(const RestingShape&) const = default;
+};
+
+/// Options `Particle/*` of the deck that give the resting shape and the initial shape of the particle.
+struct ParticleShape : RestingShape {
   std::optional<InitialShape> initial;  ///< initial shape; if not set, the resting shape
 
   void declare(deck::Section& section);
@@ -99,8 +106,10 @@ struct ParticleShape {
   /// Surface read from the file, without `center` and `orientation` applied; null for the other shapes.
   std::shared_ptr<const spline::SplineSurface> imported;
 
+  bool operator==(const ParticleShape&) const = delete;
+
   /// Returns whether all keys of the resting shape are equal to the keys of `other`.
-  bool same_rest(const ParticleShape& other) const;
+  bool same_rest(const RestingShape& other) const { return RestingShape::operator==(other); }
 
   /// Returns the rotation matrix whose columns are the particle's body-fixed axes.
   Mat3 rotation() const;
@@ -113,6 +122,9 @@ struct ParticleShape {
 
   /// Returns the particle radius R_C, the radius of the sphere of equal volume.
   double equivalent_radius() const;
+
+  /// Returns the volume that the particle keeps during a run. Returns nothing if it is the volume of an initial shape from a file or run.
+  std::optional<double> kept_volume() const;
 
   /// Returns the radius of a sphere around the centre that contains the resting shape. If the initial shape is a linear map of the resting shape, the
   /// sphere contains the initial shape instead.

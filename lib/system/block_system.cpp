@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <span>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -15,7 +17,7 @@ std::span<const spline::Block> with_multiplier(const BlockSystem& s) {
   return s.multipliers ? std::span(s.volume.blocks) : std::span<const spline::Block>();
 }
 
-/// Numbers of rows of the blocks. `wall`: -1 if the wall is no unknown.
+/// Numbers of rows of the blocks in the order of the unknowns, in which the multipliers are last. `wall`: -1 if the wall is no unknown.
 struct Sizes {
   Eigen::Index particles, wall, multipliers;
 
@@ -106,6 +108,9 @@ LinearSystem BlockSystem::linear_system(Blocks names, const std::string& form) c
   const Sizes sizes(*this, components / 3);
   if (tube) system.blocks.push_back({"wall traction", 3 * sizes.wall}), system.blocks.push_back({"pressure drop", 1});
   if (sizes.multipliers > 0) system.blocks.push_back({"multipliers of the volumes", sizes.multipliers});
+  const Eigen::Index named = std::accumulate(system.blocks.begin(), system.blocks.end(), Eigen::Index(0),
+                                             [](Eigen::Index sum, const UnknownBlock& block) { return sum + block.size; });
+  if (named != sizes.all()) throw std::logic_error("the blocks of a linear system must have as many unknowns as Sizes::all() says");
   system.product = [this, sizes](const double* in, double* out) { coupling::product(*this, In(sizes, in), Out(sizes, out)); };
   const bool has_preconditioner = tube ? form != "block" : of_particles || sizes.multipliers > 0;
   if (has_preconditioner)

@@ -51,7 +51,7 @@ PowerBalance::PowerBalance(Capsule& capsule, const Ranks& ranks)
 
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const std::shared_ptr<Evaluation> e = capsule_.evaluate_on_demand(x, slope, 0);
-  if (capsule_.slides() || capsule_.solver().viscous()) e->solve();
+  if (capsule_.slides() || capsule_.solver().load_depends_on_unknowns()) e->solve();
   const Net load = e->load(), v = e->fluid_velocity();
   const RigidParticles rigid = capsule_.rigid_at(x);
   const Net measured = capsule_.solver().membranes().measured_net(x);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <stdexcept>
 #include <utility>
 
 #include "system/dynamics.hpp"
@@ -50,6 +51,7 @@ Net VelocitySolver::membrane_load(const Net& x, WorkOfLoads& known, VolumeProjec
   }
   const auto clock = phases_.time("membrane");
   if (parameters_.strong_load) {
+    if (has_forces()) throw std::logic_error("the strong form has no load due to additional forces");
     if (direction) *direction = membranes_.solved(std::move(*direction));
     return targets_.collocated(membranes_.strong_load(x));
   }

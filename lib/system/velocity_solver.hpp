@@ -81,6 +81,7 @@ class VelocitySolver {
     // returns all kinds of forces; a kind that acts on rigid bodies must also be added in push_bodies()
     std::array<const Net*, 2> all() const { return {&contacts, &fields}; }
   };
+  static_assert(sizeof(Forces) == 2 * sizeof(Net), "Forces::all() must return each kind of forces");
   bool set_forces(Net Forces::* of, Net work);  ///< sets one kind of additional forces for all later calls. Returns whether it has changed
   const Forces& forces() const { return forces_; }
   bool has_forces() const {

@@ -9,7 +9,8 @@ from . import lagrange
 from .files import opened
 from .mistakes import expect, optional
 
-# Dimension of each field with a unit. Run.scale returns the scale of a dimension.
+# Dimension of each field with a unit, and of the dimensionless tensions. Run.scale returns the scale of a dimension. A
+# field that is missing here is neither scaled nor labelled with its scale.
 DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress",
               "displacement": "length", "position error": "length", "velocity": "velocity", "into cell": "length",
               "smallest tension": "tension", "largest tension": "tension", "mean curvature": "curvature"}

@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 # Tests of the series and fields in the results, and that the manual lists all of them.
 import pathlib
+import re
 import shutil
+import sys
 
 import h5py
 import numpy
 
-from harness import check, close, deck, main, run, series, summary
+from harness import SOURCE, check, close, deck, main, run, series, summary
 
 SHEAR = """
 Tanktread:
@@ -21,6 +23,38 @@ Tanktread:
   Particle: { motion: free }
   Surface: { elements per side: 4 }
   Time: { scheme: bs3, final time: 2.0 }
+"""
+CHANNEL = """
+Tanktread:
+  Flow: { type: duct }
+  Channel: { profile: constriction, depth: 0.3, half length: 1.0, azimuthal elements: 8, axial elements: 16, start: -3.4, end: 3.4 }
+  Particle: { radius: 0.4, center: [-1.0, 0.0, 0.0] }
+  Membrane: { law: neo-Hookean, capillary number: 0.05 }
+  Surface: { elements per side: 3 }
+  Quadrature: { tolerance: 0.01 }
+  Time: { scheme: bs3, fixed step: 0.01, final time: 0.01 }
+  Output: { surface text: true }
+"""
+LATTICE = """
+Tanktread:
+  Flow: { type: simple shear }
+  Domain: { side lengths: [5, 5, 5] }
+  Particles:
+    drop:
+      Membrane: { law: surface tension, capillary number: 0.1 }
+      Interface: { surfactant: { elasticity number: 0.3, diffusivity: 0.1 } }
+      Surface: { elements per side: 3 }
+    ball: { motion: free, shape: sphere, radius: 0.5, center: [2.5, 0, 0], Surface: { elements per side: 3 } }
+  Quadrature: { tolerance: 0.01 }
+  Time: { scheme: bs3, fixed step: 0.01, final time: 0.01 }
+"""
+SPECTRUM = """
+Tanktread:
+  Flow: { type: simple shear }
+  Membrane: { law: surface tension, capillary number: 0.1 }
+  Surface: { elements per side: 3 }
+  Quadrature: { tolerance: 0.01 }
+  Spectrum: { number: 3 }
 """
 
 
@@ -147,24 +181,65 @@ def directions_of_equal_semi_axes_are_undefined():
     check(all(isinstance(final[name], float) and numpy.isnan(final[name]) for name in directions) and final["phase"] > 5, final)
 
 
-def the_manual_names_all_files_and_series():
-    manual = run("--reference-series").stdout
+def _section(manual, heading):
+    """Returns the text of one section of the manual of series."""
+    return manual.split(f"\n## {heading}\n")[1].split("\n## ")[0]
+
+
+def _recorded(directory):
+    """Returns pairs of a section of the manual of series and a name that the results in a directory contain and that the section must list."""
+    said = summary(directory)
+    names = [("Summary", name) for name in [*said, *(f"counts/{name}" for name in said["counts"])]] + [("Numbers", name) for name in said["numbers"]]
+    snapshot = sorted(path.name for path in pathlib.Path(directory).glob("snapshot_*.hdf"))[0]
+    for path, group, section in (("run.h5", "series", "Series"), (snapshot, "VTKHDF/PointData", "Fields"), ("duct.h5", "/", "The empty tube"),
+                                 ("channel.h5", "/", "The empty channel")):
+        if pathlib.Path(directory, path).exists():
+            with h5py.File(pathlib.Path(directory, path), "r") as file:
+                data = []  # series of one of several particles are in a group with its name
+                file[group].visititems(lambda name, item: data.append(name) if isinstance(item, h5py.Dataset) else None)
+            names += [(section, re.sub(r"^(mode |rate_|frequency_)\d+", r"\1k", name.split("/")[-1])) for name in data]
+    return names
+
+
+def the_manual_names_all_files_series_and_fields():
+    """Each run overwrites the results of the previous one. No file of the previous run may be left."""
+    manual, files = run("--reference-series").stdout, (SOURCE / "inputs/manual/results/index.md").read_text()
     flat = SHEAR.replace("final time: 0.5", "final time: 0.02").replace("side: 4", "side: 3")
     prescribed = ["Flow/type=quiescent", "Particle/motion=prescribed", "Particle/shape=spheroid", "Particle/semi-axes=[2, 1, 1]",
                   "Particle/velocity=[1, 0, 0]"]
-    decks = [(flat, []), (flat, ["Membrane/law=surface tension"]), (RIGID, ["Time/final time=0.02", "Surface/elements per side=3"]),
-             ("Tanktread:\n  Surface: { elements per side: 3 }\n", prescribed),
-             (flat, ["Flow/type=duct", "Tube/section=circle", "Tube/radius=2", "Tube/azimuthal elements=8", "Tube/axial elements=8"])]
+    decks = [(CHANNEL, []), (LATTICE, []), (SPECTRUM, []), (flat, ["Membrane/law=surface tension"]),
+             (RIGID, ["Time/final time=0.02", "Surface/elements per side=3"]), ("Tanktread:\n  Surface: { elements per side: 3 }\n", prescribed),
+             (flat, ["Flow/type=duct", "Tube/section=circle", "Tube/radius=2", "Tube/azimuthal elements=8", "Tube/axial elements=8"]), (flat, [])]
+    found, times = set(), {}
     for text, settings in decks:
-        _finished(text, *settings)
-        said = summary("run")
-        names = [*said, *(f"counts/{name}" for name in said["counts"]), *said["numbers"]]
-        for path, group in ("run.h5", "series"), (sorted(pathlib.Path("run").glob("snapshot_*.hdf"))[0].name, "VTKHDF/PointData"), ("duct.h5", "/"):
-            if (pathlib.Path("run") / path).exists():
-                with h5py.File(pathlib.Path("run") / path, "r") as file:
-                    names += list(file[group])
-        missing = [name for name in names if f"| `{name}` |" not in manual]
-        check(not missing, settings, missing)
+        run(deck(text), *_settings(*settings), "--output", "run", "--overwrite", "--quiet")
+        before, times = times, {path.name: path.stat().st_mtime_ns for path in pathlib.Path("run").iterdir()}
+        stale = [name for name, time in times.items() if before.get(name) == time]
+        check(not stale, "--overwrite has left", stale, "before a run of", text, settings)
+        unnamed = [name for name in times if f"| `{re.sub('[0-9]{6}', 'NNNNNN', name)}` |" not in files]
+        check(not unnamed, "inputs/manual/results/index.md lacks", unnamed)
+        missing = [one for one in _recorded("run") if f"| `{one[1]}` |" not in _section(manual, one[0])]
+        check(not missing, text, settings, "the manual lacks", missing)
+        found |= {*times, *_recorded("run")}
+    rows = {("Fields", name) for name in re.findall(r"^\| `([^`]+)` \|", _section(manual, "Fields"), re.MULTILINE)}
+    unused = {name for _, name in rows - found}
+    # The field of nodes is not in the group of the others, and no run here has a requested accuracy.
+    check(unused == {"Points", "position error"}, "fields of the manual that no deck has recorded:", unused)
+    check({"duct.h5", "channel.h5", "surface.iga"} <= found, found)
+
+
+def the_python_package_scales_all_fields_with_a_unit():
+    sys.path.append(str(SOURCE / "postproc"))
+    from tanktread import DIMENSIONS
+    names = {"length": "length", "length/time": "velocity", "force/length^2": "stress", "1/length": "curvature"}
+    fields = dict(re.findall(r"^\| `([^`]+)` \| ([^|]+) \|", _section((SOURCE / "inputs/SERIES.md").read_text(), "Fields"), re.MULTILINE))
+    check({"traction", "velocity", "concentration"} <= set(fields), fields)
+    for field, unit in fields.items():
+        if unit != "1" and field != "Points":  # Snapshot.scaled scales the points
+            check(unit in names, f"the unit {unit} of the field {field} has no dimension in Run.scale")
+            check(DIMENSIONS.get(field) == names[unit], f"DIMENSIONS of postproc/tanktread/snapshots.py lacks the field {field}: {names[unit]}")
+    for field, dimension in DIMENSIONS.items():
+        check(field in fields, f"{field} is in DIMENSIONS, but is no field of inputs/SERIES.md")
 
 
 main()

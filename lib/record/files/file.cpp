@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
+#include <iterator>
 #include <unistd.h>
 #include <vector>
 
@@ -25,16 +26,17 @@ constexpr std::string_view unfinished = ".part", damaged = ".damaged";
 }  // namespace
 
 bool is_result(const std::string& name) {
-  constexpr std::array<std::string_view, 6> files{record_file, snapshot_list_file, summary_file, duct_file, channel_file, surface_file};
-  return std::ranges::find(files, name) != files.end() ||
+  return std::ranges::find(run_files, name, &RunFile::name) != std::end(run_files) ||
          (name.starts_with(snapshot_start) &&
           (name.ends_with(snapshot_end) || name.find(std::string(snapshot_end).append(damaged)) != name.npos));
 }
 
 namespace {
 
-/// Returns true if the result shows that a run has recorded something. The flow in a duct is recorded before the first row.
-bool is_of_run(const std::string& name) { return is_result(name) && name != duct_file && name != channel_file; }
+/// Returns true if the result shows that a run has recorded something.
+bool is_of_run(const std::string& name) {
+  return is_result(name) && std::ranges::none_of(run_files, [&](const RunFile& one) { return one.before_rows && one.name == name; });
+}
 
 bool is_unfinished(const std::string& name) {
   return name.ends_with(unfinished) && is_result(name.substr(0, name.size() - unfinished.size()));
@@ -94,6 +96,16 @@ void write_whole(const fs::path& path, std::string_view bytes, Durable durable) 
 
 void sync(const fs::path& path) {
   if (!synced(Opened(path).number)) fail("write", path);
+}
+
+void sync_results(const fs::path& directory, const std::set<std::string>& copies) try {
+  for (const auto& entry : fs::directory_iterator(directory)) {
+    const std::string name = entry.path().filename();
+    if (std::error_code unknown; (is_result(name) || copies.contains(name)) && entry.is_regular_file(unknown)) sync(entry.path());
+  }
+  sync(directory);
+} catch (const fs::filesystem_error& error) {
+  throw RunFailure("cannot read " + directory.string() + ": " + error.code().message());
 }
 
 void check_opens(const fs::path& path) {

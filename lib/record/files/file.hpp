@@ -7,16 +7,35 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tanktread::output {
 
-/// Names of the files that a run writes into its directory, in addition to snapshots (snapshot_name()) and to copies of files that the deck names. A
-/// new name must be added to is_result(), so that the file is deleted before another run writes into the directory.
-constexpr const char *record_file = "run.h5", *snapshot_list_file = "run.hdf.series", *summary_file = "summary.yaml";
-constexpr const char *duct_file = "duct.h5", *channel_file = "channel.h5", *surface_file = "surface.iga";
+/// File that a run writes into its directory under a fixed name. `before_rows`: true if the run may write it before its first row. Such a file does
+/// not show that a run has recorded something.
+struct RunFile {
+  const char* name;
+  bool before_rows;
+};
+
+/// All files that a run writes into its directory under a fixed name. A run also writes snapshots (snapshot_name()) and copies of files that the deck
+/// names. The table determines which files are results (is_result()), are deleted before another run writes into the directory (start_directory()),
+/// prevent another run (check_vacant()), and are flushed at the end of a run (sync_results()).
+constexpr RunFile run_files[] = {{"run.h5", false}, {"run.hdf.series", false}, {"summary.yaml", false},
+                                 {"duct.h5", true}, {"channel.h5", true},      {"surface.iga", false}};
+
+/// Returns the name of a file in the table `run_files`. Does not compile if the table lacks the name.
+consteval const char* run_file(std::string_view name) {
+  for (const RunFile& one : run_files)
+    if (one.name == name) return one.name;
+  throw "the table run_files lacks this name";
+}
+
+constexpr const char *record_file = run_file("run.h5"), *snapshot_list_file = run_file("run.hdf.series"), *summary_file = run_file("summary.yaml");
+constexpr const char *duct_file = run_file("duct.h5"), *channel_file = run_file("channel.h5"), *surface_file = run_file("surface.iga");
 constexpr std::string_view snapshot_start = "snapshot_", snapshot_end = ".hdf";  ///< start and end of the name of a snapshot; the step is in between
 
 /// Returns true if a file of this name in the directory of a run is one of its results. Copies of files that the deck names have other names.
@@ -61,6 +80,10 @@ void write_whole(const std::filesystem::path& path, std::string_view bytes, Dura
 
 /// Waits until a file, or the entries of a directory, are on the disk. Throws RunFailure.
 void sync(const std::filesystem::path& path);
+
+/// Waits until the results of a run in its directory, the files of the names `copies` in it, and its entries are on the disk. Ignores names that do
+/// not exist or are not regular files. Throws RunFailure.
+void sync_results(const std::filesystem::path& directory, const std::set<std::string>& copies);
 
 /// check_opens() throws RunFailure with the system's reason if a file cannot be opened (absent, no permission, too many open files, a pipe).
 /// check_readable() also throws RunFailure if the file cannot be read to its end. A file that passes both checks but cannot be interpreted is

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 #include "membrane/membrane.hpp"
@@ -164,13 +165,19 @@ double SurfaceFields::power(const Net& v) const {
   return sum;
 }
 
-/// Adds the values that registered fields and loads write to snapshots. Each quantity is 0 on particles that do not have it.
+/// Adds the values that registered fields and loads write to snapshots. Each quantity is 0 on particles that do not have it. Throws std::logic_error
+/// if a quantity has a wrong shape, or different numbers of columns in two parts.
 void SurfaceFields::add_registered(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
   std::map<std::string, Eigen::MatrixXd> all;
   const auto add = [&](std::size_t p, const std::vector<membrane::SurfaceValues>& several) {
     for (const membrane::SurfaceValues& one : several) {
-      const auto known = all.try_emplace(one.name, Eigen::MatrixXd::Zero(capsule_.n_points(), one.values.cols())).first;
-      known->second.middleRows(members_[p].block.first_point, members_[p].block.n_points) = one.values;
+      const spline::Block& block = members_[p].block;
+      if (one.values.rows() != block.n_points || (one.values.cols() != 1 && one.values.cols() != 3))
+        throw std::logic_error("the quantity " + one.name + " of snapshots must have one row per control point and 1 or 3 columns");
+      Eigen::MatrixXd& known = all.try_emplace(one.name, Eigen::MatrixXd::Zero(capsule_.n_points(), one.values.cols())).first->second;
+      if (known.cols() != one.values.cols())
+        throw std::logic_error("two parts write the quantity " + one.name + " to snapshots with different numbers of columns");
+      known.middleRows(block.first_point, block.n_points) = one.values;
     }
   };
   for (const One& one : all_) add(one.particle, one.field->snapshot());

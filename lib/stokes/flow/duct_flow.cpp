@@ -1,5 +1,9 @@
 #include "stokes/flow/duct_flow.hpp"
 
+#include <stdexcept>
+
+#include <Eigen/LU>
+
 #include "stokes/flow/duct_boundary.hpp"
 
 namespace tanktread::stokes {
@@ -8,7 +12,8 @@ std::unique_ptr<DuctProfile> duct_profile(const surface::TubeOptions& options, c
   if (!options.exact_flow()) return std::make_unique<BoundaryProfile>(outline, options.flow_elements);
   if (options.section == "circle") return ellipse_profile(surface::Vec2::Constant(options.radius.value()));
   if (options.section == "ellipse") return ellipse_profile(options.semi_axes.value());
-  return rectangle_profile(options.sides.value());
+  if (options.section == "rectangle") return rectangle_profile(options.sides.value());
+  throw std::logic_error(options.list() + "/section " + options.section + " has no formula for its flow");
 }
 
 DuctFlow::DuctFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity)

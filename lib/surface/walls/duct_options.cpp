@@ -13,7 +13,7 @@
 namespace tanktread::surface {
 
 void TubeOptions::declare(deck::Section& list) {
-  list.key("section", section, deck::Choice{"circle", "ellipse", "rectangle", "file"},
+  list.key("section", section, duct_sections,
            "cross-section of the tube or channel in the plane x2 x3: `circle` of `radius`, `ellipse` of `semi-axes` or `rectangle` of "
            "`sides`, centred at the origin; `file`: any closed `outline`");
   if (section == "circle") radius = 1;
@@ -135,20 +135,29 @@ double TubeOptions::half_width() const {
   throw std::logic_error(list() + "/section " + section + " has no half width");
 }
 
+bool TubeOptions::exact_flow() const {
+  if (section == "circle" || section == "ellipse" || section == "rectangle") return flow == "exact";
+  if (section == "file") return false;
+  throw std::logic_error("it is not known whether the flow for " + list() + "/section " + section + " has a formula");
+}
+
 void TubeOptions::check() const {
-  const auto belongs = [this](const char* key, bool given, const char* owner) {
+  const auto belongs = [this](const char* key, bool given, std::initializer_list<const char*> owners) {
     const std::string word = list() + "/section";
-    if (given && section != owner)
-      throw UserError(list() + "/" + key + " belongs to " + word + " `" + owner + "`, but " + word + " is `" + section + "`.");
-    if (!given && section == owner) throw UserError(word + " `" + owner + "` needs " + list() + "/" + key + ".");
+    const bool owned = std::ranges::find(owners, section) != owners.end();
+    std::vector<std::string> quoted;
+    for (const char* owner : owners) quoted.push_back(std::string("`") + owner + "`");
+    if (given && !owned)
+      throw UserError(list() + "/" + key + " belongs to " + word + " " + deck::alternatives(quoted) + ", but " + word + " is `" + section + "`.");
+    if (!given && owned) throw UserError(word + " `" + section + "` needs " + list() + "/" + key + ".");
   };
   if (channel) channel->check();
   if (images && period == 0)
     throw UserError(list() + "/images belongs to a periodic tube, but neither " + list() + "/periodic length nor Domain is given.");
-  belongs("radius", radius.has_value(), "circle");
-  belongs("semi-axes", semi_axes.has_value(), "ellipse");
-  belongs("sides", sides.has_value(), "rectangle");
-  belongs("outline", outline.has_value(), "file");
+  belongs("radius", radius.has_value(), {"circle"});
+  belongs("semi-axes", semi_axes.has_value(), {"ellipse"});
+  belongs("sides", sides.has_value(), {"rectangle"});
+  belongs("outline", outline.has_value(), {"file"});
   if (repulsion.has_value() != repulsion_range.has_value())
     throw UserError(list() + "/repulsion and " + list() + "/repulsion range belong together, but one of them is not given.");
   if (repulsion && (section != "circle" || (channel && (channel->bend_radius || channel->directions != "x2 x3"))))

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -34,12 +35,14 @@ struct ChannelOptions {
   void check() const;
 };
 
+inline const std::vector<std::string> duct_sections{"circle", "ellipse", "rectangle", "file"};  ///< words for `section` of tubes and channels
+
 /// Options `Tube/*` of the deck: a straight tube along x1 around the particle, with a constant cross-section in the plane x2 x3. Keys of
 /// cross-sections that are not selected are not set.
 struct TubeOptions {
   bool present = false;  ///< true if the deck has a tube or channel; otherwise all other members are ignored
 
-  std::string section = "circle";            ///< cross-section: circle, ellipse, rectangle, file
+  std::string section = "circle";            ///< cross-section: one of duct_sections
   std::optional<double> radius;              ///< radius of the circle; default 1
   std::optional<Eigen::Vector2d> semi_axes;  ///< semi-axes of the ellipse along x2 and x3
   std::optional<Eigen::Vector2d> sides;      ///< sides of the rectangle along x2 and x3
@@ -84,7 +87,7 @@ struct TubeOptions {
   double half_width() const;
 
   /// Returns whether the duct flow is computed in closed form or by a series; otherwise it is computed by boundary elements.
-  bool exact_flow() const { return section != "file" && flow == "exact"; }
+  bool exact_flow() const;
 };
 
 }  // namespace tanktread::surface

@@ -1,10 +1,12 @@
 // Tests of spheres that are packed at random in a periodic cell.
 
+#include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
-#include "scene/copies.hpp"
+#include "scene/packing.hpp"
 
 namespace tanktread {
 namespace packing_test {

@@ -154,6 +154,10 @@ TEST(Shapes, OfEachWordHaveTheirVolumeAndFillTheirCircumscribedSphere) {
   for (const std::string& word : particle_shapes) {
     if (word == "cylinder") continue;  // a post, whose surface is not closed; see solid_surface_test.cpp
     const ParticleShape shape = example(word, cube);
+    ParticleShape without_keys;
+    without_keys.shape = word;
+    EXPECT_TRUE(shape.sized()) << word;
+    EXPECT_FALSE(without_keys.sized()) << word;
     const Net net = word == "file" ? imported_shape(shape) : cube.shape(shape);
     // Measured errors of the fit for n = 12: 6.4e-9 in the volume of each fitted shape; 1.2e-5 in the largest distance of a sphere, 3.6e-6 of a red
     // cell and 1.2e-6 of an ellipsoid. The tolerances are three times the largest of them.
@@ -196,6 +200,7 @@ TEST(Shapes, OfACopyAreThoseOfTheOriginalMovedIfTheyAreLinearImages) {
   for (const std::string& word : particle_shapes) {
     if (word == "cylinder") continue;  // a post, which has no resting shape on a closed mesh
     const ParticleShape one = example(word, cube), other = of_another_size(one, cube);
+    EXPECT_TRUE(one.same_rest(one) && !one.same_rest(other)) << word;
     const double error = (placed_again(net(one), one, other) - net(other)).cwiseAbs().maxCoeff();
     if (is_linear_image(one, other))
       EXPECT_LT(error, 1e-13) << word;

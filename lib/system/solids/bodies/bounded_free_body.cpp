@@ -34,22 +34,34 @@ FreeBodyInTube::FreeBodyInTube(RigidTractions& body, const Net& surface, const V
                                double viscosity, const RigidDrive& driven)
     : BoundedFreeBody(body, surface, centre, radius, flow, driven), viscosity_(viscosity), modes_(body, surface, centre, false) {}
 
+/// Returns the solution. If the pressure drop of the duct is prescribed, the correction of the disturbed pressure drop changes the flow rate, too.
 BoundedFreeBody::Solution FreeBodyInTube::solve(const Net& position) const {
   const Net x = surface(position);
-  return body_.inside(x) ? in_body_axes(position) : outside_fluid(x);
+  if (!body_.inside(x)) return outside_fluid(x);
+  const Solution found = in_body_axes(position, 0);
+  if (body_.tube()->flow_rate_reduction(1) == 0) return found;
+  return in_body_axes(position, body_.tube()->flow_rate_reduction(pressure_correction(position, found)));
 }
 
-/// Returns the pressure drop due to the body, corrected for the collocation error (2.41) by the integral of the residual velocity times the density z
-/// due to the flow of the empty duct. For a body without forces in this flow, -f takes the place of z, and no further solve is needed.
-double FreeBodyInTube::pressure_drop(const Net& position) const {
-  Tube* const tube = body_.tube();
-  const auto& [motion, f, stresslet] = solution(position);
-  if (!motion.velocity.allFinite()) return motion.velocity[0];  // outside of the fluid
+/// Returns the correction (2.41) of the pressure drop due to the body for collocation errors: the integral of the residual velocity times the density
+/// z due to the flow of the empty duct at a prescribed flow rate. For a body without forces in this flow, -f takes the place of z, and no further
+/// solve is needed. If the pressure drop is prescribed, -f or z results from the flow that the pressure drop due to the body leaves, and is divided
+/// by it.
+double FreeBodyInTube::pressure_correction(const Net& position, const Solution& found) const {
+  Tube& tube = *body_.tube();
   const Net x = surface(position);
-  tube->set_shape(x);
+  const Net& f = found.density;
   const bool carried = flow_.duct() && flow_.amplitude() != 0 && driven_.force.isZero(0) && driven_.torque.isZero(0);
-  const Net z = carried ? Net(-f / flow_.amplitude()) : density_at_rest(position, tube->flow().velocities(moved(body_.sites(), position)));
-  return body_.pressure_correction_of(x, f, rigid_velocity(x, motion, centre_of(position)), flow_, z) - tube->pressure_of(f);
+  const Net z = carried ? Net(-f) : density_at_rest(position, tube.flow().velocities(moved(body_.sites(), position)));
+  const double amplitude = (carried ? flow_.amplitude() - found.slower : 1) - tube.flow_rate_reduction(tube.pressure_of(z));
+  return body_.pressure_correction_of(x, f, rigid_velocity(x, found.motion, centre_of(position)), flow_, found.slower, z / amplitude);
+}
+
+double FreeBodyInTube::pressure_drop(const Net& position) const {
+  const Solution& found = solution(position);
+  if (!found.motion.velocity.allFinite()) return found.motion.velocity[0];  // outside of the fluid
+  body_.tube()->set_shape(surface(position));
+  return pressure_correction(position, found) - body_.tube()->pressure_of(found.density);
 }
 
 /// Returns the velocity that the force density f causes at the sites in the tube. f and the velocity have components in axes that turn with the body,
@@ -71,8 +83,8 @@ Net FreeBodyInTube::density_at_rest(const Net& position, const Net& velocities) 
 }
 
 /// Solves for the force density f and the motion U, Omega. The unknowns are scaled to velocities: f R_C/mu, U and Omega R_C. The force balance is
-/// divided by 6 pi mu R_C and the torque balance by 6 pi mu R_C^2, so that their residuals are velocities too.
-BoundedFreeBody::Solution FreeBodyInTube::in_body_axes(const Net& position) const {
+/// divided by 6 pi mu R_C and the torque balance by 6 pi mu R_C^2, so that their residuals are velocities too. `slower`: see Solution.
+BoundedFreeBody::Solution FreeBodyInTube::in_body_axes(const Net& position, double slower) const {
   using Six = Eigen::Matrix<double, 6, 1>;
   const Mat3 turn = rotation_of(position);
   const Eigen::Index n = surface_.rows();
@@ -101,14 +113,17 @@ BoundedFreeBody::Solution FreeBodyInTube::in_body_axes(const Net& position) cons
     Eigen::Map<Six>(out + 3 * n) = motion.cwiseQuotient(of_motion);
   };
   Eigen::VectorXd right(3 * n + 6);
-  Eigen::Map<Net>(right.data(), n, 3) = -flow_.velocities(moved(body_.sites(), position)) * turn;
+  const Net at = moved(body_.sites(), position);
+  Net flow = flow_.velocities(at);
+  if (slower != 0) flow -= slower * body_.tube()->flow().velocities(at);
+  Eigen::Map<Net>(right.data(), n, 3) = -flow * turn;
   right.tail<6>() << turn.transpose() * driven_.force / force_unit, turn.transpose() * driven_.torque / (force_unit * radius_);
   if (unknowns_.size() != right.size()) unknowns_ = Eigen::VectorXd::Zero(right.size());
   iterations_ += body_.solve_iteratively({{{"traction", 3 * n}, {"rigid motion", 6}}, apply, precondition}, right, unknowns_);
   const Net f = unit * as_net(unknowns_.head(3 * n));
   const RigidMotion motion = motion_of(Six(unknowns_.tail<6>()).cwiseProduct(of_motion));
   return {{turn * motion.velocity, turn * motion.angular_velocity}, f * turn.transpose(),
-          -turn * body_.integrals(0, f).stresslet() * turn.transpose()};
+          -turn * body_.integrals(0, f).stresslet() * turn.transpose(), slower};
 }
 
 }  // namespace tanktread::coupling

@@ -23,6 +23,7 @@ class BoundedFreeBody : public LoneRigidBody {
     RigidMotion motion;
     Net density;
     Mat3 stresslet;
+    double slower = 0;  // fraction of the flow of the duct that is subtracted, because the collocation error changes a prescribed pressure drop
   };
 
   /// `body`: equation (2.40) of the traction on the body. `surface`: net of the body in its initial position.
@@ -74,7 +75,8 @@ class FreeBodyInTube : public BoundedFreeBody {
 
  private:
   Solution solve(const Net& position) const override;
-  Solution in_body_axes(const Net& position) const;
+  Solution in_body_axes(const Net& position, double slower) const;
+  double pressure_correction(const Net& position, const Solution& found) const;
   Net caused(const Net& f, const Mat3& turn) const;
   Net density_at_rest(const Net& position, const Net& velocities) const;
 

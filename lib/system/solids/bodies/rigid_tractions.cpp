@@ -202,13 +202,18 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   const Eigen::VectorXd correction = corrections(unknowns, of_all, solution_.residual), change = freed(free, resistance, -correction.head(m));
   motion += change;
   y += z * change;
-  solution_.unknowns = completed(y);
-  const Net f = force_densities(solution_.unknowns);
   if (has_pressure) {
     const double unit = apart ? 1 : flow.amplitude();
-    const Net of_duct = apart ? walls_.tube->flow().velocities(residual_.points().values * x) : Net(between / unit);
+    const Net f = as_net(y), of_duct = apart ? walls_.tube->flow().velocities(residual_.points().values * x) : Net(between / unit);
     solution_.pressure_correction = walls_.tube->pressure_correction(residual_.points(), of_duct, f, correction[with_duct] / unit);
+    // If the pressure drop of the duct is prescribed, the error of its flow between the collocation points changes the flow rate, too.
+    const double slower = walls_.tube->flow_rate_reduction(walls_.tube->ambient_correction(residual_.points(), of_duct, f));
+    const Eigen::VectorXd less = slower / unit * of_all.col(with_duct), slowed = freed(free, resistance, -work.transpose() * less);
+    motion += slowed;
+    y += z * slowed + less;
   }
+  solution_.unknowns = completed(y);
+  const Net f = force_densities(solution_.unknowns);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);
     SolvedBody& body = solution_.bodies.emplace_back(integrals(p, f));
@@ -218,10 +223,11 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   return solution_;
 }
 
-double RigidTractions::pressure_correction_of(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, const Net& z) {
-  const Net places = residual_.points().values * x;
-  const Eigen::VectorXd residual = flat(residual_.integrated(x, load(f), v, flow.velocities(places), walls_));
-  return walls_.tube->pressure_correction(residual_.points(), walls_.tube->flow().velocities(places), f, corrections(f, flat(z), residual)[0]);
+double RigidTractions::pressure_correction_of(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, double slower,
+                                              const Net& z) {
+  const Net places = residual_.points().values * x, of_duct = walls_.tube->flow().velocities(places);
+  const Eigen::VectorXd residual = flat(residual_.integrated(x, load(f), v, flow.velocities(places) - slower * of_duct, walls_));
+  return walls_.tube->pressure_correction(residual_.points(), of_duct, f, corrections(f, flat(z), residual)[0]);
 }
 
 Net RigidTractions::density(const Net& velocities) { return as_net(densities(flat(velocities))); }

@@ -101,9 +101,10 @@ class RigidTractions {
   Net density(const Net& velocities);
 
   /// Returns the correction (2.41) of the pressure drop for the collocation error. `f`: force density on freely moving bodies at the net x. `v`:
-  /// control values of the bodies' velocity. `z`: force density due to the flow of the empty duct, of amplitude 1, on bodies at rest; for bodies
-  /// without forces and torques in this flow, -f has the same effect. All particles must be bodies. Collective.
-  double pressure_correction_of(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, const Net& z);
+  /// control values of the bodies' velocity. `slower`: multiple of the flow of the empty duct that is subtracted from `flow`. `z`: force density due
+  /// to the flow of the empty duct, of amplitude 1, on bodies at rest; for bodies without forces and torques in this flow, -f has the same effect.
+  /// All particles must be bodies. Collective.
+  double pressure_correction_of(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, double slower, const Net& z);
 
   /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
   SolvedBody integrals(std::size_t p, const Net& f);

@@ -75,9 +75,13 @@ double Tube::pressure_of_velocity(const Net& v, const Net* on_wall) {
   return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->sources.strength(v))) / weights.of_pressure;
 }
 
-double Tube::pressure_correction(const BetweenSites& between, const Net& at_places, const Net& f, double work) {
-  if (fixed()) work += dot(between.weights * (at_places - between.values * particle_->interpolated_ambient), f);
-  return -work / flow_->flow_rate();
+double Tube::ambient_correction(const BetweenSites& between, const Net& at_places, const Net& f) const {
+  if (!fixed()) return 0;
+  return -dot(between.weights * (at_places - between.values * particle_->interpolated_ambient), f) / flow_->flow_rate();
+}
+
+double Tube::pressure_correction(const BetweenSites& between, const Net& at_places, const Net& f, double work) const {
+  return ambient_correction(between, at_places, f) - work / flow_->flow_rate();
 }
 
 Net Tube::particle_on_wall(const Net& f, const Net& v) { return wall_->points().collocated(particle_->cause(f, v).at_wall); }
@@ -141,8 +145,6 @@ Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correct
 /// Returns the pressure drop of the empty duct over the modelled length, or over one period.
 double Tube::empty_pressure_drop() const { return flow_->pressure_drop(wall().length()); }
 
-/// Returns the fraction by which the particle reduces the flow rate if the pressure drop of the duct is prescribed, otherwise 0. `pressure_drop`: dp
-/// (2.7).
 double Tube::flow_rate_reduction(double pressure_drop) const {
   return particle_->parameters.holds_pressure_drop ? pressure_drop / empty_pressure_drop() : 0;
 }

@@ -151,7 +151,10 @@ class Tube {
   /// Returns the correction (2.41) of pressure_of(f) for collocation errors. v_inf is the flow of the empty duct, of amplitude 1. `work`: integral
   /// over the particle of the density z due to v_inf times the residual velocity of f. In a channel, also corrects for the interpolation error of
   /// v_inf. `between`: Gauss points for this error. `at_places`: exact values of v_inf at these Gauss points.
-  double pressure_correction(const BetweenSites& between, const Net& at_places, const Net& f, double work);
+  double pressure_correction(const BetweenSites& between, const Net& at_places, const Net& f, double work) const;
+
+  /// Returns the part of pressure_correction() for the interpolation error of v_inf.
+  double ambient_correction(const BetweenSites& between, const Net& at_places, const Net& f) const;
   Net solve_wall(const Net& rhs);  ///< returns the wall traction f^D that solves (1/mu) G_W f^D = rhs
 
   /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
@@ -179,6 +182,9 @@ class Tube {
   /// Returns the flow rate of the duct flow: Q times its current factor `amplitude`. If the pressure drop of the duct flow is prescribed, returns the
   /// flow rate that remains when the particle causes the additional pressure drop dp = `pressure_drop` (2.7): Q (amplitude - dp/dp_0).
   double flow_rate(double pressure_drop, double amplitude) const { return flow_->flow_rate() * (amplitude - flow_rate_reduction(pressure_drop)); }
+
+  /// Returns the fraction dp/dp_0 by which particles reduce the flow rate if the pressure drop of the duct is prescribed, otherwise 0.
+  double flow_rate_reduction(double pressure_drop) const;
 
   /// Returns the smallest distance between the particle and the wall; negative if they intersect.
   double gap() const;
@@ -220,7 +226,6 @@ class Tube {
   double gap_to_straight_wall() const;
   double gap_to_channel_wall() const;
   double empty_pressure_drop() const;
-  double flow_rate_reduction(double pressure_drop) const;
   Net pressure_driven_velocity(const Net& at) const;
   Net on_particle(const Net& own) const;
   void respond_open(const Net& f, const Net& v, Response& response);

@@ -1,4 +1,8 @@
 #include <filesystem>
+#include <string>
+#include <vector>
+
+#include <sys/stat.h>
 
 #include <gtest/gtest.h>
 
@@ -23,16 +27,36 @@ fs::path touched(const fs::path& path) {
 TEST(Directories, OfRunsLoseTheirResultsOnly) {
   const Scratch scratch;
   std::vector<fs::path> results;
-  for (const std::string& name : {std::string(record_file), std::string(snapshot_list_file), std::string(summary_file), std::string(duct_file),
-                                  std::string(channel_file), std::string(surface_file), snapshot_name(12), snapshot_name(12) + ".damaged.2",
-                                  snapshot_name(13) + ".part"})
+  for (const std::string& name : {snapshot_name(12), snapshot_name(12) + ".damaged.2", snapshot_name(13) + ".part"})
     results.push_back(touched(scratch / name));
+  for (const RunFile& one : run_files)
+    for (const char* end : {"", ".part"}) results.push_back(touched(scratch / (one.name + std::string(end))));
   const std::vector<fs::path> others = {touched(scratch / failure_file), touched(scratch / "notes.txt"), touched(scratch / "level_0" / failure_file)};
   EXPECT_THROW(check_vacant(scratch.path()), UserError);
   start_directory(scratch.path());
   EXPECT_NO_THROW(check_vacant(scratch.path()));
   for (const fs::path& one : results) EXPECT_FALSE(fs::exists(one)) << one;
   for (const fs::path& one : others) EXPECT_TRUE(fs::exists(one)) << one;  // without `ladder_file` the folder is not that of a level
+}
+
+TEST(Directories, AreVacantIfTheyHoldOnlyFilesThatAreWrittenBeforeTheFirstRow) {
+  for (const RunFile& one : run_files) {
+    const Scratch scratch;
+    touched(scratch / one.name);
+    if (one.before_rows)
+      EXPECT_NO_THROW(check_vacant(scratch.path())) << one.name;
+    else
+      EXPECT_THROW(check_vacant(scratch.path()), UserError) << one.name;
+  }
+}
+
+TEST(Directories, AreFlushedWithoutAFileThatARunDoesNotWrite) {
+  const Scratch scratch;
+  touched(scratch / record_file), touched(scratch / snapshot_name(0)), touched(scratch / "outline.csv");
+  ASSERT_EQ(mkfifo((scratch / channel_file).c_str(), 0600), 0);  // no regular file
+  fs::create_symlink(scratch / "nowhere", scratch / summary_file);
+  EXPECT_NO_THROW(sync_results(scratch.path(), {"outline.csv", "absent.iga"}));
+  EXPECT_THROW(sync_results(scratch / "nowhere", {}), RunFailure);
 }
 
 TEST(Directories, OfLaddersLoseTheResultsAndFailuresOfTheirLevelsOnly) {
