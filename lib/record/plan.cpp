@@ -38,6 +38,22 @@ std::string wall_solver(const Scene& scene, const VelocityUnknowns& unknowns) {
   return unknowns.iterates ? "eliminated from the system of the velocity" : "solved for directly";
 }
 
+/// Adds the line of the plan about the shape and the mesh of the duct's wall.
+void add_duct(Lines& lines, const Scene& scene, const Body& body) {
+  const surface::TubeWall& wall = *body.wall;
+  const std::string section = formatted("section `%s`, R_T = %.6g", scene.tube.section.c_str(), body.duct->radius());
+  const char* mesh = wall.space.description.c_str();
+  switch (wall.kind) {
+    case surface::DuctKind::straight_tube:
+      lines.emplace_back("tube", section + formatted(", length %.6g: %s", wall.length(), mesh));
+      break;
+    case surface::DuctKind::channel:
+      lines.emplace_back("channel", section + formatted(" at the inlet, s from %.6g to %.6g, %.6g wide where it is narrowest: %s", wall.start,
+                                                        wall.end, 2 * wall.channel->smallest_radius(), mesh));
+      break;
+  }
+}
+
 void add_fluid(Lines& lines, const Scene& scene, const VelocityUnknowns& of_velocity, const Body& body, int ranks) {
   if (scene.units) lines.emplace_back("units", scene.units->description());
   if (!body.wall) {
@@ -57,25 +73,19 @@ void add_fluid(Lines& lines, const Scene& scene, const VelocityUnknowns& of_velo
     return;
   }
   const surface::TubeWall& wall = *body.wall;
-  const double unknowns = 3.0 * static_cast<double>(wall.sites.size()) / (wall.channel ? body.symmetry.order() : 1);
+  const double unknowns = 3.0 * static_cast<double>(wall.sites.size()) / body.symmetry.order();
   std::string flow = "quiescent fluid";
   if (scene.flow.type == "simple shear")
     flow = scene.flow.type + ", with which the wall moves; the flow of the empty duct is used for the pressure drop";
   if (scene.flow.type == "duct")
     flow = formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
   lines.emplace_back("flow", flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements)));
-  if (wall.channel)
-    lines.emplace_back("channel", formatted("section `%s`, R_T = %.6g at the inlet, s from %.6g to %.6g, %.6g wide where it is narrowest: %s",
-                                            scene.tube.section.c_str(), body.duct->radius(), wall.start, wall.end,
-                                            2 * wall.channel->smallest_radius(), wall.space.description.c_str()));
-  else
-    lines.emplace_back("tube", formatted("section `%s`, R_T = %.6g, length %.6g: %s", scene.tube.section.c_str(), body.duct->radius(), wall.length(),
-                                       wall.space.description.c_str()));
+  add_duct(lines, scene, body);
   if (wall.period > 0)
     lines.emplace_back("period", formatted("%.6g along x1: one period of the wall, all images by the kernels of one period", wall.period));
   const surface::Symmetry of_wall = coupling::reflections(wall, coupling::positions(wall, wall.sites));
-  const double bytes = coupling::WallFactors::bytes(of_wall, wall.channel ? body.symmetry : surface::Symmetry());
-  const bool iterates = wall.channel && coupling::WallSolver{scene.solvers.wall}.iterates(bytes, wall.period > 0);
+  const double bytes = coupling::WallFactors::bytes(of_wall, body.symmetry);
+  const bool iterates = coupling::WallSolver::applies_to(wall.kind) && coupling::WallSolver{scene.solvers.wall}.iterates(bytes, wall.period > 0);
   const std::string parities = of_wall.order() > 1 ? " for each parity under " + of_wall.description() : "";
   const std::string how = iterates ? "found by GMRES and clusters in each velocity"
                                    : formatted("factored once%s: %.1f MB on each of %d rank%s", parities.c_str(), 1e-6 * bytes, ranks,

@@ -34,8 +34,13 @@ membrane::Law law(const membrane::Options& options, double modulus) {
 
 membrane::Repulsion repulsion(const surface::TubeOptions& tube, const surface::TubeWall& wall) {
   const double mouth = tube.radius.value();
-  std::function<double(double)> radius = [mouth](double) { return mouth; };
-  if (const auto channel = wall.channel) radius = [mouth, channel](double s) { return mouth * channel->section(s).factor[0]; };
+  std::function<double(double)> radius;
+  switch (wall.kind) {
+    case surface::DuctKind::straight_tube: radius = [mouth](double) { return mouth; }; break;
+    case surface::DuctKind::channel:
+      radius = [mouth, channel = wall.channel](double s) { return mouth * channel->section(s).factor[0]; };
+      break;
+  }
   return {std::move(radius), *tube.repulsion, *tube.repulsion_range};
 }
 
@@ -119,9 +124,12 @@ void check_in_medium(const ParticleScene& particle_scene, const Body& body) {
 
 std::string lacks_symmetry(const ParticleScene& particle_scene, const Body& body) {
   if (particle_scene.particle.rigid()) return "for a rigid body";
-  if (body.wall && !body.wall->channel) return "in a tube";
+  if (body.wall)
+    switch (body.wall->kind) {
+      case surface::DuctKind::straight_tube: return "in a tube";
+      case surface::DuctKind::channel: return particle_scene.domain.present ? "in a channel that repeats" : "";
+    }
   if (!particle_scene.domain.present) return "";
-  if (body.wall) return "in a channel that repeats";
   if (!particle_scene.posts.empty()) return "among posts";
   return particle_scene.adaptation.enabled ? "on an adaptive mesh in a lattice" : "";
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <Teuchos_ParameterList.hpp>
 
@@ -29,8 +30,12 @@ double points(const ParticleScene& particle_scene) {
 }
 
 double wall_points(const SharedOptions& shared) {
-  const int along = shared.tube.channel ? surface::Channel(shared.tube).elements() : shared.tube.elements_along();
-  return shared.tube.azimuthal_elements * (along + 3.0);
+  const auto with = [&](int along) { return shared.tube.azimuthal_elements * (along + 3.0); };
+  switch (shared.tube.kind()) {
+    case surface::DuctKind::straight_tube: return with(shared.tube.elements_along());
+    case surface::DuctKind::channel: return with(surface::Channel(shared.tube).elements());
+  }
+  throw std::logic_error("unknown DuctKind");
 }
 
 /// Returns the bytes of all assembled operators of the particle per pair of control points. A layer operator has 3 x 3 doubles per pair, and a frozen
@@ -68,7 +73,8 @@ void check_size(const ParticleScene& particle_scene) {
                 formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *particle_scene.surface.elements_per_side),
                 points(particle_scene), bytes);
   const surface::TubeOptions& tube = particle_scene.tube;
-  if (!tube.present || (tube.channel && coupling::WallSolver{particle_scene.solvers.wall}.may_iterate(tube.period > 0))) return;
+  if (!tube.present) return;
+  if (coupling::WallSolver::applies_to(tube.kind()) && coupling::WallSolver{particle_scene.solvers.wall}.may_iterate(tube.period > 0)) return;
   check_bytes(tube.list() + "/azimuthal elements and " + tube.list() + "/axial elements",
               formatted("give at most %.0f control points", most_wall_points()), wall_points(particle_scene), doubles * coupling::Ranks().size());
 }

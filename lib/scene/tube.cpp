@@ -44,8 +44,8 @@ void check_fits_channel(const ParticleScene& particle_scene, const Body& body, c
                               gap, particle_scene.tube.contact_gap, least));
 }
 
-void check_fits(const ParticleScene& particle_scene, const Body& body) {
-  if (const auto wall = body.duct->fixed_wall()) return check_fits_channel(particle_scene, body, *wall);
+/// Throws UserError if the particle does not fit into the straight tube, or if the gap to the wall is too small.
+void check_fits_tube(const ParticleScene& particle_scene, const Body& body) {
   const surface::Outline& outline = body.duct->outline();
   const Vec3& centre = particle_scene.particle.shape.center;
   const double from_axis = outline.distance({centre[1], centre[2]});
@@ -64,6 +64,13 @@ void check_fits(const ParticleScene& particle_scene, const Body& body) {
                   where.c_str(), nearest.gap, particle_scene.tube.contact_gap, least));
 }
 
+void check_fits(const ParticleScene& particle_scene, const Body& body) {
+  switch (particle_scene.tube.kind()) {
+    case surface::DuctKind::straight_tube: return check_fits_tube(particle_scene, body);
+    case surface::DuctKind::channel: return check_fits_channel(particle_scene, body, *body.duct->fixed_wall());
+  }
+}
+
 /// Adds the flow rate and the pressure drops of the empty duct to the row. They are 0 if `flow` is not a duct flow.
 TubeRow with_channel(const coupling::Tube& tube, const stokes::AmbientFlow& flow, TubeRow now) {
   const double amplitude = flow.duct() ? flow.amplitude() : 0;
@@ -78,20 +85,22 @@ TubeRow with_channel(const coupling::Tube& tube, const stokes::AmbientFlow& flow
 void reject_with_tube(const ParticleScene& particle_scene, Rejections& to) {
   const stokes::FlowOptions& flow = particle_scene.flow;
   const coupling::SolverOptions& solvers = particle_scene.solvers;
-  const bool tube = particle_scene.tube.present, straight = tube && !particle_scene.tube.channel, all_blocks = !solvers.eliminates_walls();
+  const bool tube = particle_scene.tube.present, all_blocks = !solvers.eliminates_walls();
+  const bool fixed = tube && surface::is_fixed(particle_scene.tube.kind());
+  const bool factored = tube && !coupling::WallSolver::applies_to(particle_scene.tube.kind());
   const Chosen confined = particle_scene.duct_choice(), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
-  to.pair(!particle_scene.runs_in_time() && particle_scene.tube.channel && flow.held == "flow rate", particle_scene.sought(), "Flow/held `flow rate`",
+  to.pair(!particle_scene.runs_in_time() && fixed && flow.held == "flow rate", particle_scene.sought(), "Flow/held `flow rate`",
           "a particle in a channel moves with the fluid if the flow rate is prescribed, and can be at rest only if the pressure drop is; "
           "give `pressure drop`");
-  const bool couette = straight && flow.type == "simple shear" && !flow.history;
+  const bool couette = tube && !fixed && flow.type == "simple shear" && !flow.history;
   to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, particle_scene.flow_choice(),
           "that flow is for unbounded fluid; in a tube Flow/type is `duct`, `quiescent` or, in a straight tube and without Flow/history, "
           "`simple shear`, with which the wall moves");
-  to.pair(straight && particle_scene.domain.present && particle_scene.tube.length, "Tube/length", "Domain",
+  to.pair(tube && particle_scene.domain.present && particle_scene.tube.length, "Tube/length", "Domain",
           "the length of a periodic tube is its period");
   to.pair(tube && particle_scene.quadrature.rule == quadrature::LayerRule::desingularised, "Quadrature/rule `desingularised`", confined,
           "its identities hold for closed surfaces, and the wall is not closed");
-  to.pair(solvers.wall == "iterative" && straight, "Solvers/wall `iterative`", "Tube", "the wall of a straight tube is always factored");
+  to.pair(solvers.wall == "iterative" && factored, "Solvers/wall `iterative`", "Tube", "the wall of a straight tube is always factored");
   to.pair(tube && solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,
           "that system needs the factored wall; give `schur`");
   to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `pressure drop`", system,
@@ -111,16 +120,20 @@ void check_fit(const ParticleScene& particle_scene, const Body& body) {
 std::shared_ptr<const stokes::DuctFlow> make_duct(const ParticleScene& particle_scene) {
   if (!particle_scene.tube.present) return {};
   const double speed = particle_scene.unit_speed();
-  if (particle_scene.tube.channel)
-    return std::make_shared<const coupling::ChannelFlow>(particle_scene.tube, particle_scene.flow.viscosity, speed, particle_scene.quadrature,
-                                                         coupling::WallSolver{particle_scene.solvers.wall, particle_scene.solvers.tolerance},
-                                                         particle_scene.walls);
-  return std::make_shared<const stokes::DuctFlow>(particle_scene.tube, particle_scene.flow.viscosity, speed);
+  switch (particle_scene.tube.kind()) {
+    case surface::DuctKind::straight_tube:
+      return std::make_shared<const stokes::DuctFlow>(particle_scene.tube, particle_scene.flow.viscosity, speed);
+    case surface::DuctKind::channel:
+      return std::make_shared<const coupling::ChannelFlow>(particle_scene.tube, particle_scene.flow.viscosity, speed, particle_scene.quadrature,
+                                                           coupling::WallSolver{particle_scene.solvers.wall, particle_scene.solvers.tolerance},
+                                                           particle_scene.walls);
+  }
+  throw std::logic_error("this DuctKind has no flow");
 }
 
-std::shared_ptr<const surface::TubeWall> make_wall(const SharedOptions& shared, const Body& body) {
-  if (!shared.tube.present) return {};
-  if (auto fixed = body.duct->fixed_wall()) return fixed;
+namespace {
+
+std::shared_ptr<const surface::TubeWall> make_straight_wall(const SharedOptions& shared, const Body& body) {
   const surface::Outline& outline = body.duct->outline();
   double first = 0, last = 0;  // smallest and largest x1, relative to the centroid, in the resting and the initial shape
   for (const Net* net : {&body.rest, &body.initial}) {
@@ -143,19 +156,32 @@ std::shared_ptr<const surface::TubeWall> make_wall(const SharedOptions& shared, 
   return wall;
 }
 
+}  // namespace
+
+std::shared_ptr<const surface::TubeWall> make_wall(const SharedOptions& shared, const Body& body) {
+  if (!shared.tube.present) return {};
+  switch (shared.tube.kind()) {
+    case surface::DuctKind::straight_tube: return make_straight_wall(shared, body);
+    case surface::DuctKind::channel: return body.duct->fixed_wall();
+  }
+  throw std::logic_error("this DuctKind has no wall");
+}
+
 std::unique_ptr<coupling::Tube> make_tube(const SharedOptions& shared, const Body& body, Phases& phases) {
   if (!body.wall) return {};
   coupling::TubeParameters parameters;
   parameters.viscosity = shared.flow.viscosity;
-  if (shared.tube.channel) parameters.symmetry = body.symmetry;
   parameters.holds_pressure_drop = shared.flow.held == "pressure drop";
   parameters.quadrature = shared.quadrature;
   parameters.direct = shared.solvers.direct;
   parameters.walls = shared.walls;
-  if (const auto channel = std::dynamic_pointer_cast<const coupling::ChannelFlow>(body.duct))
-    return std::make_unique<coupling::Tube>(channel, body.space, parameters, phases);
-  if (body.wall->channel) throw std::logic_error("the flow of this duct has no Tube");
-  return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
+  switch (body.wall->kind) {
+    case surface::DuctKind::straight_tube: return std::make_unique<coupling::Tube>(*body.wall, *body.duct, body.space, parameters, phases);
+    case surface::DuctKind::channel:
+      parameters.symmetry = body.symmetry;
+      return std::make_unique<coupling::Tube>(std::dynamic_pointer_cast<const coupling::ChannelFlow>(body.duct), body.space, parameters, phases);
+  }
+  throw std::logic_error("this DuctKind has no Tube");
 }
 
 void TubeRow::add_columns(const SharedOptions& shared, Columns& to) const {
@@ -229,7 +255,7 @@ TubeRow tube_row(coupling::Tube& tube, const stokes::AmbientFlow& flow, const Ne
 }
 
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
-  if (wall.channel || wall.period > 0) return;
+  if (surface::is_fixed(wall.kind) || wall.period > 0) return;
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
   // a tube radius R_T must remain between the particles and each end, because the disturbance decays over about R_T
   const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());
@@ -244,9 +270,8 @@ void check_spread(const Scene& scene, const surface::TubeWall& wall, const surfa
 double least_axial_position(const Scene& scene, const Body& body, const Columns& row) {
   const std::string name = scene.in_system() ? "centroid_x" : "center_x";
   const std::vector<double> x1 = row.of_particles(name + "1"), x2 = row.of_particles(name + "2"), x3 = row.of_particles(name + "3");
-  if (!body.wall || !body.wall->channel) return std::ranges::min(x1);
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t p = 0; p < x1.size(); ++p) least = std::min(least, body.wall->channel->coordinates({x1[p], x2[p], x3[p]})[0]);
+  for (std::size_t p = 0; p < x1.size(); ++p) least = std::min(least, body.wall ? body.wall->axial_position({x1[p], x2[p], x3[p]}) : x1[p]);
   return least;
 }
 

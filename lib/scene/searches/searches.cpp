@@ -76,8 +76,12 @@ void reject_searches(const ParticleScene& particle_scene, Rejections& to) {
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
                                                 std::span<const coupling::Particle> particles, int kinds) {
   const membrane::RigidConditions of_loads = conditions(particles);
-  if (scene.tube.channel) return {};
-  if (scene.tube.present) return of_loads.col(0).isZero(0) ? std::vector{coupling::unit_motion(0)} : std::vector<coupling::RigidMotion>();
+  if (scene.tube.present)
+    switch (scene.tube.kind()) {
+      case surface::DuctKind::straight_tube:
+        return of_loads.col(0).isZero(0) ? std::vector{coupling::unit_motion(0)} : std::vector<coupling::RigidMotion>();
+      case surface::DuctKind::channel: return {};
+    }
   Net places(4, 3);
   places << size, 0, 0, 0, size, 0, 0, 0, size, size, size, size;
   // A rotation changes every lattice vector that is not parallel to the rotation axis.

@@ -12,6 +12,22 @@
 
 namespace tanktread::surface {
 
+bool is_fixed(DuctKind kind) {
+  switch (kind) {
+    case DuctKind::straight_tube: return false;
+    case DuctKind::channel: return true;
+  }
+  throw std::logic_error("unknown DuctKind");
+}
+
+std::string TubeOptions::list() const {
+  switch (kind()) {
+    case DuctKind::straight_tube: return "Tube";
+    case DuctKind::channel: return "Channel";
+  }
+  throw std::logic_error("this DuctKind has no section");
+}
+
 void TubeOptions::declare(deck::Section& list) {
   list.key("section", section, duct_sections,
            "cross-section of the tube or channel in the plane x2 x3: `circle` of `radius`, `ellipse` of `semi-axes` or `rectangle` of "

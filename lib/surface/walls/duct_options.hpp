@@ -12,6 +12,15 @@
 
 namespace tanktread::surface {
 
+/// Kinds of duct. A duct of any kind is open or periodic along x1; its period determines which.
+enum class DuctKind {
+  straight_tube,  ///< endless straight tube along x1; the modelled part of its wall moves with the particles
+  channel,        ///< duct with one inlet and one outlet whose shape may vary along a centre line; its wall is fixed in the laboratory frame
+};
+
+/// Returns whether the wall is fixed in the laboratory frame. Otherwise it moves along x1 with the particles.
+bool is_fixed(DuctKind kind);
+
 /// Options `Channel/*` of the deck that have no counterpart in the section Tube. A channel has the cross-section of a tube, scaled by factors that
 /// vary along a centre line. The centre line starts along x1 and may bend.
 struct ChannelOptions {
@@ -76,7 +85,8 @@ struct TubeOptions {
   /// options that only a channel has; if set, the deck has a section Channel, not Tube. It has the keys of `channel` and the keys of this structure
   /// except `length`, `periodic length`, `images`, `axial elements` and `grading`
   std::optional<ChannelOptions> channel;
-  std::string list() const { return channel ? "Channel" : "Tube"; }
+  DuctKind kind() const { return channel ? DuctKind::channel : DuctKind::straight_tube; }
+  std::string list() const;  ///< returns the name of the section of the deck
 
   void declare(deck::Section& section);
 

@@ -112,7 +112,7 @@ Outline through(const File& file) {
 Outline read_outline(const std::string& path) { return through(File("Tube", path)); }
 
 Outline outline(const TubeOptions& options) {
-  if (options.section == "file") return through(File(options.channel ? "Channel" : "Tube", options.outline.value()));
+  if (options.section == "file") return through(File(options.list(), options.outline.value()));
   const Vec2 zero = Vec2::Zero();
   if (options.section == "circle") return Outline({Ellipse{zero, Vec2::Constant(options.radius.value())}});
   if (options.section == "ellipse") return Outline({Ellipse{zero, options.semi_axes.value()}});

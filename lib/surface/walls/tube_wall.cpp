@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -55,11 +56,11 @@ void repeat(TubeWall& wall, const Line& around, const std::vector<double>& knots
 /// Returns a wall whose control net is allocated but not set, and the control points of the outline. `knots`: knots of the wall's surface along the
 /// axis. `periodic`: knots of the periodic splines for densities, which lie between the first and the last of `knots`; empty if the wall is not
 /// periodic.
-std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::vector<double>& knots, int azimuthal_elements,
-                                             const std::vector<double>& periodic = {}) {
+std::pair<TubeWall, std::vector<Vec2>> woven(DuctKind kind, const Outline& section, const std::vector<double>& knots, int azimuthal_elements,
+                                             const std::vector<double>& periodic) {
   Line along, around;
   add(along, knots, false, false);
-  TubeWall wall{.space = {}, .net = {}, .outline = section.spline(azimuthal_elements), .start = knots.front(), .end = knots.back()};
+  TubeWall wall{.kind = kind, .outline = section.spline(azimuthal_elements), .start = knots.front(), .end = knots.back()};
   std::vector<Vec2> ring;
   for (int k = 0; k < wall.outline.n_sides(); ++k) {
     const CubicCurve& side = std::get<CubicCurve>(wall.outline.side(k));
@@ -86,7 +87,7 @@ std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::
 namespace {
 
 TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std::vector<double>& knots, const std::vector<double>& periodic) {
-  auto [wall, ring] = woven(section, knots, azimuthal_elements, periodic);
+  auto [wall, ring] = woven(DuctKind::straight_tube, section, knots, azimuthal_elements, periodic);
   wall.space.description = "tube, " + wall.space.description;
   const int last = static_cast<int>(knots.size()) - 1;
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, last))]; };
@@ -149,7 +150,7 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
     knots.insert(knots.begin(), knots.front() - before);
     knots.back() -= before;
   }
-  auto [wall, ring] = woven(channel->outline(), knots, azimuthal_elements, periodic);
+  auto [wall, ring] = woven(DuctKind::channel, channel->outline(), knots, azimuthal_elements, periodic);
   wall.space.description = "channel, " + wall.space.description;
   // scales the spline approximation of the outline to the exact area
   const double wider = std::sqrt(channel->outline().area() / wall.outline.area());
@@ -174,6 +175,14 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
   if (!channel->repeats()) wall.start = channel->start(), wall.end = channel->end();
   wall.channel = std::move(channel);
   return wall;
+}
+
+double TubeWall::axial_position(const Vec3& x) const {
+  switch (kind) {
+    case DuctKind::straight_tube: return x[0];
+    case DuctKind::channel: return channel->coordinates(x)[0];
+  }
+  throw std::logic_error("unknown DuctKind");
 }
 
 double tube_length(const TubeOptions& options, double radius, double particle_length) {

@@ -21,13 +21,14 @@ namespace tanktread::surface {
 /// Collocation points are Greville points; the points of the first and last ring lie on the ends of the wall. Collocation points at a corner, where
 /// two sides meet, are moved away from the corner by half of the distance to the next point.
 struct TubeWall {
+  DuctKind kind = DuctKind::straight_tube;
   spline::Space space;
   Net net;
   Outline outline;  ///< cross-section of the wall (in a channel: at its inlet), with cubic sides
   double start = 0, end = 0;
   int n_around = 0, n_along = 0;
   double widest = 0;                       ///< approximate largest side length of the elements at x1 = 0, or where a channel is narrowest
-  std::shared_ptr<const Channel> channel;  ///< channel of this wall; null for a straight tube
+  std::shared_ptr<const Channel> channel;  ///< channel of this wall; set if `kind` is DuctKind::channel
   /// collocation points of densities on the wall; on a wall that is not periodic, they are the collocation points of `space`
   std::vector<std::vector<spline::Site>> sites;
   std::vector<spline::Site> middles;  ///< midpoints of the elements on which densities are defined
@@ -39,6 +40,7 @@ struct TubeWall {
 
   double length() const { return end - start; }
   double radius() const { return outline.radius(); }  ///< returns R_T = sqrt(area/pi)
+  double axial_position(const Vec3& x) const;         ///< returns x1; in a channel, the arc length s of the centre line
 };
 
 /// Returns the wall of a straight tube over [-length/2, length/2], with the numbers of elements and the grading g given in the options: the element

@@ -63,7 +63,7 @@ struct TubeParameters {
 /// The wall of a channel is fixed in the laboratory frame, and v_inf is the flow of ChannelFlow. The contribution of v to dp then follows, without
 /// f_inf, from the condition that the disturbance has zero flow rate (2.14).
 ///
-/// The four kinds of duct:
+/// The kinds of duct (surface::DuctKind), each of them open or periodic:
 ///
 ///                             straight tube                     channel
 ///   frame of the wall         moves with the particle           fixed
@@ -74,20 +74,18 @@ struct TubeParameters {
 ///   c                         integral over the inlet (2.13)    v_inf per unit pressure drop of a period
 ///   images of the particle    none                              in the kernels of one period
 ///
-/// A new kind of duct also needs decisions in:
+/// If an enumerator is added to DuctKind, the compiler names the switches that omit it. A new kind of duct also needs decisions in places that are
+/// not switches:
 ///
-///   frame of the wall      fixed() and its uses, set_shape(), frame_origin(); VelocitySolver::move_into_cell(), cell_origin() and
-///                          Capsule::evaluated_about()
-///   flow v_inf             ParticleData, pressure_correction(), pressure_of_velocity(), pressure_driven_velocity(), freeze()
-///   wall                   Wall::is_for(), flow_of_forces() and flow_of_double_layer(); WallPoints (means over points only in channels)
+///   frame of the wall      uses of fixed() and surface::is_fixed(), because a wall that is not fixed moves along x1 with the centroid
+///   flow v_inf             uses of has_parallel_flow(); pressure_correction(), pressure_driven_velocity()
+///   wall                   Wall::is_for(), flow_of_forces() and flow_of_double_layer()
 ///   one pressure drop      respond_open(), frozen_response(), flow_rate(), flow_rate_reduction(), work(); BlockSystem (its unknown);
 ///                          PowerBalance::flow_power(); the pressure correction of RigidTractions; FreeBodyInTube::pressure_drop()
-///   geometry and checks    checks(), cap_velocity(), gap(), inside()
-///   system                 BlockSystem (known velocity of images), corrects_walls(), fits_other_mesh(), the single inlet in Wall and FlowWeights
-///   scene                  scene/tube.cpp (make_duct to make_tube, checks of the start); symmetry and repulsion in scene/body.cpp; free_motions()
-///                          in scene/searches/searches.cpp; films in scene/particles/adaptation.cpp; scene/memory.cpp; TubeRow and
-///                          least_axial_position() in scene/tube.cpp
-///   record                 walls in record/plan.cpp, channel.h5 in record/results.cpp
+///   checks                 checks(), cap_velocity()
+///   system                 BlockSystem (known velocity of images), the single inlet in Wall and FlowWeights
+///   scene                  TubeRow in scene/tube.cpp; films() in scene/particles/gaps.cpp
+///   record                 channel.h5 in record/results.cpp
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
@@ -193,10 +191,10 @@ class Tube {
   double frame_origin(const Net& x) const;
 
   /// Returns whether the wall is fixed in the laboratory frame (a channel), so that results depend on the position along the channel.
-  bool fixed() const { return wall().channel != nullptr; }
+  bool fixed() const { return surface::is_fixed(wall().kind); }
 
-  bool corrects_walls() const { return fixed(); }  ///< whether wall_residual() contributes to the correction of forces (2.42)
-  bool fits_other_mesh() const { return !fixed(); }  ///< whether the tube can be kept (third constructor of a tube) if the particle's mesh changes
+  bool corrects_walls() const;   ///< whether wall_residual() contributes to the correction of forces (2.42)
+  bool fits_other_mesh() const;  ///< whether the tube can be kept (third constructor of a tube) if the particle's mesh changes
 
   /// Returns whether the points `rows` of x are inside the duct; in a channel, also between its ends.
   bool inside(const Net& x, std::span<const int> rows) const;

@@ -27,13 +27,17 @@ void add_points_of_cap(const surface::Outline& outline, const Place& place, std:
 std::vector<Vec3> points_of_caps(const surface::TubeWall& wall) {
   std::vector<Vec3> points;
   for (const double s : {wall.start, wall.end}) {
-    if (!wall.channel) {
-      add_points_of_cap(wall.outline, [&](const surface::Vec2& p) { return Vec3(s, p[0], p[1]); }, points);
-      continue;
+    switch (wall.kind) {
+      case surface::DuctKind::straight_tube:
+        add_points_of_cap(wall.outline, [&](const surface::Vec2& p) { return Vec3(s, p[0], p[1]); }, points);
+        break;
+      case surface::DuctKind::channel: {
+        const surface::Channel::Section at = wall.channel->section(s);
+        const auto place = [&](const surface::Vec2& p) -> Vec3 { return at.centre + p[0] * at.normal + p[1] * Vec3::UnitZ(); };
+        add_points_of_cap(wall.channel->outline(s), place, points);
+        break;
+      }
     }
-    const surface::Channel::Section at = wall.channel->section(s);
-    const auto place = [&](const surface::Vec2& p) -> Vec3 { return at.centre + p[0] * at.normal + p[1] * Vec3::UnitZ(); };
-    add_points_of_cap(wall.channel->outline(s), place, points);
   }
   return points;
 }

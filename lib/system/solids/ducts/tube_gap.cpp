@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <span>
+#include <stdexcept>
 
 #include "base/indices.hpp"
 #include "surface/clearance.hpp"
@@ -15,12 +16,22 @@ bool Tube::inside(const Net& x, std::span<const int> rows) const {
   const surface::TubeWall& wall = wall_->surface();
   return std::ranges::all_of(rows, [&](int i) {
     const Vec3 place = x.row(i).transpose();
-    if (wall.channel) return wall.channel->inside(place);
-    return (place.tail<2>() - wall.outline.centroid()).norm() < inner_radius_ || wall.outline.inside(place.tail<2>());
+    switch (wall.kind) {
+      case surface::DuctKind::straight_tube:
+        return (place.tail<2>() - wall.outline.centroid()).norm() < inner_radius_ || wall.outline.inside(place.tail<2>());
+      case surface::DuctKind::channel: return wall.channel->inside(place);
+    }
+    throw std::logic_error("unknown DuctKind");
   });
 }
 
-double Tube::gap() const { return fixed() ? gap_to_channel_wall() : gap_to_straight_wall(); }
+double Tube::gap() const {
+  switch (wall().kind) {
+    case surface::DuctKind::straight_tube: return gap_to_straight_wall();
+    case surface::DuctKind::channel: return gap_to_channel_wall();
+  }
+  throw std::logic_error("unknown DuctKind");
+}
 
 /// Returns the gap to the wall of a straight tube, from the clearance between the particle and the outline of the cross-section.
 double Tube::gap_to_straight_wall() const {

@@ -1,6 +1,7 @@
 #include "system/solids/ducts/tube_particle.hpp"
 
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 namespace tanktread::coupling {
@@ -37,6 +38,14 @@ Tube::ParticleData::ParticleData(const spline::Space& particle, const TubeParame
   ranks.measure(phases);
 }
 
+bool has_parallel_flow(surface::DuctKind kind) {
+  switch (kind) {
+    case surface::DuctKind::straight_tube: return true;
+    case surface::DuctKind::channel: return false;
+  }
+  throw std::logic_error("unknown DuctKind");
+}
+
 void Tube::ParticleData::set_shape(const Net& x, double x1, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
   origin = x1;
   shape = x;
@@ -55,7 +64,7 @@ void Tube::ParticleData::set_shape(const Net& x, double x1, const stokes::DuctFl
   wall_on_sites.reset();
   if (sources.has_double()) wall_on_sites = wall.layer().near(sites(), own);
   if (!periodic) inlet = wall.inlet().integral(sites()) / parameters.viscosity;
-  weigh_pressure(flow, !wall.surface().channel);
+  weigh_pressure(flow, has_parallel_flow(wall.surface().kind));
   if (periodic) inlet = ambient / pressure_drop;
 }
 
@@ -80,27 +89,25 @@ const Net& Tube::ParticleData::flow_of_strength(const Wall& wall) {
   return flow_of_strength_;
 }
 
-/// Computes the weights with which the control values of the load f and of the velocity v enter the pressure drop (2.7). In a straight tube v_inf and
-/// f_inf (2.7) are evaluated at the quadrature nodes, so that the flow rate of the disturbance is 0 for every load. In a channel v_inf is
-/// interpolated from the collocation points, because its values at the nodes would require integrals over the wall. In a channel only the weights of
-/// f are computed.
-void Tube::ParticleData::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
+/// Computes the weights with which the control values of the load f and of the velocity v enter the pressure drop (2.7). `parallel`: result of
+/// has_parallel_flow(). If it is true, the flow rate of the disturbance is 0 for every load. Otherwise only the weights of f are computed.
+void Tube::ParticleData::weigh_pressure(const stokes::DuctFlow& flow, bool parallel) {
   ambient = ambient_of(flow);
   Layer& layer = sources.single_layer;
   const auto n = static_cast<std::size_t>(layer.n_nodes());
   std::vector<double> flow_at[3], weighted(n);
-  if (straight) {
+  if (parallel) {
     set_columns(flow.velocities(as_net(layer.nodes())), flow_at);
   } else {
     interpolated_ambient = from_sites.solve(ambient);
     layer.values(interpolated_ambient, flow_at);
   }
   weights_of_load = Net::Zero(sites().rows(), 3), weights_of_velocity.resize(0, 3);
-  for (int c = 0; c < (straight ? 1 : 3); ++c) {
+  for (int c = 0; c < (parallel ? 1 : 3); ++c) {
     for (std::size_t k = 0; k < n; ++k) weighted[k] = layer.weights()[k] * flow_at[c][k];
     weights_of_load.col(c) = layer.moments(weighted) / flow.flow_rate();
   }
-  if (!sources.has_double() || !straight) return;
+  if (!sources.has_double() || !parallel) return;
   set_columns(flow.tractions(as_net(sources.double_layer->nodes()), as_net(sources.double_layer->normals())), flow_at);
   weights_of_velocity.resize(sites().rows(), 3);
   for (int c = 0; c < 3; ++c)

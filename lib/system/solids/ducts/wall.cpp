@@ -24,6 +24,14 @@ std::optional<stokes::PeriodicCell> lattice(const surface::TubeWall& wall) {
 
 }  // namespace
 
+bool WallSolver::applies_to(surface::DuctKind kind) {
+  switch (kind) {
+    case surface::DuctKind::straight_tube: return false;
+    case surface::DuctKind::channel: return true;
+  }
+  throw std::logic_error("unknown DuctKind");
+}
+
 Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases,
            const surface::Symmetry& symmetry, const WallSolver& solver)
     : surface_(wall),
@@ -37,7 +45,6 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   if (!cell_) inlet_.emplace(wall.outline, wall.start, quadrature.for_matrix().tolerance);
   if (cell_) layer_.repeat(*cell_, {.assembled = true});
   layer_.set_shape(wall.net);
-  if (wall.channel) boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
   on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, points_.target_sites(wall),
                                                quadrature.for_matrix());
   if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
@@ -57,7 +64,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
 bool Wall::is_for(const surface::TubeWall& wall, const quadrature::Options& quadrature, const surface::Symmetry& symmetry,
                   const WallSolver& solver) const {
   const bool same_surface = same(wall.net, surface_.net) && wall.n_around == surface_.n_around && wall.period == surface_.period &&
-                            wall.start == surface_.start && wall.end == surface_.end && !wall.channel == !surface_.channel;
+                            wall.start == surface_.start && wall.end == surface_.end && wall.kind == surface_.kind;
   const bool same_symmetry = symmetry.order() == symmetry_.order() && (symmetry.order() == 1 || symmetry.source() == symmetry_.source());
   return same_surface && same_symmetry && quadrature == quadrature_ && solver == solver_;
 }
@@ -130,6 +137,10 @@ void Wall::factor(const surface::Symmetry& of_wall) {
 EmptyChannel& Wall::empty_channel(const std::function<EmptyChannel*()>& make) {
   if (!empty_channel_) empty_channel_.reset(make());
   return *empty_channel_;
+}
+
+const surface::ElementBoxes& Wall::boxes() {
+  return boxes_ ? *boxes_ : boxes_.emplace(patches_.emplace(surface::BezierMap(surface_.space), surface_.net));
 }
 
 Net Wall::apply(const Net& f) const {

@@ -34,6 +34,9 @@ struct WallSolver {
 
   bool operator==(const WallSolver&) const = default;
 
+  /// Returns whether these options apply to the wall. Otherwise the wall is always factored.
+  static bool applies_to(surface::DuctKind kind);
+
   /// Return whether the linear system is solved iteratively: may_iterate(), for some size of the system; iterates(), if its LU factors take `bytes`.
   /// The operator of a periodic wall is always factored.
   bool may_iterate(bool periodic) const { return !periodic && method != "factored"; }
@@ -120,8 +123,8 @@ class Wall {
   /// Returns the flow of the empty channel, which all systems that share this wall use. `make`: makes it at the first call.
   EmptyChannel& empty_channel(const std::function<EmptyChannel*()>& make);
 
-  /// Returns the bounding boxes of the elements of a channel wall, used to compute distances from the wall.
-  const surface::ElementBoxes& boxes() const { return assert(boxes_), *boxes_; }
+  /// Returns the bounding boxes of the elements of the wall, used to compute distances from it. They are computed at the first call.
+  const surface::ElementBoxes& boxes();
 
   stokes::Evaluations evaluations() const;  ///< number of kernel evaluations, including those of empty_channel()
 

@@ -1,6 +1,7 @@
 #include "system/solids/ducts/wall_points.hpp"
 
 #include <map>
+#include <stdexcept>
 
 #include "surface/geometry.hpp"
 
@@ -10,6 +11,15 @@ namespace {
 constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by the error at the midpoints of elements, if
                                         // the harmonics of the error decrease with the wave number k like k^-5 (k^-4 from spline interpolation, k^-1
                                         // from the single layer)
+
+/// Returns whether the collocation equations use means (2.39) of the velocity.
+bool uses_means(surface::DuctKind kind) {
+  switch (kind) {
+    case surface::DuctKind::straight_tube: return false;
+    case surface::DuctKind::channel: return true;
+  }
+  throw std::logic_error("unknown DuctKind");
+}
 
 }  // namespace
 
@@ -24,7 +34,7 @@ WallPoints::WallPoints(const surface::TubeWall& wall, const surface::Symmetry& s
   own_ = ranks_.divide_in_order(symmetry);
   if (phases) ranks_.measure(*phases);
   own_targets_ = own_;
-  if (wall.channel) {
+  if (uses_means(wall.kind)) {
     // On a periodic wall, site.element is an element of the traction density, not of the geometry.
     const auto first = static_cast<int>(sites_.rows());
     for (const auto& at : wall.sites) {
@@ -42,7 +52,7 @@ WallPoints::WallPoints(const surface::TubeWall& wall, const surface::Symmetry& s
 
 stokes::Sites WallPoints::target_sites(const surface::TubeWall& wall) const {
   stokes::Sites sites = wall.sites;
-  if (wall.channel)
+  if (uses_means(wall.kind))
     for (const spline::Site& middle : wall.middles) sites.push_back({middle});
   return sites;
 }
