@@ -91,7 +91,7 @@ class SteadyRun {
   /// Finds the steady shape of the current system by approach_steady(), after the search from `start` has failed with the report `failed` and the
   /// best iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a history, or if approach_steady() does not find it.
   motion::SteadyReport approach(const Net& start, Net& x, const motion::SteadyReport& failed) {
-    if (!(scene_.particle_scenes().front().speed() > 0) || scene_.flow.history) return failed;
+    if (!(scene_.particle_scenes().front().speed() > 0) || scene_.varies_in_time()) return failed;
     Net reached = start;
     const auto equations = [&](double amplitude) {
       if (amplitude == 1) return equations_of(system_);

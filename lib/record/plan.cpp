@@ -57,7 +57,7 @@ void add_duct(Lines& lines, const Scene& scene, const Body& body) {
 void add_fluid(Lines& lines, const Scene& scene, const VelocityUnknowns& of_velocity, const Body& body, int ranks) {
   if (scene.units) lines.emplace_back("units", scene.units->description());
   if (!body.wall) {
-    const std::string history = scene.flow.history ? ", changing in time" : "";
+    const std::string history = scene.varies_in_time() ? ", changing in time" : "";
     if (const auto cell = scene.domain.cell()) {
       constexpr const char* of[] = {"length", "area", "volume"};
       lines.emplace_back("flow", scene.flow.type + history + ", in a lattice that repeats along " + scene.domain.periodic +
@@ -87,7 +87,7 @@ void add_fluid(Lines& lines, const Scene& scene, const VelocityUnknowns& of_velo
   const double bytes = coupling::WallFactors::bytes(of_wall, body.symmetry);
   const bool iterates = coupling::WallSolver::applies_to(wall.kind) && coupling::WallSolver{scene.solvers.wall}.iterates(bytes, wall.period > 0);
   const std::string parities = of_wall.order() > 1 ? " for each parity under " + of_wall.description() : "";
-  const std::string how = iterates ? "found by GMRES and clusters in each velocity"
+  const std::string how = iterates ? "found by GMRES and clusters in each velocity, neglected in the Jacobian of implicit steps"
                                    : formatted("factored once%s: %.1f MB on each of %d rank%s", parities.c_str(), 1e-6 * bytes, ranks,
                                                ranks > 1 ? "s" : "");
   lines.emplace_back("wall",

@@ -64,7 +64,7 @@ Lines particle_lines(const ParticleScene& particle_scene, const VelocityUnknowns
     return lines;
   }
   const char* by_traction = unknowns.iterates ? "its traction, by GMRES preconditioned with factors of the bodies, for each velocity (2.40)"
-                                               : "its traction, in a factored system for each velocity (2.40)";
+                                               : "its traction, in a system that every rank factors for each velocity (2.40)";
   const char* motion = particle_scene.particle.motion == Motion::free ? "free" : "with prescribed motion";
   return {{"body", formatted("rigid, %s: no membrane, no moving mesh; ", motion) +
                        (unknowns.tractions ? by_traction

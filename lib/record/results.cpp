@@ -154,7 +154,7 @@ void Results::declare_series() {
 
 void Results::remesh(const Body& body, const surface::BezierMap& map) {
   body_ = &body;
-  if (writes_) nodes_.emplace(map, output::lagrange_mesh(body.space, body.unstressed));
+  if (writes_) nodes_.emplace(map, output::lagrange_mesh(body.space, body.unstressed, output::surfaces(body.space)));
 }
 
 std::optional<Resumed> Results::resumed() {

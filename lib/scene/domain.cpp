@@ -116,9 +116,9 @@ void DomainOptions::reject(const ParticleScene& particle_scene, Rejections& to) 
   const bool prescribed = particle_scene.particle.motion == Motion::prescribed, weight = particle_scene.particle.density_difference.has_value();
   const bool pushed = !particle_scene.particle.rigid() && !particle_scene.membrane.forces.total().isZero(0);
   to.pair(!to.every() && !particle_scene.runs_in_time() && deforms(particle_scene.flow), particle_scene.sought(), particle_scene.flow_choice(),
-          "the flow deforms the periodic cell of the Domain, so that nothing is steady");
+          reason::unsteady);
   to.pair(particle_scene.quadrature.rule == quadrature::LayerRule::desingularised, "Domain", "Quadrature/rule `desingularised`",
-          "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
+          reason::desingularised);
   to.pair(directions() < 3 && !particle_scene.wall.solid && (prescribed || weight || pushed || particle_scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
           {prescribed ? particle_scene.particle.choice()
@@ -195,7 +195,7 @@ void DomainOptions::reject_medium(const ParticleScene& particle_scene, Rejection
           "integrals close to its boundaries need quadrature to a tolerance; give `adaptive`");
   to.pair(!particle_scene.runs_in_time(), particle_scene.sought(), added,
           "a deformable particle next to a boundary moves away from it or towards it, so that no shape is steady");
-  to.pair(particle_scene.particle.drift == "held", added, "Particle/drift `held`", "the distance from the boundaries must be free to change");
+  to.pair(particle_scene.particle.drift == "held", added, "Particle/drift `held`", reason::drift);
 }
 
 void check_flow(const stokes::FlowOptions& flow, const stokes::Medium& medium, const std::string& name) {

@@ -43,19 +43,17 @@ std::string ParticleOptions::choice() const { return "Particle/motion " + text(m
 
 void ParticleOptions::reject(const ParticleScene& particle_scene, Rejections& to) const {
   const bool prescribed = motion == Motion::prescribed, held = drift == "held", tube = particle_scene.tube.present;
-  const std::string forced = "the force on a body with prescribed motion follows from its motion", gradient = "whose gradient is uniform";
   const Chosen moved = "Particle/motion `prescribed`", stiff(choice(), "Particle/motion `prescribed` or `free`");
   const Chosen duct = particle_scene.duct_choice();
-  to.pair(!particle_scene.runs_in_time() && prescribed, particle_scene.sought(), moved,
-          "a body with prescribed motion has no unknown position or orientation");
-  to.pair(particle_scene.tube.repulsion && prescribed, {particle_scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
-  to.pair(density_difference && prescribed, "Particle/density difference", moved, forced);
+  to.pair(!particle_scene.runs_in_time() && prescribed, particle_scene.sought(), moved, reason::prescribed);
+  to.pair(particle_scene.tube.repulsion && prescribed, {particle_scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, reason::prescribed);
+  to.pair(density_difference && prescribed, "Particle/density difference", moved, reason::prescribed);
   to.pair(prescribed && particle_scene.name.empty() && particle_scene.time.steady_tolerance, "Time/steady tolerance", moved,
           "a single body with prescribed motion has no shape or rotation that could become steady");
   for (const auto& [key, given] : {std::pair("Particle/velocity", velocity.has_value()), {"Particle/angular velocity", angular_velocity.has_value()}})
     to.pair(given && !prescribed, key, {choice(), "Particle/motion `deforming` or `free`"}, "it belongs to `prescribed`");
   for (const auto& [key, given] : {std::pair("Particle/force", force.has_value()), {"Particle/torque", torque.has_value()}}) {
-    to.pair(given && prescribed, key, moved, forced);
+    to.pair(given && prescribed, key, moved, reason::prescribed);
     to.pair(given && !rigid(), key, "Particle/motion `deforming`",
             "it is for `free`; for a deformable particle give a force per volume, by Particle/density difference and Flow/gravity");
   }
@@ -65,17 +63,15 @@ void ParticleOptions::reject(const ParticleScene& particle_scene, Rejections& to
           {std::string(why_in_system(particle_scene, particle_scene)),
            "Particles, Domain, Output/power balance, Output/series, Flow/history or Flow/type of an added flow"},
           "the force on a body in the coupled system follows from the solution of this system");
-  to.pair(rigid() && particle_scene.membrane_given, "Membrane", stiff, "a rigid particle has no membrane");
-  to.pair(rigid() && particle_scene.volume_given, "Volume", stiff, "a rigid particle keeps its volume");
-  to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", stiff, "there is no fluid in a rigid particle");
-  to.pair(rigid() && shape.initial, "Particle/initial shape", stiff,
-          "a rigid particle keeps its resting shape; give its shape by Particle/shape");
+  to.pair(rigid() && particle_scene.membrane_given, "Membrane", stiff, reason::rigid);
+  to.pair(rigid() && particle_scene.volume_given, "Volume", stiff, reason::rigid);
+  to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", stiff, reason::rigid);
+  to.pair(rigid() && shape.initial, "Particle/initial shape", stiff, reason::rigid);
   const auto& added_flow = particle_scene.flow.user;
   const bool bends = particle_scene.flow.type == "parabolic" || (added_flow && !added_flow->affine());
-  to.pair(held && bends, "Particle/drift `held`", particle_scene.flow_choice(), "it is for flows " + gradient);
+  to.pair(held && bends, "Particle/drift `held`", particle_scene.flow_choice(), reason::drift);
   to.pair(held && (tube || rigid()), "Particle/drift `held`",
-          {tube ? duct.here : stiff.here, "Tube, Channel, or Particle/motion `prescribed` or `free`"},
-          "it is for particles that deform in a flow " + gradient);
+          {tube ? duct.here : stiff.here, "Tube, Channel, or Particle/motion `prescribed` or `free`"}, reason::drift);
   to.pair(particle_scene.solvers.projection != "collocation" && (tube || particle_scene.wall.present || rigid()),
           "Solvers/projection `least squares`",
           {tube ? duct.here : particle_scene.wall.present ? "Wall" : stiff.here,
@@ -215,17 +211,16 @@ void ParticleKind::reject(const ParticleScene& particle_scene, Rejections& to) c
           "the mesh of a file is not refined, so that its error cannot be estimated");
   to.pair(!constrained && !strong && membrane.load_measure == "reference", "Volume/constraint `none`",
           "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
-  to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "the load is not defined at the pole of a degenerate element");
-  to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain,
-          "the normal is not defined at the pole of a degenerate element");
+  to.pair(!drop && strong && degenerate, plain, "Membrane/load `strong`", reason::strong);
+  to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain, reason::desingularised);
   to.pair(!drop && particle_scene.interface_motion() != coupling::MeshMotion::material,
           {"Interface/motion `" + deck::word(coupling::mesh_motions, particle_scene.interface_motion()) + "`",
            "Interface/motion other than `material`"},
-          law, "an elastic membrane moves with the fluid, `material`");
+          law, reason::interface);
   to.pair(surfactant && (rigid || !drop), "Interface/surfactant",
           {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"},
-          "only the interface of a drop can have a surfactant");
-  to.pair(surfactant && strong, "Interface/surfactant", "Membrane/load `strong`", "its load is by virtual work, in the form `weak` only");
+          reason::interface);
+  to.pair(surfactant && strong, "Interface/surfactant", "Membrane/load `strong`", reason::strong);
   const bool pieces = surface.replaces_elements();
   to.pair(adaptation.enabled && pieces && (surfactant || particle_scene.maxwell_membrane() || !fields.empty() || particle_scene.contact.limiter),
           "Adaptation/enabled with fields on surfaces or Contact/limiter", "Surface/poles `bezier transform`",
@@ -235,7 +230,7 @@ void ParticleKind::reject(const ParticleScene& particle_scene, Rejections& to) c
                                                 {particle.density_difference.has_value(), "Particle/density difference"},
                                                 {tube.repulsion.has_value(), {tube.list() + "/repulsion", "Tube/repulsion"}}};
   for (const auto& [with, what] : works)
-    to.pair(with && strong, what, "Membrane/load `strong`", "its forces are included by virtual work, in the form `weak` only");
+    to.pair(with && strong, what, "Membrane/load `strong`", reason::strong);
 }
 
 }  // namespace tanktread

@@ -146,7 +146,7 @@ void reject_posts(const ParticleScene& particle_scene, Rejections& to) {
   to.pair(posts && !shared.runs_in_time(), shared.sought(), cylinder,
           shared.only_solids ? "nothing deforms in a scene of posts only" : "a particle among posts drifts past them, so that no shape is steady");
   to.pair(posts && particle_scene.particle.drift == "held", cylinder, "Particle/drift `held`", "a particle among posts moves past them");
-  to.pair(shared.flow.history && shared.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
+  to.pair(shared.varies_in_time() && shared.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
           "nothing moves, so that one steady problem is solved");
 }
 

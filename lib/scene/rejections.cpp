@@ -15,10 +15,8 @@ namespace {
 
 /// Adds to `to` the choices that contradict user-defined loads and fields.
 void reject_registered(const ParticleScene& particle_scene, Rejections& to) {
-  to.pair(!particle_scene.loads.empty() && particle_scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`",
-          "loads are included by virtual work, in the form `weak` only");
-  to.pair(!particle_scene.fields.empty() && particle_scene.load_is_strong(), "Interface/fields", "Membrane/load `strong`",
-          "their loads are included by virtual work, in the form `weak` only");
+  to.pair(!particle_scene.loads.empty() && particle_scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`", reason::strong);
+  to.pair(!particle_scene.fields.empty() && particle_scene.load_is_strong(), "Interface/fields", "Membrane/load `strong`", reason::strong);
   if (to.every())  // for a given deck, Load::rigid_conditions of each load is checked instead
     to.pair(true, "Membrane/loads that depend on the position", "Domain", "such a load is not the same in all cells");
   to.pair(!particle_scene.fields.empty() && particle_scene.particle.rigid(), "Interface/fields",
@@ -46,7 +44,7 @@ void reject_power(const SharedOptions& shared, bool strong, Rejections& to) {
           "the pressure of that flow does work on the flow that particles cause through a cell, which is included only between two plates");
   to.pair(asked && !shared.tube.present && flow.user && !flow.user->affine(), word, {flow.choice(), "Flow/type of an added flow"},
           "the pressure of an added flow is not known unless its gradient is uniform");
-  to.pair(asked && strong, word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
+  to.pair(asked && strong, word, "Membrane/load `strong`", reason::strong);
 }
 
 void ParticleScene::reject_surroundings(Rejections& to) const {

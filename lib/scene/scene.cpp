@@ -80,6 +80,8 @@ void list_idle_keys(Scene& scene) {
       "with the tractions on rigid bodies as unknowns");
   add(scene.only_solids && scene.output.power_balance, "Output/power balance", "in a scene of posts only");
   add(scene.only_solids && !scene.series.empty(), "Output/series", "in a scene of posts only");
+  add(scene.tube.present && !coupling::WallSolver::applies_to(scene.tube.kind()) && scene.solvers.wall == "iterative", "Solvers/wall `iterative`",
+      "on the wall of a straight tube, which is always factored");
   add(scene.solvers.rigid_bodies == coupling::BodyEquation::second_kind && !scene.in_system(), "Solvers/rigid bodies `second kind`",
       "on a rigid body alone, whose tractions are the unknowns");
 }
@@ -87,7 +89,7 @@ void list_idle_keys(Scene& scene) {
 /// Sets the members of options that follow from several sections and that no section reads while it is declared.
 void complete_derived(Scene& scene) {
   if (scene.spectrum.present || scene.steady.present) scene.quadrature.choose_smooth_sums();
-  scene.periodic.driven = scene.flow.history.has_value();
+  scene.periodic.driven = scene.varies_in_time();
   if (const auto& sides = scene.domain.side_lengths; scene.tube.present && scene.domain.present && sides && !sides->empty())
     scene.tube.period = sides->front();
   scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
@@ -260,15 +262,16 @@ std::string_view why_in_system(const SharedOptions& shared, const ParticleKind& 
   if (shared.output.power_balance) return "Output/power balance";
   if (!shared.runs_in_time()) return SharedOptions::any_search;
   if (shared.tube.repulsion) return "repulsion";
-  if (shared.flow.history && kind.particle.motion == Motion::prescribed) return "Flow/history";
+  if (shared.varies_in_time() && kind.particle.motion == Motion::prescribed) return "Flow/history";
   if (!shared.series.empty()) return "Output/series";
   return shared.flow.user && !shared.flow.user->affine() ? "Flow/type" : "";
 }
 
-/// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for several bodies of
-/// up to 1500 control points, all with adaptive meshes or with integrals of a tolerance of at most 1e-7, or for the only particle in a duct, of up to
-/// 2000. For a film of a tenth of the radius, `first kind` needs a third of the points of `second kind`. With 1538 points both take the same time for
-/// a sphere of 0.8 tube radii, and the pressure drop has errors of 2e-8 and 1e-5.
+/// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for two to four bodies
+/// of up to 1500 control points, all with adaptive meshes or with integrals of a tolerance of at most 1e-7, or for the only particle in a duct, of up
+/// to 2000. For a film of a tenth of the radius, `first kind` needs a third of the points of `second kind`. With 1538 points both take the same time
+/// for a sphere of 0.8 tube radii, and the pressure drop has errors of 2e-8 and 1e-5. Eight settling spheres whose meshes grow to 3088 points take
+/// seven times as long with `first kind`.
 bool Scene::by_tractions() const {
   using enum coupling::BodyEquation;
   if (solvers.rigid_bodies != automatic || !runs_in_time()) return solvers.rigid_bodies == first_kind;
@@ -280,7 +283,7 @@ bool Scene::by_tractions() const {
     if (!kind.adaptation.enabled && !accurate && !alone) return false;
     ++bodies, points += kind.particle.shape.imported ? kind.particle.shape.imported->space.n_points : kind.surface.n_points();
   }
-  return alone ? bodies > 0 && points <= 2000 : bodies > 1 && points <= 1500;
+  return alone ? bodies > 0 && points <= 2000 : bodies > 1 && bodies <= 4 && points <= 1500;
 }
 
 double Scene::least_radius() const {

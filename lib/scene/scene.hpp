@@ -95,6 +95,7 @@ struct SharedOptions : SearchOptions {
     return steady.present ? Search::steady : periodic.present ? Search::periodic : spectrum.present ? Search::spectrum : Search::none;
   }
   bool runs_in_time() const { return search() == Search::none; }
+  bool varies_in_time() const { return flow.history.has_value(); }  ///< whether the deck prescribes a change in time, so that nothing is steady
   static constexpr const char* any_search = "Steady, Periodic or Spectrum";  ///< the sections of all searches, for messages
   /// Returns true if a single particle has films of fluid next to it: at a wall, or between the particle and its periodic images.
   bool has_films_around_one() const { return wall.present || tube.present || domain.present; }
@@ -207,6 +208,19 @@ struct Scene : SharedOptions {
   Common common() const;
   ParticleScene of(const ParticleKind& kind, const Common& common) const;
 };
+
+/// Reasons that several rejections share.
+namespace reason {
+constexpr const char* rigid = "a rigid particle has no membrane and no fluid inside, and keeps its resting shape, which Particle/shape gives";
+constexpr const char* prescribed = "the motion of the body is given, so that its position, orientation and force are not unknown";
+constexpr const char* strong = "it needs loads by virtual work, `weak`";
+constexpr const char* desingularised =
+    "its identities hold in unbounded fluid for closed surfaces with a normal at all points; give `adaptive` or `fixed`";
+constexpr const char* unsteady = "nothing is steady in a flow or a cell that changes in time";
+constexpr const char* drift = "it is for a particle that deforms in unbounded fluid, in a flow whose gradient is uniform";
+constexpr const char* blocks = "the system of all blocks has a factored wall and a prescribed flow rate; give `schur`";
+constexpr const char* interface = "only the interface of a drop slides over the fluid and can have a surfactant";
+}  // namespace reason
 
 /// Reasons why sections or keys cannot be read together. Scene::declare refuses them while it reads a deck, and reject_unread()
 /// (scene/rejections.cpp) lists them.

@@ -37,11 +37,15 @@ void check_fits_channel(const ParticleScene& particle_scene, const Body& body, c
     throw UserError(formatted("The particle, from s = %.4g to %.4g, is too close to an end of the channel: 1.7 R_T = %.4g must be left to "
                               "Channel/start = %.4g and Channel/end = %.4g.",
                               first, last, margin, channel.start(), channel.end()));
-  const surface::ElementBoxes its(particle), walls(around);
+  const surface::ElementBoxes walls(around);
   const double least = particle_scene.contact_length(particle_scene.tube.contact_gap);
-  if (const double gap = surface::closest_points(its, walls, 1e-5 * wall.radius(), least).gap; gap < least)
-    throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
-                              gap, particle_scene.tube.contact_gap, least));
+  for (const double beyond : {0., wall.period, -wall.period}) {  // the particle may extend beyond the end of the period
+    const surface::Patches seen(surface::BezierMap(body.space), body.initial.rowwise() + beyond * Vec3::UnitX().transpose());
+    if (const double gap = surface::closest_points(surface::ElementBoxes(seen), walls, 1e-5 * wall.radius(), least).gap; gap < least)
+      throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
+                                gap, particle_scene.tube.contact_gap, least));
+    if (wall.period == 0) return;
+  }
 }
 
 /// Throws UserError if the particle does not fit into the straight tube, or if the gap to the wall is too small.
@@ -87,7 +91,6 @@ void reject_with_tube(const ParticleScene& particle_scene, Rejections& to) {
   const coupling::SolverOptions& solvers = particle_scene.solvers;
   const bool tube = particle_scene.tube.present, all_blocks = !solvers.eliminates_walls();
   const bool fixed = tube && surface::is_fixed(particle_scene.tube.kind());
-  const bool factored = tube && !coupling::WallSolver::applies_to(particle_scene.tube.kind());
   const Chosen confined = particle_scene.duct_choice(), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
   to.pair(!particle_scene.runs_in_time() && fixed && flow.held == "flow rate", particle_scene.sought(), "Flow/held `flow rate`",
           "a particle in a channel moves with the fluid if the flow rate is prescribed, and can be at rest only if the pressure drop is; "
@@ -99,12 +102,9 @@ void reject_with_tube(const ParticleScene& particle_scene, Rejections& to) {
   to.pair(tube && particle_scene.domain.present && particle_scene.tube.length, "Tube/length", "Domain",
           "the length of a periodic tube is its period");
   to.pair(tube && particle_scene.quadrature.rule == quadrature::LayerRule::desingularised, "Quadrature/rule `desingularised`", confined,
-          "its identities hold for closed surfaces, and the wall is not closed");
-  to.pair(solvers.wall == "iterative" && factored, "Solvers/wall `iterative`", "Tube", "the wall of a straight tube is always factored");
-  to.pair(tube && solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,
-          "that system needs the factored wall; give `schur`");
-  to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `pressure drop`", system,
-          "the system of all blocks prescribes the flow rate; give `schur`");
+          reason::desingularised);
+  to.pair(tube && solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system, reason::blocks);
+  to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `pressure drop`", system, reason::blocks);
 }
 
 void check_fit(const ParticleScene& particle_scene, const Body& body) {

@@ -86,7 +86,7 @@ void WallOptions::reject(const ParticleScene& particle_scene, Rejections& to) co
           "the film at a wall needs quadrature to a tolerance; give `adaptive`");
   to.pair(!particle_scene.runs_in_time() && !distance, particle_scene.sought(), {"Wall", "Wall without Wall/distance"},
           "a deformable particle next to a single wall moves away from it or towards it, so that no shape is steady");
-  to.pair(particle_scene.particle.drift == "held", "Wall", "Particle/drift `held`", "the distance from the wall must be free to change");
+  to.pair(particle_scene.particle.drift == "held", "Wall", "Particle/drift `held`", reason::drift);
 }
 
 std::optional<stokes::PlaneWall> WallOptions::plane() const {

@@ -16,9 +16,10 @@ namespace tanktread::output {
 
 namespace {
 
-/// Returns, for each point, the index of the first point with the same position, which may be the point itself. For this search, the points are
-/// sorted along a direction that is unrelated to the symmetries of meshes, so that few points have nearly equal coordinates along it.
-std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places) {
+/// Returns, for each point, the index of the first point of the same surface with the same position, which may be the point itself. `surface`: number
+/// of the surface of each point. For this search, the points are sorted along a direction that is unrelated to the symmetries of meshes, so that few
+/// points have nearly equal coordinates along it.
+std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places, const std::vector<int>& surface) {
   const Vec3 direction(0.8137, 0.4691, 0.3433);
   double size = 0;
   std::vector<double> along;
@@ -33,7 +34,7 @@ std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places) {
   std::iota(first.begin(), first.end(), 0);
   for (std::size_t a = 0; a < order.size(); ++a)
     for (std::size_t b = a; b-- > 0 && along[order[a]] - along[order[b]] <= tolerance;)
-      if ((places[order[a]] - places[order[b]]).norm() <= tolerance) {
+      if (surface[order[a]] == surface[order[b]] && (places[order[a]] - places[order[b]]).norm() <= tolerance) {
         const std::size_t low = std::min(first[order[a]], first[order[b]]);
         first[order[a]] = first[order[b]] = low;
       }
@@ -55,9 +56,24 @@ std::vector<std::array<int, 2>> node_order(int p) {
   return nodes;
 }
 
-LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net) {
+std::vector<int> surfaces(const spline::Space& space) {
+  std::vector<int> parent(static_cast<std::size_t>(space.n_points)), all;
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto above = [&](int k) -> int& { return parent[static_cast<std::size_t>(k)]; };
+  const auto root = [&](int k) {
+    while (above(k) != k) k = above(k) = above(above(k));
+    return k;
+  };
+  for (const auto& element : space.elements)
+    for (const int point : element.points) above(root(point)) = root(element.points.front());
+  for (const auto& element : space.elements) all.push_back(root(element.points.front()));
+  return all;
+}
+
+LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net, const std::vector<int>& surface_of_element) {
   LagrangeMesh mesh;
   std::vector<Vec3> places;
+  std::vector<int> surface;
   std::vector<spline::Site> sites;
   mesh.offsets.push_back(0);
   for (std::size_t e = 0; e < space.elements.size(); ++e) {
@@ -66,10 +82,11 @@ LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net) {
     for (const auto& [i, j] : node_order(p)) {
       sites.push_back({static_cast<int>(e), double(i) / p, double(j) / p});
       places.push_back(surface::position(points.patch(), sites.back().s, sites.back().t));
+      surface.push_back(surface_of_element.empty() ? 0 : surface_of_element[e]);
     }
     mesh.offsets.push_back(static_cast<std::int64_t>(places.size()));
   }
-  const std::vector<std::size_t> first = first_of_equals(places);
+  const std::vector<std::size_t> first = first_of_equals(places, surface);
   std::vector<std::int64_t> number(places.size());
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (first[k] == k) {

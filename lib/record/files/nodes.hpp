@@ -26,9 +26,13 @@ struct LagrangeMesh {
                                            ///< are not spline fields
 };
 
-/// Builds the Lagrange mesh of a surface. Nodes are shared if they coincide on the surface with the control net `net`. The unstressed surface is the
-/// best choice because it does not change and never touches itself.
-LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net);
+/// Builds the Lagrange mesh of one or several closed surfaces. Nodes of one surface are shared if they coincide on the surface with the control net
+/// `net`. The unstressed surface is the best choice because it does not change and never touches itself.
+/// `surface_of_element`: number of the surface of each element, see surfaces(); if empty, there is one surface.
+LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net, const std::vector<int>& surface_of_element = {});
+
+/// Returns a number per element, which is equal for two elements of one surface: elements that share control points, directly or through others.
+std::vector<int> surfaces(const spline::Space& space);
 
 /// Returns the indices (i, j) of the nodes of a cell of degree p, in VTK's order (LagrangeMesh).
 std::vector<std::array<int, 2>> node_order(int p);

@@ -54,10 +54,10 @@ void reject_searches(const ParticleScene& particle_scene, Rejections& to) {
   const std::string& unstressed = stress_free == "resting" ? resting : stress_free;
   to.pair(steady && particle_scene.periodic.present, "Steady", "Periodic", "a steady shape has no period; give one of them");
   to.add(particle_scene.continuation.present && !steady, "Continuation needs a section Steady, because it continues steady shapes.");
-  to.pair(search && particle_scene.flow.history && !particle_scene.periodic.present, {particle_scene.sought().here, "Steady or Spectrum"},
-          "Flow/history", "no shape is steady in a flow that changes in time");
+  to.pair(search && particle_scene.varies_in_time() && !particle_scene.periodic.present, {particle_scene.sought().here, "Steady or Spectrum"},
+          "Flow/history", reason::unsteady);
   to.pair(particle_scene.time.steady_tolerance && particle_scene.flow.history && particle_scene.flow.history->type == "sine", "Time/steady tolerance",
-          "Flow/history/type `sine`", "no shape is steady in a flow that oscillates");
+          "Flow/history/type `sine`", reason::unsteady);
   to.pair(search && particle_scene.volume.constraint != coupling::VolumeConservation::exact, particle_scene.sought(),
           {"Volume/constraint `" + deck::word(coupling::volume_constraints, particle_scene.volume.constraint) + "`",
            "Volume/constraint other than `exact`"},

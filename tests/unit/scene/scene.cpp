@@ -134,7 +134,8 @@ TEST(Contradictions, OfFlowsAreReportedInOneSentenceEach) {
   EXPECT_EQ(refusal("  Flow: {type: parabolic, half width: 2, shear rate: 3}\n"),
             "Flow/shear rate and Flow/type `parabolic` contradict each other: give Flow/maximum velocity.");
   EXPECT_EQ(refusal("  Flow: {type: parabolic, half width: 2}\n  Particle: {drift: held}\n"),
-            "Particle/drift `held` and Flow/type `parabolic` contradict each other: it is for flows whose gradient is uniform.");
+            "Particle/drift `held` and Flow/type `parabolic` contradict each other: it is for a particle that deforms in unbounded fluid, in a flow "
+            "whose gradient is uniform.");
   EXPECT_EQ(refusal("  Flow: {history: {times: [0, 1]}}\n"),
             "Flow/history/type `table` needs Flow/history/amplitudes or Flow/history/angles.");
   EXPECT_EQ(refusal("  Flow: {history: {amplitudes: [0, 1]}}\n"), "Flow/history/type `table` needs Flow/history/times or Flow/history/file.");

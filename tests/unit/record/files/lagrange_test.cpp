@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "patches.hpp"
+#include "spline/extraction.hpp"
 
 namespace tanktread::output {
 namespace {
@@ -81,6 +82,14 @@ TEST(LagrangeMesh, DerivativesAtTheNodesAreThoseOfTheElementThatTheirSitesName) 
     }
   });
   EXPECT_EQ(k, nodes.mesh().sites.size());
+}
+
+TEST(LagrangeMesh, CoincidingSurfacesShareNoNodes) {
+  const spline::Space one = spline::space(spline::cube(3), spline::ExtraordinaryRule::g1), both = spline::stacked(std::vector{&one, &one});
+  const Net net = Net::Random(one.n_points, 3), twice = (Net(2 * net.rows(), 3) << net, net).finished();
+  const LagrangeMesh single = lagrange_mesh(one, net, surfaces(one)), mesh = lagrange_mesh(both, twice, surfaces(both));
+  EXPECT_EQ(single.sites.size(), lagrange_mesh(one, net).sites.size());
+  EXPECT_EQ(mesh.sites.size(), 2 * single.sites.size());
 }
 
 TEST(LagrangeMesh, APoleIsOneNodeWithANormal) {
