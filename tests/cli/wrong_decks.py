@@ -38,7 +38,7 @@ SETTINGS = [
     (["Contact/limit=0.01"], ["Contact needs Particles or Domain"]),
     (["Periodic/turn=180"], ["Periodic/period", "missing"]),
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
-    (["Spectrum/number=4", "Particle/motion=prescribed"], ["Spectrum", "Particle/motion", "prescribed motion"], 2),  # and Membrane
+    (["Spectrum/number=4", "Particle/motion=prescribed"], ["Spectrum", "Particle/motion", "motion of the body is given"], 2),  # and Membrane
     (["Spectrum/number=4", "Volume/constraint=flux"], ["Spectrum", "Volume/constraint", "flux"]),
     (["Spectrum/near=-1", "Spectrum/method=krylov"], ["Spectrum/near", "Spectrum/method `krylov`", "Spectrum/shift"]),
     (["Spectrum/number=0"], ["Spectrum/number", "0"]),
