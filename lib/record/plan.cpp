@@ -94,6 +94,12 @@ void add_fluid(Lines& lines, const Scene& scene, const VelocityUnknowns& of_velo
                      formatted("%.0f unknowns of the traction and the pressure drop, %s; ", unknowns, wall_solver(scene, of_velocity).c_str()) + how);
 }
 
+/// Returns whether mesh points of a particle slide along its interface, so that their velocity is not that of the fluid.
+bool slides(const std::vector<ParticleScene>& all) {
+  return std::ranges::any_of(
+      all, [](const ParticleScene& one) { return !one.particle.rigid() && one.interface_motion() != coupling::MeshMotion::material; });
+}
+
 /// Returns the line of the plan about the time scheme and the size of the frozen operator (the single layer in the Jacobian of implicit steps).
 /// `n`: number of control points. `rows`: number of control points whose rows are assembled.
 std::string time_line(const Scene& scene, const VelocityUnknowns& unknowns, double n, double rows, int ranks) {
@@ -102,16 +108,13 @@ std::string time_line(const Scene& scene, const VelocityUnknowns& unknowns, doub
   if (!scene.time.assembles() && !chosen) return scheme + ", explicit in the fluid: nothing is assembled";
   const std::vector<ParticleScene> all = scene.particle_scenes();
   const bool contrast = std::ranges::any_of(all, [](const ParticleScene& one) { return one.particle.viscosity_ratio != 1; });
-  const bool slides = std::ranges::any_of(all, [](const ParticleScene& one) {
-    return !one.particle.rigid() && one.interface_motion() != coupling::MeshMotion::material;
-  });
   const bool assembled = scene.solvers.assembles_frozen(contrast, n);
   std::string line = scheme + ", frozen single layer ";
   if (assembled) line += formatted("of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * n * rows) + on_ranks(ranks);
   else line += "by one node per control point, not assembled";
   if (scene.domain.present && !scene.tube.present) line += ", without images on the lattice";
   if (scene.wall.present && !scene.wall.solid && !assembled) line += ", without images in the wall";
-  if ((unknowns.iterates || unknowns.tractions) && (slides || unknowns.bodies || unknowns.walls))
+  if ((unknowns.iterates || unknowns.tractions) && (slides(all) || unknowns.bodies || unknowns.walls))
     line += "; each evaluation of a step solves the system for velocities";
   return line;
 }
@@ -160,8 +163,7 @@ std::string solvers_line(const Scene& scene, const VelocityUnknowns& unknowns) {
   }
   if (unknowns.iterates) {
     add("velocity", solvers.velocity);
-    const bool slides = unknowns.deforms && scene.first_deforming().interface_motion() != coupling::MeshMotion::material;
-    if (slides || unknowns.bodies) line += ", without an initial guess";
+    if (slides(scene.particle_scenes()) || unknowns.bodies) line += ", without an initial guess";
   }
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);

@@ -1,12 +1,10 @@
 #include "scene/body.hpp"
 
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "base/errors.hpp"
-#include "base/formatted.hpp"
 #include "membrane/patch_forces.hpp"
 #include "membrane/wall_repulsion.hpp"
 #include "membrane/weight.hpp"
@@ -39,15 +37,9 @@ membrane::Repulsion repulsion(const surface::TubeOptions& tube, const surface::T
   std::function<double(double)> radius;
   switch (wall.kind) {
     case surface::DuctKind::straight_tube: radius = [mouth](double) { return mouth; }; break;
-    case surface::DuctKind::channel: {
-      constexpr int n_sections = 200;
-      const auto factor = [channel = wall.channel](double s) { return channel->section(s).factor; };
-      for (int k = 0; k <= n_sections; ++k)
-        if (const double s = wall.start + wall.length() * k / n_sections; std::abs(factor(s)[0] - factor(s)[1]) > 1e-9)
-          throw UserError(formatted("Channel/repulsion needs circular cross-sections, but that at s = %.4g is not circular.", s));
-      radius = [mouth, factor](double s) { return mouth * factor(s)[0]; };
+    case surface::DuctKind::channel:
+      radius = [mouth, channel = wall.channel](double s) { return mouth * channel->section(s).factor[0]; };
       break;
-    }
   }
   return {std::move(radius), *tube.repulsion, *tube.repulsion_range};
 }

@@ -39,13 +39,10 @@ void check_fits_channel(const ParticleScene& particle_scene, const Body& body, c
                               first, last, margin, channel.start(), channel.end()));
   const surface::ElementBoxes walls(around);
   const double least = particle_scene.contact_length(particle_scene.tube.contact_gap);
-  for (const double beyond : {0., wall.period, -wall.period}) {  // the particle may extend beyond the end of the period
-    const surface::Patches seen(surface::BezierMap(body.space), body.initial.rowwise() + beyond * Vec3::UnitX().transpose());
-    if (const double gap = surface::closest_points(surface::ElementBoxes(seen), walls, 1e-5 * wall.radius(), least).gap; gap < least)
-      throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
-                                gap, particle_scene.tube.contact_gap, least));
-    if (wall.period == 0) return;
-  }
+  const double gap = surface::gap_to_wall(surface::BezierMap(body.space), body.initial, {}, walls, wall.period, 1e-5 * wall.radius(), least);
+  if (gap < least)
+    throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
+                              gap, particle_scene.tube.contact_gap, least));
 }
 
 /// Throws UserError if the particle does not fit into the straight tube, or if the gap to the wall is too small.

@@ -234,6 +234,17 @@ Eigen::Vector4d newton_step(const Jet& x, const Jet& y) {
 
 }  // namespace
 
+double gap_to_wall(const BezierMap& map, const Net& net, const std::vector<int>& elements, const ElementBoxes& wall, double period, double tolerance,
+                   double beyond) {
+  double nearest = beyond;
+  const int images = period > 0 ? 1 : 0;
+  for (int image = -images; image <= images; ++image) {
+    const Patches seen(map, net.rowwise() + image * period * Vec3::UnitX().transpose());
+    nearest = std::min(nearest, closest_points(ElementBoxes(seen, elements), wall, tolerance, beyond).gap);
+  }
+  return nearest;
+}
+
 ClosestPoints nearest_points(const Patch& first, const Patch& second, const ClosestPoints& near) {
   const auto jets = [&](const Eigen::Vector4d& u) { return std::pair(jet(first, u[0], u[1]), jet(second, u[2], u[3])); };
   const auto points = [&](const Eigen::Vector4d& u) -> ClosestPoints {

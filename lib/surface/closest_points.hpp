@@ -51,6 +51,12 @@ double distance(const ElementBoxes::Box& a, const ElementBoxes::Box& b);
 /// parallel, the error of these bounds is much smaller than the size of the parts.
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond);
 
+/// Returns the smallest distance between a surface with the control net `net` and a wall, below `beyond` as closest_points() does. If the wall has a
+/// period > 0 along x1, also of the images of the surface in the next periods, because the surface may extend beyond the end of the period.
+/// `elements`: see ElementBoxes. `period`, `tolerance` and `beyond` are lengths.
+double gap_to_wall(const BezierMap& map, const Net& net, const std::vector<int>& elements, const ElementBoxes& wall, double period, double tolerance,
+                   double beyond);
+
 /// Refines the closest points `near` of two elements by Newton's method. `first` and `second` are the patches of the elements. At the result, the
 /// line that connects the points is normal to both surfaces. The points may lie up to a tenth of an element beyond its edges. If the method fails,
 /// returns the points at the local coordinates given by `near`.

@@ -66,6 +66,8 @@ void Channel::read_points() {
     factor.emplace_back(f, row.fields.size() == 3 ? csv_number(row.fields[2], here) : f);
     if (own_.directions == "x2") factor.back()[1] = 1;
     if (own_.directions == "x3") factor.back()[0] = 1;
+    if (options_.repulsion && factor.back()[0] != factor.back()[1])
+      throw UserError(here + "Channel/repulsion needs circular cross-sections, with equal factors f2 and f3.");
   }
   if (s.size() < 2) throw UserError(name + " must hold at least two rows.");
   factors_ = interpolate_open(s, factor, Vec2::Zero(), Vec2::Zero());

@@ -7,6 +7,7 @@
 #include "deck/document.hpp"
 #include "deck/section.hpp"
 #include "scene/scene.hpp"
+#include "refusal.hpp"
 
 namespace tanktread {
 namespace checks_test {
@@ -21,12 +22,7 @@ Scene scene(const std::string& sections) {
 
 /// Returns the message with which the deck is refused; empty if it is valid.
 std::string refusal(const std::string& sections) {
-  try {
-    scene(sections);
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return {};
+  return refusal_of([&] { scene(sections); });
 }
 
 /// Returns the section of a particle that deforms.

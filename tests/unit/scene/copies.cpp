@@ -10,6 +10,7 @@
 #include "deck/document.hpp"
 #include "scene/packing.hpp"
 #include "scene/scene.hpp"
+#include "refusal.hpp"
 
 namespace tanktread {
 namespace copies_test {
@@ -28,12 +29,7 @@ Expanded expanded(const std::string& keys, const std::string& sections = "") {
 }
 
 std::string refusal(const std::string& keys) {
-  try {
-    expanded(keys);
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return {};
+  return refusal_of([&] { expanded(keys); });
 }
 
 TEST(Copies, HaveTheirVolumeFractionWithTheVolumeThatTheyKeep) {

@@ -12,6 +12,7 @@
 #include "deck/section.hpp"
 #include "scene/member.hpp"
 #include "system/parallel/ranks.hpp"
+#include "refusal.hpp"
 
 namespace tanktread {
 namespace scene_test {
@@ -27,12 +28,7 @@ Scene scene(const std::string& lists) {
 ParticleScene only(const std::string& lists) { return scene(lists).first(); }
 
 std::string refusal(const std::string& lists) {
-  try {
-    scene(lists);
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return {};
+  return refusal_of([&] { scene(lists); });
 }
 
 TEST(Scenes, DefaultToASphereInShear) {

@@ -207,10 +207,11 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
     const Net f = as_net(y), of_duct = apart ? walls_.tube->flow().velocities(residual_.points().values * x) : Net(between / unit);
     solution_.pressure_correction = walls_.tube->pressure_correction(residual_.points(), of_duct, f, correction[with_duct] / unit);
     // If the pressure drop of the duct is prescribed, the error of its flow between the collocation points changes the flow rate, too.
-    const double slower = walls_.tube->flow_rate_reduction(walls_.tube->ambient_correction(residual_.points(), of_duct, f));
-    const Eigen::VectorXd less = slower / unit * of_all.col(with_duct), slowed = freed(free, resistance, -work.transpose() * less);
-    motion += slowed;
-    y += z * slowed + less;
+    if (const double slower = walls_.tube->flow_rate_reduction(walls_.tube->ambient_correction(residual_.points(), of_duct, f)); slower != 0) {
+      const Eigen::VectorXd less = slower / unit * of_all.col(with_duct), slowed = freed(free, resistance, -work.transpose() * less);
+      motion += slowed;
+      y += z * slowed + less;
+    }
   }
   solution_.unknowns = completed(y);
   const Net f = force_densities(solution_.unknowns);

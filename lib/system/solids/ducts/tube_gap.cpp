@@ -43,13 +43,8 @@ double Tube::gap_to_channel_wall() const {
   const auto points = [&](int e) -> std::span<const int> { return particle_->space.elements[static_cast<std::size_t>(e)].points; };
   const std::vector<int> elements =
       surface::fundamental_elements(particle_->parameters.symmetry, static_cast<int>(particle_->space.elements.size()), points).element;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may extend beyond the end of the period
-    const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
-    if (beyond == 0 || wall().period > 0)
-      nearest = std::min(
-          nearest, surface::closest_points(surface::ElementBoxes(seen, elements), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
-  }
+  const double radius = wall().radius(), nearest = surface::gap_to_wall(particle_->geometry.bezier(), particle_->shape, elements, wall_->boxes(),
+                                                                        wall().period, 1e-5 * radius, radius);
   return inside(particle_->sites(), indices(particle_->sites().rows())) ? nearest : -nearest;
 }
 
