@@ -35,4 +35,10 @@ Options Options::for_matrix() const {
   return options;
 }
 
+Options Options::for_response() const {
+  Options options = *this;
+  options.tolerance = std::max(1e-13, tolerance / 3);
+  return options;
+}
+
 }  // namespace tanktread::quadrature

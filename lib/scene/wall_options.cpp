@@ -28,7 +28,7 @@ void WallOptions::declare(deck::Section& section) {
   section.key("elements per period", elements_per_period, deck::between(4, 200), "1",
               "number of elements of each plane wall along the longer of its two periods; along the shorter period, elements have about the "
               "same length. If not given: the smallest number for which elements are no longer than a twelfth of Wall/distance (with a single "
-              "wall, of R_C, the radius of the sphere with the particle's volume), but at most 48");
+              "wall, of R_C, the radius of the sphere with the particle's volume), but at most 72");
   section.key("contact gap", contact_gap, deck::between(1e-6, 1), "R_C",
               "smallest allowed gap between a particle and the plane wall, divided by R_C, the radius of the sphere with the volume of the "
               "smallest particle. If a gap is smaller, the run ends with a checkpoint");
@@ -107,7 +107,7 @@ std::optional<stokes::Plates> WallOptions::plates() const {
 }
 
 std::array<int, 2> WallOptions::elements(const stokes::PeriodicCell& cell, double radius) const {
-  constexpr double most = 48;
+  constexpr double most = 72;
   const double first = cell.vectors().col(0).norm(), second = cell.vectors().col(1).norm(), longer = std::max(first, second);
   const double along = elements_per_period ? *elements_per_period : std::min(most, std::ceil(12 * longer / distance.value_or(radius)));
   const auto number = [&](double length) { return std::max(4, static_cast<int>(std::lround(along * length / longer))); };

@@ -41,7 +41,7 @@ struct WallOptions {
   std::optional<stokes::Plates> plates() const;    ///< returns the plates if the walls are plates in a periodic cell, otherwise nothing
 
   /// Returns the numbers of elements of a plate along the two periods. By default the length of an element is a twelfth of the distance of the
-  /// plates, or a twelfth of `radius` if there is only one plate, but a period has at least 4 and at most 48 elements.
+  /// plates, or a twelfth of `radius` if there is only one plate, but a period has at least 4 and at most 72 elements.
   std::array<int, 2> elements(const stokes::PeriodicCell& cell, double radius) const;
 };
 

@@ -62,6 +62,14 @@ def the_force_and_torque_on_a_sphere_midway_between_plates_are_exact():
     close(shear[0], spin, 1e-10, "spin with plates that move with the flow")
 
 
+def forces_in_long_cells_meet_the_tolerance():
+    """In a long cell, the flows of the sphere and of the plates are larger than their sum. The drag along the plates must
+    err by less than a fifth of Quadrature/tolerance, as the text of this key says."""
+    settings = ("Domain/side lengths=[24.0, 24.0, 1.0]", "Particles/sphere/velocity=[1, 0, 0]", "Wall/elements per period=36", "Solvers/rigid bodies=second kind")
+    drag = {tolerance: _first("long", SPHERE, *settings, f"Quadrature/tolerance={tolerance}", names=["sphere/drag_x1"])[0] for tolerance in (1e-4, 1e-6)}
+    close(drag[1e-4], drag[1e-6], 2e-5 * abs(drag[1e-6]), "drag along")
+
+
 def between_plates_the_flow_is_poiseuilles_with_and_without_a_small_sphere():
     """For a pressure gradient of 0.5 and a distance of 4, the mean velocity is 2/3. The sphere, whose volume fraction
     is 1e-4, changes it by less than the tolerance."""

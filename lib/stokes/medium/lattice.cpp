@@ -11,6 +11,16 @@ namespace {
 /// equilibrium, so that velocities are small compared with the sum of the magnitudes of their terms (as in TreeSum).
 constexpr double share_of_remainder = 0.1;
 
+/// Largest number of sites for which rows are assembled site by site.
+constexpr std::size_t few_sites = 4;
+
+/// Returns int f N_B dGamma for every control point B, from the values of f at the far nodes.
+Eigen::VectorXd integrals(const LayerSources& sources, const Eigen::VectorXd& f) {
+  std::vector<double> weighted(sources.weight);
+  for (std::size_t k = 0; k < weighted.size(); ++k) weighted[k] *= f[static_cast<Eigen::Index>(k)];
+  return sources.moments(weighted);
+}
+
 PeriodicKernel::Kind periodic_kind(LayerKernel kernel) {
   switch (kernel) {
     case LayerKernel::single_layer: return PeriodicKernel::Kind::stokeslet;
@@ -128,12 +138,10 @@ void Lattice::add_remainder(const LayerSources& sources, std::span<const int> si
   std::vector<Vec3> at, nodes;
   for (const int i : sites) at.push_back(wrapped(sources.surface.site(i)));
   for (std::size_t k = 0; k < node_[0].size(); ++k) nodes.emplace_back(node_[0][k], node_[1][k], node_[2][k]);
+  if (at.size() <= few_sites) return add_remainder_site_by_site(sources, at, nodes, a);
   const Eigen::MatrixXd to = sum_->lagrange(at);
   Eigen::MatrixXd from = sum_->lagrange(nodes), basis(from.cols(), sources.surface.n_points);
-  for (Eigen::Index k = 0; k < from.cols(); ++k) {
-    from.col(k).array() *= Eigen::Map<const Eigen::ArrayXd>(sources.weight.data(), sources.n_nodes());
-    basis.row(k) = sources.moments({from.col(k).data(), from.col(k).data() + from.rows()}).transpose();
-  }
+  for (Eigen::Index k = 0; k < from.cols(); ++k) basis.row(k) = integrals(sources, from.col(k)).transpose();
   for (int c = 0; c < kernel_entries; ++c) {
     const auto [i, j] = upper[c];
     const Eigen::MatrixXd part = over_8_pi * (to * (sum_->between_nodes(c) * basis));
@@ -143,6 +151,22 @@ void Lattice::add_remainder(const LayerSources& sources, std::span<const int> si
         if (i != j) a(3 * k + j, 3 * b + i) += part(k, b);
       }
   }
+}
+
+/// Does the same as add_remainder(), in less time for few sites. The kernel is symmetric: its values at the far nodes are the velocities there due to
+/// unit forces at the site.
+void Lattice::add_remainder_site_by_site(const LayerSources& sources, const std::vector<Vec3>& at, const std::vector<Vec3>& nodes,
+                                         Rows<double>& a) const {
+  for (std::size_t k = 0; k < at.size(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 force = Vec3::Unit(i);
+      Net velocity = Net::Zero(static_cast<Eigen::Index>(nodes.size()), 3);
+      sum_->add_remainder({1, &at[k][0], &at[k][1], &at[k][2], {&force[0], &force[1], &force[2]}}, nodes, velocity.data());
+      for (int j = 0; j < 3; ++j) {
+        const Eigen::VectorXd part = over_8_pi * integrals(sources, velocity.col(j));
+        for (Eigen::Index b = 0; b < part.size(); ++b) a(3 * static_cast<Eigen::Index>(k) + i, 3 * b + j) += part[b];
+      }
+    }
 }
 
 }  // namespace tanktread::stokes

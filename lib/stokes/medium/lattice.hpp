@@ -43,6 +43,7 @@ class Lattice : public LayerMedium {
  private:
   void subtract_surfaces(LayerSources& sources, const LayerTargets& targets, Net& u) const;
   void add_remainder(LayerSources& sources, const LayerTargets& targets, Net& u);
+  void add_remainder_site_by_site(const LayerSources& sources, const std::vector<Vec3>& at, const std::vector<Vec3>& nodes, Rows<double>& a) const;
   void set_remainder_targets(LayerSources& sources, const std::vector<Vec3>& at);
   void add_regularised_stresslets(LayerSources& sources, const LayerTargets& targets, const std::vector<Vec3>& at, Net& sums);
   using Moments = LayerSources::StressletMoments;

@@ -233,7 +233,7 @@ Eigen::MatrixXd PeriodicSum::between_nodes(int component) const {
   return all;
 }
 
-void PeriodicSum::add_remainder(const Charges& sources, std::span<const Vec3> targets, double* u) {
+void PeriodicSum::add_remainder(const Charges& sources, std::span<const Vec3> targets, double* u) const {
   const int in = kind_ == PeriodicKernel::Kind::stokeslet ? 3 : 6, n_nodes = box_.n_nodes();
   std::vector<double> at[3], q[6];
   for (int k = 0; k < sources.n; ++k) {
@@ -243,8 +243,8 @@ void PeriodicSum::add_remainder(const Charges& sources, std::span<const Vec3> ta
   Charges in_cell{sources.n, at[0].data(), at[1].data(), at[2].data(), sources.q};
   std::array<double*, 6> at_nodes{};
   for (int c = 0; c < 6; ++c) q[c].assign(static_cast<std::size_t>(n_nodes), 0), at_nodes[static_cast<std::size_t>(c)] = q[c].data();
-  scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(in) * n_nodes));
-  spread(in, box_, in_cell, scratch_.data(), at_nodes);
+  std::vector<Pack> scratch(static_cast<std::size_t>(in * n_nodes));
+  spread(in, box_, in_cell, scratch.data(), at_nodes);
   std::vector<double> node_u(static_cast<std::size_t>(3 * far_block * ((n_nodes + far_block - 1) / far_block)), 0.);
   apply(q, node_u);
   for (std::size_t first = 0; first < targets.size(); first += far_block) {

@@ -35,7 +35,7 @@ class PeriodicSum {
 
   /// Adds the smooth sum over all images that are not near to u[3 k + c], component c at target k. Sources and targets are positions in the cell. A
   /// source has the 3 components of a force or the 6 components of a stresslet in the order of StressletKernel.
-  void add_remainder(const Charges& sources, std::span<const Vec3> targets, double* u);
+  void add_remainder(const Charges& sources, std::span<const Vec3> targets, double* u) const;
 
   /// Returns the Lagrange polynomials of the interpolation nodes at positions in the cell, shape (number of positions, n_nodes).
   Eigen::MatrixXd lagrange(std::span<const Vec3> places) const;
@@ -62,7 +62,6 @@ class PeriodicSum {
   std::vector<double> table_;  // entry m ((n_1 i + j) n_2 + k) + c, with m = components_ and n_d = differences_[d]: component c of the smooth kernel
                                // sum for the node difference (i, j, k)
   int components_ = 6;
-  std::vector<Pack> scratch_;
 };
 
 }  // namespace tanktread::stokes

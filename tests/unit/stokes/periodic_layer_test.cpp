@@ -94,6 +94,19 @@ TEST(PeriodicLayer, AssembledRowsOfTargetsAtFarNodesAreTheSum) {
   EXPECT_LT((product - Eigen::Map<const Eigen::VectorXd>(u.data(), u.size())).cwiseAbs().maxCoeff(), 1e-11);
 }
 
+TEST(PeriodicLayer, RowsDoNotDependOnTheNumberOfRowsAssembledTogether) {
+  const auto& [space, x, field, all] = ellipsoid();
+  for (const int n : {1, 2, 3}) {
+    Layer layer(Layer::Kernel::single_layer, space, space.collocation, {.tolerance = 1e-6});
+    layer.repeat(cell(n), {.assembled = true});
+    layer.set_shape(x);
+    Rows<double> few, many;
+    layer.assemble(std::span(all).first(2), few);
+    layer.assemble(std::span(all).first(20), many);
+    EXPECT_LT((few - many.topRows(6)).cwiseAbs().maxCoeff(), 1e-13 * many.cwiseAbs().maxCoeff()) << n;
+  }
+}
+
 TEST(PeriodicLayer, RowsOfImagesAreThoseOfTheSurfaceAtTwoPeriodsOnEitherSide) {
   const auto& [space, x, field, all] = ellipsoid();
   for (const Layer::Kernel kernel : {Layer::Kernel::single_layer, Layer::Kernel::double_layer}) {

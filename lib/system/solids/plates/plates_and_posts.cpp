@@ -80,7 +80,8 @@ void PlatesAndPosts::factor_plates(stokes::Layer& on_itself, const std::array<in
 
 void PlatesAndPosts::make_layer() {
   if (layer_) evaluations_ += layer_->evaluations();
-  layer_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, stokes::Sites(), parameters_.quadrature);
+  layer_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, stokes::Sites(),
+                                           parameters_.quadrature.for_response());
   layer_->repeat(cell(), {.target_range = reached_});
   layer_->set_shape(surface_.net);
 }

@@ -34,7 +34,7 @@ Vec3 solids_flow_integral(const SolidScene& scene, const PlatesAndPosts::Flow& f
 SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow)
     : scene_(scene),
       flow_(flow),
-      particles_(space, scene.solids->viscosity(), scene.quadrature, &scene.solids->cell(), {.target_range = scene.solids->range()}) {}
+      particles_(space, scene.solids->viscosity(), scene.quadrature.for_response(), &scene.solids->cell(), {.target_range = scene.solids->range()}) {}
 
 void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> own) {
   PlatesAndPosts& solids = *scene_.solids;
