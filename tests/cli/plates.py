@@ -70,6 +70,13 @@ def forces_in_long_cells_meet_the_tolerance():
     close(drag[1e-4], drag[1e-6], 2e-5 * abs(drag[1e-6]), "drag along")
 
 
+def the_plan_names_the_equation_of_a_body_between_plates():
+    """Tractions cost twice the time for one configuration, but four times in a run over time."""
+    for motion, unknown in (("prescribed", "tractions of rigid bodies"), ("free", "double-layer densities of rigid bodies")):
+        plan = run(deck(SPHERE), "--set", f"Particles/sphere/motion={motion}", "--set", "Solvers/rigid bodies=auto", "--check").stdout
+        check(f" blocks {unknown};" in " ".join(plan.split()), plan)
+
+
 def between_plates_the_flow_is_poiseuilles_with_and_without_a_small_sphere():
     """For a pressure gradient of 0.5 and a distance of 4, the mean velocity is 2/3. The sphere, whose volume fraction
     is 1e-4, changes it by less than the tolerance."""
