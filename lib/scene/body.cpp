@@ -51,7 +51,7 @@ void lay_out(const ParticleScene& particle_scene, spline::TMesh mesh, Body& body
   if (particle_scene.surface.polar()) {
     const spline::PolarMesh polar = particle_scene.surface.polar_mesh();
     body.space = spline::space(body.mesh, polar.poles, polar.subdivisions);
-    if (particle_scene.adaptation.enabled && spline::replaces_elements(polar.poles))
+    if (particle_scene.adaptation.enabled && spline::properties(polar.poles).replaces_elements)
       body.plain = std::make_shared<const spline::Space>(spline::space(body.mesh, spline::PoleRule::plain));
   } else {
     body.space = spline::space(body.mesh, particle_scene.surface.extraordinary_points.value());

@@ -87,9 +87,9 @@ struct Share {
 };
 class Shares {
  public:
-  Shares(const TMesh& mesh, const TileFunctions& f, PoleRule poles) : per_pole_(points_per_pole(poles)), shares_(f.anchor.size()) {
+  Shares(const TMesh& mesh, const TileFunctions& f, PoleRule poles) : per_pole_(properties(poles).points), shares_(f.anchor.size()) {
     const Lattice& l = *mesh.lattice;
-    const int replaced = rows_replaced(poles);
+    const int replaced = properties(poles).rows_replaced;
     auto to_end = [&](int v) { return std::min(v / l.units, l.rows - v / l.units); };
     int next = per_pole_;
     for (std::size_t a = 0; a < f.anchor.size(); ++a)
@@ -256,55 +256,20 @@ std::vector<Element> tile_elements(const Lattice& l, const TileFunctions& f, con
   return out;
 }
 
-const char* name(PoleRule rule) {
-  switch (rule) {
-    case PoleRule::bezier_transform: return "poles by Bezier transform";
-    case PoleRule::plain: return "plain poles";
-    case PoleRule::c1: return "C1 poles";
-  }
-  throw unknown_rule(rule);
-}
-
 }  // namespace
 
-int points_per_pole(PoleRule rule) {
+PoleProperties properties(PoleRule rule) {
   switch (rule) {
     case PoleRule::bezier_transform:
-    case PoleRule::plain: return 1;
-    case PoleRule::c1: return 3;
-  }
-  throw unknown_rule(rule);
-}
-
-int rows_replaced(PoleRule rule) {
-  switch (rule) {
-    case PoleRule::bezier_transform:
-    case PoleRule::plain: return 1;
-    case PoleRule::c1: return 2;
-  }
-  throw unknown_rule(rule);
-}
-
-bool has_normal_at_poles(PoleRule rule) {
-  switch (rule) {
-    case PoleRule::bezier_transform:
-    case PoleRule::c1: return true;
-    case PoleRule::plain: return false;
-  }
-  throw unknown_rule(rule);
-}
-
-bool replaces_elements(PoleRule rule) {
-  switch (rule) {
-    case PoleRule::bezier_transform: return true;
-    case PoleRule::plain:
-    case PoleRule::c1: return false;
+      return {.name = "poles by Bezier transform", .points = 1, .rows_replaced = 1, .has_normal = true, .replaces_elements = true};
+    case PoleRule::plain: return {.name = "plain poles", .points = 1, .rows_replaced = 1, .has_normal = false, .replaces_elements = false};
+    case PoleRule::c1: return {.name = "C1 poles", .points = 3, .rows_replaced = 2, .has_normal = true, .replaces_elements = false};
   }
   throw unknown_rule(rule);
 }
 
 std::vector<PolarAnchor> polar_anchors(const PolarMesh& mesh) {
-  const int m = mesh.azimuthal, r = mesh.meridional, replaced = rows_replaced(mesh.poles);
+  const int m = mesh.azimuthal, r = mesh.meridional, replaced = properties(mesh.poles).rows_replaced;
   std::vector<PolarAnchor> out;
   const auto three = [&](double row) {
     std::vector<Eigen::Vector2d> place;
@@ -340,8 +305,8 @@ Space space(const TMesh& mesh, PoleRule poles, int subdivisions) {
   out.n_points = shares.n_points();
   out.elements = tile_elements(l, f, shares);
   out.collocation = sites_on_tiles(mesh, f, shares);
-  const bool transformed = replaces_elements(poles);
-  if (transformed) {
+  const PoleProperties rule = properties(poles);
+  if (rule.replaces_elements) {
     const Transform transform(subdivisions);
     std::vector<Element> kept, pieces;
     // for each element k: its index after the replacement, or -1 - j if it is replaced by pieces that begin at pieces[j]
@@ -375,8 +340,8 @@ Space space(const TMesh& mesh, PoleRule poles, int subdivisions) {
     std::sort(sites.begin(), sites.end(), [](const Site& x, const Site& y) { return x.element < y.element; });
   out.description = std::to_string(out.elements.size()) + " Bezier elements, base mesh " + std::to_string(l.units / l.base) +
                     " around and " + std::to_string(l.height(l.rows) / l.base) + " from pole to pole, " + std::to_string(out.n_points) +
-                    " control points, " + name(poles);
-  if (transformed) out.description += " (" + std::to_string(1 << subdivisions) + " cuts)";
+                    " control points, " + rule.name;
+  if (rule.replaces_elements) out.description += " (" + std::to_string(1 << subdivisions) + " cuts)";
   return out;
 }
 

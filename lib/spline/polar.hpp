@@ -22,19 +22,14 @@ enum class PoleRule {
 
 inline const std::vector<std::string> pole_rules{"bezier transform", "plain", "c1"};  ///< words for PoleRule in decks
 
-/// Returns the number of control points whose functions are not zero at a pole.
-int points_per_pole(PoleRule rule);
-
-/// Returns the number of rows of the tensor-product net that the control points of a pole replace: 1 if only the row at the pole is replaced, 2 if
-/// the row next to it is replaced, too.
-int rows_replaced(PoleRule rule);
-
-/// Returns whether the surface has a normal at the poles. If not, loads and the identities of closed surfaces cannot be evaluated there.
-bool has_normal_at_poles(PoleRule rule);
-
-/// Returns whether the elements at the poles are replaced by pieces that are not elements of the mesh. If so, the spaces of nested meshes are not
-/// nested.
-bool replaces_elements(PoleRule rule);
+struct PoleProperties {
+  const char* name;        ///< name in Space::description
+  int points;              ///< number of control points per pole, whose functions are not zero there
+  int rows_replaced;       ///< number of rows of the tensor-product net that they replace: 1 for the row at the pole, 2 with the row next to it
+  bool has_normal;         ///< the surface has a normal at the poles; otherwise loads and the identities of closed surfaces cannot be evaluated there
+  bool replaces_elements;  ///< elements at the poles are replaced by pieces that are not elements of the mesh; spaces of nested meshes are not nested
+};
+PoleProperties properties(PoleRule rule);
 
 /// Mesh of m elements in azimuth and r from pole to pole, with uniform knots. It has (r + 1) m + 2 control points, or (r - 1) m + 6 with `c1`.
 struct PolarMesh {

@@ -53,7 +53,7 @@ void Layer::require_no_medium() const {
 
 void Layer::set_medium(const Medium& medium) {
   require_no_medium();
-  if (!corrects_near(sources_.surface.options.rule))
+  if (!properties(sources_.surface.options.rule).corrects_near)
     throw std::logic_error("a medium needs Quadrature/rule `adaptive`, because it integrates over its images by near-singular rules");
   if (shared()) throw std::logic_error("Layer::set_medium must be called before Layer::share, because the far sums of the medium are shared as well");
   use(medium.in_layer(sources_, by_clusters()));
@@ -83,7 +83,7 @@ void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
   Net at(u.rows(), 3), f0 = Net::Zero(u.rows(), 3);
   for (const int i : in_tree) at.row(i) = surface.site(i).transpose();
   for (const int i : far_rows)
-    if (subtracts_density(sources_.kernel())) f0.row(i) = surface.value(i, sources_.bezier_f).transpose();
+    if (properties(sources_.kernel()).subtracts_density) f0.row(i) = surface.value(i, sources_.bezier_f).transpose();
   integrate({sites, far_rows, at, f0, in_tree, true, no_row}, nullptr, u);
 }
 

@@ -60,7 +60,7 @@ class Layer {
   void set_symmetry(const surface::Symmetry& symmetry);
 
   /// Sets the medium, by default unbounded fluid. All later shapes must be in it. Throws std::logic_error if the layer has a medium or a lattice
-  /// already, if share() has divided its far sums, or if the quadrature rule does not correct panels close to a target (corrects_near()). Blocks that
+  /// already, if share() has divided its far sums, or if the quadrature rule does not correct panels close to a target (corrects_near). Blocks that
   /// are assembled for near control points do not include what the medium adds.
   void set_medium(const Medium& medium);
 
@@ -150,7 +150,7 @@ class Layer {
 
  private:
   /// Returns the tolerance of the sum by clusters.
-  double cluster_tolerance() const { return cluster_tolerance_factor(sources_.kernel()) * sources_.surface.options.tolerance; }
+  double cluster_tolerance() const { return properties(sources_.kernel()).cluster_tolerance_factor * sources_.surface.options.tolerance; }
   void use_clusters();
   void require_no_medium() const;
   void use(std::unique_ptr<LayerMedium> medium);

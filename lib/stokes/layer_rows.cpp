@@ -213,7 +213,7 @@ void add_medium_rows(LayerSources& sources, LayerMedium& medium, std::span<const
   for (std::size_t k = 0; k < targets.size(); ++k) {
     block.assign(static_cast<std::size_t>(surface.n_points), Mat3::Zero());
     if (!medium.add_row(sources, at ? Vec3(at->row(targets[k]).transpose()) : surface.site(targets[k]), block)) return;
-    if (subtracts_density(sources.kernel()) && !at) {
+    if (properties(sources.kernel()).subtracts_density && !at) {
       Mat3 total = Mat3::Zero();
       for (const Mat3& of_point : block) total += of_point;
       const auto [panel, basis] = surface.self_field.basis(targets[k], surface.panels);
@@ -240,7 +240,7 @@ void assemble_copies(LayerSources& sources, const LayerMedium& medium, std::span
     const std::span<const int> some = targets.subspan(first, std::min(block, targets.size() - first));
     rows.add(some, sources.surface.n_points);
     for (std::size_t l = 0; l < some.size(); ++l) {
-      if (subtracts_density(sources.kernel()) && !at) subtract_density_at_site(sources, some[l], &rows.sums[l]);
+      if (properties(sources.kernel()).subtracts_density && !at) subtract_density_at_site(sources, some[l], &rows.sums[l]);
       write_rows(3 * static_cast<int>(first + l), sources.surface.n_points, &rows.sums[l], a);
     }
   }
@@ -284,7 +284,7 @@ void Layer::assemble_images(const Net& at, std::span<const int> targets, Rows<fl
 }
 
 void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries) {
-  assert(!subtracts_density(sources_.kernel()));
+  assert(!properties(sources_.kernel()).subtracts_density);
   const auto clock = sources_.phases.time("assembly");
   constexpr std::size_t block = assembly_block;
   const Panels& panels = sources_.surface.panels;

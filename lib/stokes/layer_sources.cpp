@@ -12,7 +12,7 @@ namespace {
 
 /// Returns the options with the tolerance of quadrature rules for the kernel.
 quadrature::Options for_kernel(quadrature::Options options, LayerKernel kernel) {
-  options.tolerance *= tolerance_factor(kernel);
+  options.tolerance *= properties(kernel).tolerance_factor;
   return options;
 }
 
@@ -20,7 +20,7 @@ quadrature::Options for_kernel(quadrature::Options options, LayerKernel kernel) 
 
 LayerSources::LayerSources(LayerKernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options,
                            std::vector<double> factor)
-    : surface(space, sites, for_kernel(options, kernel), is_steep(kernel)),
+    : surface(space, sites, for_kernel(options, kernel), properties(kernel).is_steep),
       kernel_(kernel),
       factor_(std::move(factor)) {}
 
@@ -36,7 +36,7 @@ bool LayerSources::set_shape(const Net& x, Measure measure) {
   assert((measure == Measure::current || !reference_.weight.empty()) && "set_reference() comes first");
   if (!surface.set_shape(x) && measure == measure_) return false;
   measure_ = measure;
-  const bool weighted = uses_weights(kernel_);
+  const bool weighted = properties(kernel_).uses_weights;
   if (!weighted || desingularised()) node_normals(surface.panels, surface.bezier, normal);
   if (weighted) set_weights();
   multiply_by_factors(weighted ? std::span(&weight, 1) : std::span(normal));
@@ -66,7 +66,7 @@ void LayerSources::set_density(const Net& f) {
   const auto clock = phases.time("setup");
   surface.panels.bezier(f, bezier_f);
   node_values(surface.panels, bezier_f, density);
-  if (!uses_weights(kernel_)) return;
+  if (!properties(kernel_).uses_weights) return;
   for (auto& component : density)
     for (int k = 0; k < n_nodes(); ++k) component[k] *= weight[k];
 }

@@ -42,7 +42,7 @@ class LayerSources {
     return measure_ == Measure::reference || (measure_ == Measure::by_element && !reference_.per_current_area[static_cast<std::size_t>(e)]);
   }
   /// Returns whether the singularity is subtracted by identities of a closed surface, because there are no singular rules.
-  bool desingularised() const { return has_identities(kernel_) && !has_singular_rules(surface.options.rule); }
+  bool desingularised() const { return properties(kernel_).has_identities && !properties(surface.options.rule).has_singular_rules; }
 
   /// See Layer::set_reference.
   void set_reference(const Net& unstressed, std::vector<bool> per_current_area);
@@ -89,8 +89,8 @@ class LayerSources {
 
   LayerSurface surface;
   std::vector<double> bezier_f;   ///< Bezier points of the density
-  std::vector<double> weight;     ///< quadrature weights of the far nodes, times area and the factor k_p of (2.1), if uses_weights()
-  NodeVectors density, normal;    ///< values at the far nodes. density: density f (times `weight` if uses_weights()). normal: normal times
+  std::vector<double> weight;     ///< quadrature weights of the far nodes, times area and the factor k_p of (2.1), if uses_weights
+  NodeVectors density, normal;    ///< values at the far nodes. density: density f (times `weight` if uses_weights). normal: normal times
                                   ///< quadrature weight, area and factor k_p of (2.2)
   Evaluations evaluations;        ///< kernel evaluations since construction
   Phases phases;                  ///< computing times since construction

@@ -17,7 +17,7 @@ constexpr double small = 0.6;
 /// elements per side of the cube mesh (tests/verify/layers.cpp). Targets off the surface need fewer points, because near rules replace the far rule
 /// at small distances: with three points the far sum has an error of 1e-8 to 2e-7 (tests/verify/tube_gap.cpp).
 int far_order(const quadrature::Options& options, bool on_surface = true) {
-  if (!follows_tolerance(options.rule)) return options.points;
+  if (!properties(options.rule).follows_tolerance) return options.points;
   if (options.tolerance >= (on_surface ? 1e-4 : 1e-5)) return 3;
   if (options.tolerance >= 1e-6) return 4;
   if (options.tolerance >= 1e-8) return 6;
@@ -48,7 +48,7 @@ std::vector<double> shares(const spline::Space& space) {
 /// digits of the tolerance, because the shape of elements next to extraordinary points requires them (tests/verify/layers.cpp).
 std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options, int order) {
   std::vector<int> orders(space.elements.size(), order);
-  if (!follows_tolerance(options.rule)) return orders;
+  if (!properties(options.rule).follows_tolerance) return orders;
   const double rho = std::pow(options.tolerance, -0.5 / order);
   const int least = std::clamp(static_cast<int>(-0.5 * std::log10(options.tolerance) + 1e-9), 1, order);
   const std::vector<double> share = shares(space);
@@ -69,7 +69,7 @@ bool sums_by_tree(double nodes, const quadrature::Options& options) {
   if (options.far_sum != "auto") return options.far_sum == "tree";
   // Without singular rules the singularity is subtracted by two identities (see Layer), which must be summed over all pairs of nodes and targets.
   // Clusters would save little.
-  if (!has_singular_rules(options.rule)) return false;
+  if (!properties(options.rule).has_singular_rules) return false;
   return nodes > nodes_worth_a_tree(options.tolerance);
 }
 
@@ -117,18 +117,18 @@ bool LayerSurface::set_shape(const Net& x) {
   panels.bezier(x, bezier);
   node_values(panels, bezier, node);
   for (surface::Reflection& image : images_.reflections) image.middle = x.colwise().mean().transpose();
-  if (corrects_near(options.rule)) near_field.update(bezier, images_);
+  if (properties(options.rule).corrects_near) near_field.update(bezier, images_);
   return true;
 }
 
 std::span<SelfPair> LayerSurface::self_pairs(int i) {
-  if (!has_singular_rules(options.rule)) return {};
+  if (!properties(options.rule).has_singular_rules) return {};
   return self_field[i];
 }
 
 const std::vector<int>& LayerSurface::near(const Vec3& target, std::span<const SelfPair> self_pairs) {
   near_.clear();
-  if (corrects_near(options.rule)) near_field.list(target, self_pairs, near_);
+  if (properties(options.rule).corrects_near) near_field.list(target, self_pairs, near_);
   return near_;
 }
 

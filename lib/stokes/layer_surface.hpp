@@ -49,11 +49,11 @@ class LayerSurface {
   Vec3 value(int i, const std::vector<double>& of) const { return self_field.value(i, panels, of); }
 
   /// Returns the pairs of site i and a panel that contains it, one pair per panel. These pairs need singular rules. The list is empty if
-  /// has_singular_rules() is false.
+  /// has_singular_rules is false.
   std::span<SelfPair> self_pairs(int i);
 
   /// Returns the panels that need near-singular quadrature for a target, without the panels of `self_pairs`, which contain the target. The list is
-  /// empty if corrects_near() is false; then `near_field` has no shape, and NearField::rule must not be called.
+  /// empty if corrects_near is false; then `near_field` has no shape, and NearField::rule must not be called.
   const std::vector<int>& near(const Vec3& target, std::span<const SelfPair> self_pairs);
 
   /// Sets the sources of `tree` to the far nodes of the fundamental panels, and its targets to all targets and their symmetry images. All ranks that

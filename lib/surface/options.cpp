@@ -51,7 +51,7 @@ void MeshOptions::declare(deck::Section& section) {
               "treatment of the poles of the polar surface mesh. `bezier transform`: degenerate elements are replaced by regular ones, as "
               "by Maestre et al. (2017); the default. `plain`: degenerate elements are kept. `c1`: tangent planes are continuous at the "
               "poles, with (r - 1)m + 6 control points for m elements around the axis and r from pole to pole");
-  if (poles && spline::replaces_elements(*poles)) pole_subdivisions = 2;
+  if (poles && spline::properties(*poles).replaces_elements) pole_subdivisions = 2;
   section.key("pole subdivisions", pole_subdivisions, deck::between(0, 4), "1",
               "number of times that the elements at the poles of the polar surface mesh are halved in azimuth before the transform of "
               "Surface/poles `bezier transform`; 2 if not given");
@@ -83,7 +83,8 @@ spline::PolarMesh MeshOptions::polar_mesh() const {
 double MeshOptions::n_points() const {
   if (!polar()) return 6.0 * *elements_per_side * *elements_per_side + 2;
   const double m = *azimuthal_elements, r = *meridional_elements;
-  return (r + 3 - 2 * spline::rows_replaced(poles.value())) * m + 2 * spline::points_per_pole(poles.value());
+  const spline::PoleProperties pole = spline::properties(poles.value());
+  return (r + 3 - 2 * pole.rows_replaced) * m + 2 * pole.points;
 }
 
 double MeshOptions::n_elements() const {

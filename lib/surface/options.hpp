@@ -38,9 +38,9 @@ struct MeshOptions {
   bool polar() const { return mesh == "polar"; }
   spline::PolarMesh polar_mesh() const;
   /// Returns whether the surface has a normal at every pole; true for the cube mesh, which has no poles.
-  bool has_normal_at_poles() const { return !polar() || spline::has_normal_at_poles(poles.value()); }
+  bool has_normal_at_poles() const { return !polar() || spline::properties(poles.value()).has_normal; }
   /// Returns whether elements at poles are replaced by pieces that are not elements of the mesh; false for the cube mesh.
-  bool replaces_elements() const { return polar() && spline::replaces_elements(poles.value()); }
+  bool replaces_elements() const { return polar() && spline::properties(poles.value()).replaces_elements; }
   int axis() const { return pole_axis.value()[1] - '1'; }
 
   double n_points() const;    ///< returns the number of control points of the mesh

@@ -67,7 +67,7 @@ struct Misfit {
 
 class Sector {
  public:
-  Sector(const spline::PolarMesh& mesh, const spline::Space& space) : circles_(mesh), one_at_pole_(spline::points_per_pole(mesh.poles) == 1) {
+  Sector(const spline::PolarMesh& mesh, const spline::Space& space) : circles_(mesh), one_at_pole_(spline::properties(mesh.poles).points == 1) {
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(6);
     for (const spline::Element& e : space.elements) {
       if (e.origin[0] != 0) continue;

@@ -69,12 +69,12 @@ SelfField::SelfField(const spline::Space& space, const Sites& sites, const quadr
 }
 
 const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier) {
-  assert(has_singular_rules(options_.rule));
+  assert(properties(options_.rule).has_singular_rules);
   const int degree = panels[pair.panel].table->degree, n = degree + 1;
   fill(pair, degree);
   quadrature::MetricBin bin;
   quadrature::PolarOrders orders;
-  if (follows_tolerance(options_.rule)) {
+  if (properties(options_.rule).follows_tolerance) {
     const double *b = pair.bernstein.data(), *points = &bezier[panels[pair.panel].first_bezier];
     const Vec3 a1 = product(b + 2 * n, b + n, n, points), a2 = product(b, b + 3 * n, n, points);
     bin = quadrature::metric_bin(a1.dot(a1), a1.dot(a2), a2.dot(a2));
@@ -119,7 +119,7 @@ const PointTable& SelfField::made(const SelfPair& pair, int degree) {
   if (tables_.size() > most_tables || points > most_points) forget_rules();
   auto& table = tables_[key] = std::make_unique<PointTable>();
   const auto& [s, t, bin, orders] = std::tie(pair.s, pair.t, pair.bin, pair.orders);
-  if (!follows_tolerance(options_.rule))
+  if (!properties(options_.rule).follows_tolerance)
     tabulate(quadrature::lachat_watson(s, t, options_.points), degree, *table);
   else if (!orders.radial)
     tabulate(quadrature::polar(s, t, bin, quadrature::polar_orders(s, t, bin, radial_, options_.tolerance)), degree, *table);

@@ -40,7 +40,7 @@ class SelfField {
   std::span<SelfPair> operator[](int i) { return {&pairs_[first_[i]], first_[i + 1] - first_[i]}; }
 
   /// Returns the singular quadrature rule of a site and panel for the current metric at the site. If the rule changes, discards the stored weights of
-  /// the pair. Must not be called if has_singular_rules() is false.
+  /// the pair. Must not be called if has_singular_rules is false.
   const PointTable& rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier);
 
   /// Discards all stored weights.

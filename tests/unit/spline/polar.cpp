@@ -24,7 +24,7 @@ TEST(Polar, HasTheControlPointsOfThePaper) {
     for (const PoleRule rule : every_rule) {
       const PolarMesh mesh{m, r, rule};
       const Space s = space(mesh);
-      if (points_per_pole(rule) == 1) {
+      if (properties(rule).points == 1) {
         EXPECT_EQ(s.n_points, n);
       }
       if (rule == PoleRule::c1) {
@@ -32,7 +32,7 @@ TEST(Polar, HasTheControlPointsOfThePaper) {
       }
       EXPECT_EQ(s.n_points, int(polar_anchors(mesh).size()));
       EXPECT_EQ(int(s.collocation.size()), s.n_points);
-      EXPECT_EQ(int(s.elements.size()), replaces_elements(rule) ? m * (r - 2) + 2 * m * 12 : m * r);
+      EXPECT_EQ(int(s.elements.size()), properties(rule).replaces_elements ? m * (r - 2) + 2 * m * 12 : m * r);
     }
   }
 }
