@@ -143,7 +143,7 @@ Net stress_free_shape(const ParticleScene& particle_scene, const Body& body, con
   if (membrane.stress_free == "resting") return body.rest;
   if (membrane.stress_free == "file") {
     const Net net = net_of_file(first.space, membrane.stress_free_file.value(), "Membrane/stress-free file");
-    return &first == &body ? net : spline::Transfer(first.nested(), body.nested())(net).net;
+    return &first == &body ? net : spline::transfer(first.nested(), body.nested())(net).net;
   }
   if (particle_scene.particle.shape.imported)
     throw UserError(
@@ -152,7 +152,7 @@ Net stress_free_shape(const ParticleScene& particle_scene, const Body& body, con
   const surface::MeshOptions& mesh = particle_scene.surface;
   const Net sphere = mesh.polar() ? surface::unit_sphere(mesh.polar_mesh(), first.space, mesh.axis()) : surface::unit_sphere(first.mesh, fit);
   const Net spheroid = surface::stress_free_spheroid(fit, sphere, particle_scene.particle.shape, membrane.reduced_volume.value_or(1));
-  return &first == &body ? spheroid : spline::Transfer(first.nested(), body.nested())(spheroid).net;
+  return &first == &body ? spheroid : spline::transfer(first.nested(), body.nested())(spheroid).net;
 }
 
 }  // namespace tanktread

@@ -86,7 +86,7 @@ struct Merge {
 /// an extraordinary point are coarsened only as a whole.
 ///
 /// All these lines are removed together, and the mesh is repaired afterwards. If they were removed one by one, many lines would have to stay because
-/// of T-junctions on neighbouring lines. The new spline space need not be contained in the old one, so fields are transferred by Projection. With
+/// of T-junctions on neighbouring lines. The new spline space need not be contained in the old one, so fields are transferred by projection(). With
 /// `rules.images`, an element grows only as far as all of its images may grow, and a line is removed only together with all of its images.
 TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules = {});
 

@@ -4,6 +4,7 @@
 #include <deque>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <optional>
 
 #include <Eigen/SparseCholesky>
@@ -116,9 +117,8 @@ class Fit {
 
 double largest(const std::vector<double>& numbers) { return numbers.empty() ? 0 : *std::ranges::max_element(numbers); }
 
-}  // namespace
-
-struct Transfer::State {
+/// Transfer of fields to a space that contains the old one.
+struct NestedTransfer {
   const Space& from;
   const Space& to;
   Sampling sampling;
@@ -127,10 +127,11 @@ struct Transfer::State {
   std::optional<Fit> rest;         // least-squares fit of the control points that are not copied
   mutable std::optional<Fit> all;  // least-squares fit of all control points, created if it is needed
 
-  State(const Space& old_space, const Space& new_space);
+  NestedTransfer(const Space& old_space, const Space& new_space);
+  Transferred operator()(const Net& field) const;
 };
 
-Transfer::State::State(const Space& old_space, const Space& new_space)
+NestedTransfer::NestedTransfer(const Space& old_space, const Space& new_space)
     : from(old_space), to(new_space), sampling(from, to), copied(to.n_points, -1) {
   std::vector<const Element*> around;  // old element that contains the centre of each new element
   std::vector<char> alike;
@@ -154,48 +155,36 @@ Transfer::State::State(const Space& old_space, const Space& new_space)
   if (!changed.empty()) rest.emplace(from, to, sampling.at(changed, false, false), std::move(unknown));
 }
 
-Transfer::Transfer(const Space& from, const Space& to) : state_(new State(from, to)) {}
-Transfer::~Transfer() = default;
-Transfer::Transfer(Transfer&&) noexcept = default;
-
-Transfer::Result Transfer::operator()(const Net& field) const {
-  const State& s = *state_;
-  Result out{Net::Zero(s.to.n_points, 3), 0};
-  for (int p = 0; p < s.to.n_points; ++p)
-    if (s.copied[p] >= 0) out.net.row(p) = field.row(s.copied[p]);
-  if (s.rest) out.residual = largest(s.rest->solve(field, out.net));
+Transferred NestedTransfer::operator()(const Net& field) const {
+  Transferred out{Net::Zero(to.n_points, 3), 0};
+  for (int p = 0; p < to.n_points; ++p)
+    if (copied[p] >= 0) out.net.row(p) = field.row(copied[p]);
+  if (rest) out.residual = largest(rest->solve(field, out.net));
   if (out.residual <= nested * field.cwiseAbs().maxCoeff()) return out;
-  if (!s.all)
-    s.all.emplace(s.from, s.to, s.sampling.at(indices(s.to.elements.size()), false, false), indices(s.to.n_points));
-  out.residual = largest(s.all->solve(field, out.net));
+  if (!all) all.emplace(from, to, sampling.at(indices(to.elements.size()), false, false), indices(to.n_points));
+  out.residual = largest(all->solve(field, out.net));
   return out;
 }
 
-struct Projection::State {
-  const Space& from;
-  const Space& to;
-  std::optional<Fit> fit;
-};
+}  // namespace
 
-Projection::Projection(const Space& from, const Space& to) : state_(new State{from, to, {}}) {
+std::function<Transferred(const Net& field)> transfer(const Space& from, const Space& to) {
+  return [known = std::make_shared<const NestedTransfer>(from, to)](const Net& field) { return (*known)(field); };
+}
+
+std::function<Projected(const Net& field)> projection(const Space& from, const Space& to) {
   const Sampling sampling(from, to);
   std::vector<Sample> samples = sampling.at(indices(from.elements.size()), true, true);
   std::ranges::move(sampling.at(indices(to.elements.size()), false, true), std::back_inserter(samples));
-  state_->fit.emplace(from, to, std::move(samples), indices(to.n_points));
-}
-
-Projection::~Projection() = default;
-Projection::Projection(Projection&&) noexcept = default;
-
-Projection::Result Projection::operator()(const Net& field) const {
-  const auto& [from, to, fit] = *state_;
-  Result out{Net::Zero(to.n_points, 3), std::vector<double>(from.elements.size(), 0.0)};
-  const std::vector<double> distances = fit->solve(field, out.net);
-  for (std::size_t k = 0; k < distances.size(); ++k) {
-    double& worst = out.defect[fit->samples()[k].old_element];
-    worst = std::max(worst, distances[k]);
-  }
-  return out;
+  return [&from, &to, fit = std::make_shared<const Fit>(from, to, std::move(samples), indices(to.n_points))](const Net& field) {
+    Projected out{Net::Zero(to.n_points, 3), std::vector<double>(from.elements.size(), 0.0)};
+    const std::vector<double> distances = fit->solve(field, out.net);
+    for (std::size_t k = 0; k < distances.size(); ++k) {
+      double& worst = out.defect[fit->samples()[k].old_element];
+      worst = std::max(worst, distances[k]);
+    }
+    return out;
+  };
 }
 
 }  // namespace tanktread::spline

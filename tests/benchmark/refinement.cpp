@@ -52,7 +52,7 @@ struct Surface {
     while (space.n_points < 1500) {
       mesh = spline::refine(mesh, random_marks(mesh, 10, generator)).mesh;
       spline::Space next = spline::space(mesh, rule);
-      const spline::Transfer transfer(space, next);
+      const auto transfer = spline::transfer(space, next);
       unstressed = transfer(unstressed).net;
       x = transfer(x).net;
       space = std::move(next);
@@ -82,7 +82,7 @@ void refinement(benchmark::State& state) {
     const double made = now();
     std::vector<Net> carried;
     {
-      const spline::Transfer move(surface.space, next);
+      const auto move = spline::transfer(surface.space, next);
       for (const Net* field : fields) {
         auto moved = move(*field);
         residual = std::max(residual, moved.residual);

@@ -135,7 +135,7 @@ TEST(Layers, KeepTheRequestedToleranceOnLocallyRefinedMeshes) {
   const spline::TMesh coarse = spline::cube(4, 2);
   const spline::TMesh fine = spline::refine(coarse, {{5, true, true}, {6, true, false}, {37, false, true}}).mesh;
   const spline::Space from = spline::space(coarse, rule), to = spline::space(fine, rule);
-  const Scene scene(to, spline::Transfer(from, to)(surface::unit_sphere(coarse, surface::LeastSquaresFit(from))).net);
+  const Scene scene(to, spline::transfer(from, to)(surface::unit_sphere(coarse, surface::LeastSquaresFit(from))).net);
   keeps_its_tolerance(true, "refined locally", scene);
   keeps_its_tolerance(false, "refined locally", scene);
 }

@@ -74,7 +74,7 @@ double error_of_return(const TMesh& base, unsigned seed, int steps, const SpaceO
   for (int step = 0; step < steps; ++step) {
     mesh = refine(mesh, random_marks(mesh, 2, 1, generator)).mesh;
     auto next = std::make_unique<Space>(space_of(mesh));
-    net = Transfer(*now, *next)(net).net;
+    net = transfer(*now, *next)(net).net;
     now = std::move(next);
   }
   for (int round = 0; round < 10 && mesh.edges != base.edges; ++round) {
@@ -82,7 +82,7 @@ double error_of_return(const TMesh& base, unsigned seed, int steps, const SpaceO
     for (int i = 0; i < int(elements(mesh).tiles.size()); ++i) all.push_back({i, steps, steps});
     mesh = coarsen(mesh, all);
     auto next = std::make_unique<Space>(space_of(mesh));
-    net = Projection(*now, *next)(net).net;
+    net = projection(*now, *next)(net).net;
     now = std::move(next);
   }
   return mesh.edges == base.edges ? (net - original).cwiseAbs().maxCoeff() : HUGE_VAL;

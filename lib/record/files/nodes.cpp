@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <map>
 #include <span>
 #include <utility>
 
 #include <Eigen/Geometry>
 
+#include "base/groups.hpp"
 #include "spline/bernstein.hpp"
+#include "spline/point_search.hpp"
 #include "surface/patch.hpp"
 #include "surface/three_sums.hpp"
 
@@ -16,31 +18,23 @@ namespace tanktread::output {
 
 namespace {
 
-/// Returns, for each point, the index of the first point of the same surface with the same position, which may be the point itself. `surface`: number
-/// of the surface of each point. For this search, the points are sorted along a direction that is unrelated to the symmetries of meshes, so that few
-/// points have nearly equal coordinates along it.
-std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places, const std::vector<int>& surface) {
-  const Vec3 direction(0.8137, 0.4691, 0.3433);
+/// Returns, for each point, the index of one of the points of the same surface with the same position. This index is equal for all these points.
+/// `surface`: number of the surface of each point.
+std::vector<std::size_t> representatives(const std::vector<Vec3>& places, const std::vector<int>& surface) {
   double size = 0;
-  std::vector<double> along;
-  for (const Vec3& x : places) {
-    along.push_back(direction.dot(x));
-    size = std::max(size, (x - places.front()).norm());
+  std::map<int, std::vector<std::size_t>> of_surface;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    size = std::max(size, (places[k] - places.front()).norm());
+    of_surface[surface[k]].push_back(k);
   }
-  const double tolerance = 1e-9 * size;
-  std::vector<std::size_t> order(places.size()), first(places.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return along[k]; });
-  std::iota(first.begin(), first.end(), 0);
-  for (std::size_t a = 0; a < order.size(); ++a)
-    for (std::size_t b = a; b-- > 0 && along[order[a]] - along[order[b]] <= tolerance;)
-      if (surface[order[a]] == surface[order[b]] && (places[order[a]] - places[order[b]]).norm() <= tolerance) {
-        const std::size_t low = std::min(first[order[a]], first[order[b]]);
-        first[order[a]] = first[order[b]] = low;
-      }
-  for (std::size_t& k : first)
-    while (first[k] != k) k = first[k];
-  return first;
+  std::vector<std::size_t> found(places.size());
+  for (const auto& [unused, points] : of_surface) {
+    std::vector<Vec3> here;
+    for (const std::size_t k : points) here.push_back(places[k]);
+    const spline::PointSearch search(here, 1e-9 * size);
+    for (std::size_t k = 0; k < points.size(); ++k) found[points[k]] = points[static_cast<std::size_t>(search.at(here[k]))];
+  }
+  return found;
 }
 
 }  // namespace
@@ -57,16 +51,11 @@ std::vector<std::array<int, 2>> node_order(int p) {
 }
 
 std::vector<int> surfaces(const spline::Space& space) {
-  std::vector<int> parent(static_cast<std::size_t>(space.n_points)), all;
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto above = [&](int k) -> int& { return parent[static_cast<std::size_t>(k)]; };
-  const auto root = [&](int k) {
-    while (above(k) != k) k = above(k) = above(above(k));
-    return k;
-  };
+  Groups joined(static_cast<std::size_t>(space.n_points));
   for (const auto& element : space.elements)
-    for (const int point : element.points) above(root(point)) = root(element.points.front());
-  for (const auto& element : space.elements) all.push_back(root(element.points.front()));
+    for (const int point : element.points) joined.join(point, element.points.front());
+  std::vector<int> all;
+  for (const auto& element : space.elements) all.push_back(joined.of(element.points.front()));
   return all;
 }
 
@@ -86,14 +75,14 @@ LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net, const std
     }
     mesh.offsets.push_back(static_cast<std::int64_t>(places.size()));
   }
-  const std::vector<std::size_t> first = first_of_equals(places, surface);
-  std::vector<std::int64_t> number(places.size());
+  const std::vector<std::size_t> same = representatives(places, surface);
+  std::vector<std::int64_t> number(places.size(), -1);
   for (std::size_t k = 0; k < places.size(); ++k) {
-    if (first[k] == k) {
-      number[k] = static_cast<std::int64_t>(mesh.sites.size());
+    if (number[same[k]] < 0) {
+      number[same[k]] = static_cast<std::int64_t>(mesh.sites.size());
       mesh.sites.push_back(sites[k]);
     }
-    mesh.connectivity.push_back(number[first[k]]);
+    mesh.connectivity.push_back(number[same[k]]);
   }
   return mesh;
 }

@@ -81,7 +81,7 @@ spline::RepairRules rules(const Body& body) {
 
 Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   auto target = on_mesh(of, std::move(mesh));
-  const spline::Transfer transfer(of.body.nested(), target->nested());
+  const auto transfer = spline::transfer(of.body.nested(), target->nested());
   const double residual = std::max(transfer(of.body.unstressed).residual, transfer(of.x).residual);
   Adapted result = transferred(of, std::move(target), [&](const Net& field) { return transfer(field).net; });
   record_change(result, residual, of.body.radius);
@@ -206,7 +206,7 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
     auto target = on_mesh(of, spline::coarsen(body.mesh, merges, rules(body)));
     if (target->space.n_points >= body.space.n_points) return {};
-    const spline::Projection projection(body.nested(), target->nested());
+    const auto projection = spline::projection(body.nested(), target->nested());
     const std::vector<double> defect = coupling::decided([&] {
       std::vector<double> worse = projection(body.unstressed).defect;
       std::ranges::transform(worse, projection(x).defect, worse.begin(), [](double a, double b) { return std::max(a, b); });

@@ -32,7 +32,7 @@ TEST(Coarsening, UndoingTheLastRefinementRestoresTheMeshAndTheControlPoints) {
 
       const Space a = space(before, rule), b = space(after, rule);
       const Net net = random_net(a.n_points, seed);
-      const auto returned = Projection(b, a)(Transfer(a, b)(net).net);
+      const auto returned = projection(b, a)(transfer(a, b)(net).net);
       EXPECT_LT((returned.net - net).cwiseAbs().maxCoeff(), 1e-12);  // condition of the normal matrix (300) times rounding
       EXPECT_LT(largest(returned.defect), 1e-12);
     }

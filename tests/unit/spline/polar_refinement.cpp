@@ -39,7 +39,7 @@ TEST(PolarRefinement, CutsAtAPoleKeepTheField) {
       const TMesh cut = refine(mesh, {{elements(mesh).tile_of_cell[mesh.lattice->cell_at(0, 0, 1)]}}).mesh;
       auto next = std::make_unique<Space>(space(cut, poles));
       EXPECT_GT(next->n_points, now->n_points);
-      EXPECT_LT(Transfer(*now, *next)(random_net(now->n_points, 4)).residual, 1e-12);
+      EXPECT_LT(transfer(*now, *next)(random_net(now->n_points, 4)).residual, 1e-12);
       mesh = cut;
       now = std::move(next);
     }

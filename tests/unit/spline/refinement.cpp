@@ -65,7 +65,7 @@ TEST(Refinement, RepeatedRefinementAtAnExtraordinaryPointAdds45PointsPerLevel) {
     EXPECT_EQ(r.halvings, 1);
     auto next = std::make_unique<Space>(space(r.mesh, rule));
     EXPECT_EQ(next->n_points - now->n_points, 45);
-    const Transfer transfer(*now, *next);
+    const auto transfer = spline::transfer(*now, *next);
     EXPECT_LT(transfer(random_net(now->n_points, unsigned(level))).residual, 1e-12);
     mesh = r.mesh;
     now = std::move(next);
@@ -182,8 +182,8 @@ TEST(Refinement, G1SpacesAreNotNestedAtAnExtraordinaryPointButAwayFromIt) {
   const Tiling tiling = elements(mesh);
   const Space at = space(refine(mesh, {{tiling.tile_of_cell[l.cell[l.extraordinary[0]][0]]}}).mesh, ExtraordinaryRule::g1);
   const Space away = space(refine(mesh, {{tiling.tile_of_cell[l.cell_at(0, 17, 17)]}}).mesh, ExtraordinaryRule::g1);
-  EXPECT_GT(Transfer(before, at)(net).residual, 1e-3);
-  EXPECT_LT(Transfer(before, away)(net).residual, 1e-12);
+  EXPECT_GT(transfer(before, at)(net).residual, 1e-3);
+  EXPECT_LT(transfer(before, away)(net).residual, 1e-12);
 }
 
 }  // namespace refinement_test

@@ -115,7 +115,7 @@ void run_sequence(TMesh mesh, unsigned seed, const SequenceOptions& options, Fin
     const int scattered = std::max(1, int(options.fraction * double(elements(mesh).tiles.size())));
     mesh = refine(mesh, random_marks(mesh, scattered, options.deep, generator), options.rules).mesh;
     auto next = std::make_unique<Space>(options.space(mesh));
-    const Transfer transfer(*now, *next);
+    const auto transfer = spline::transfer(*now, *next);
     found.residual = std::max(found.residual, transfer(random_net(now->n_points, unsigned(generator()))).residual);
     found.wrong_counts += wrong_counts(mesh, *next, options.per_pole);
     for (const Element& e : next->elements)

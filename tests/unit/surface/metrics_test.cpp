@@ -101,7 +101,7 @@ TEST(Metrics, DividingAnElementHalvesItsMidLineAndKeepsTheOthers) {
   }
   const spline::Refinement refined = spline::refine(mesh, {{middle, true, false}});
   const spline::Space fine = spline::space(refined.mesh, rule);
-  const Net fine_net = spline::Transfer(coarse, fine)(net).net;
+  const Net fine_net = spline::transfer(coarse, fine)(net).net;
   const auto after = element_metrics(refined.mesh, fine, fine_net, {field_of_net(fine, fine_net), {}});
   const auto tiles_after = spline::elements(refined.mesh).tiles;
   ASSERT_GT(tiles_after.size(), tiles_before.size());

@@ -92,7 +92,7 @@ TEST(Resolution, TheEstimatedErrorAfterMergingIsThatOfTheCoarserMesh) {
   const spline::TMesh fine = spline::refine(coarse, all).mesh;
   const spline::Space before = spline::space(coarse, spline::ExtraordinaryRule::catmull_clark);
   const spline::Space after = spline::space(fine, spline::ExtraordinaryRule::catmull_clark);
-  const Net rest = unit_sphere(coarse, LeastSquaresFit(before)), same = spline::Transfer(before, after)(rest).net;
+  const Net rest = unit_sphere(coarse, LeastSquaresFit(before)), same = spline::transfer(before, after)(rest).net;
   const auto errors = [](const spline::TMesh& mesh, const spline::Space& space, const Net& net, Errors Resolution::*which) {
     const FieldAt bump = [&](const spline::Site& site) { return Vec3(std::sin(3 * value(space, net, site)[0]), 0, 0); };
     double sum = 0;

@@ -252,7 +252,7 @@ TEST(Shapes, FittedAgainOnRefinedMeshesAreAboutAsAccurateAsOnMeshesThatWereFineF
       const spline::Space finer = spline::space(mesh, rule);
       const CubeMesh fine(n, rule);
       ASSERT_EQ(finer.n_points, fine.space.n_points);
-      const Net transferred = spline::Transfer(space, finer)(net).net;
+      const Net transferred = spline::transfer(space, finer)(net).net;
       net = fitted_again(finer, transferred, shape);
       space = finer;
       // Measured for n = 12 and 24: 3.4e-5 and 1.9e-6, compared with 3.9e-4 and 3.4e-5 without a fit and 2.0e-5 and 1.2e-6 on the fine meshes (g1).
