@@ -82,16 +82,23 @@ Vec2 start(const Patch& patch, int c, double sign) {
   return Vec2(highest % (cells + 1), highest / (cells + 1)) / cells;
 }
 
-/// Returns the maximum of sign * x_c over the surface. `reached`: a known lower bound of the maximum. bounds[e]: an upper bound on element e.
-double largest_coordinate(const Patches& surface, int c, double sign, double reached, const std::vector<double>& bounds) {
-  double best = reached;
-  std::vector<int> candidates;  // few elements remain
-  for (int e = 0; e < surface.size(); ++e)
-    if (bounds[e] > best) candidates.push_back(e);
-  std::ranges::sort(candidates, std::ranges::greater(), [&](int e) { return bounds[e]; });
-  for (const int e : candidates) {
-    if (bounds[e] <= best) break;
-    best = std::max(best, summit(surface[e], c, sign, start(surface[e], c, sign)).first);
+/// Returns the position with the largest sign * x_c on the surface, and the largest sign * x_c itself, which has a smaller round-off error.
+std::pair<Vec3, double> highest(const Patches& surface, int c, double sign) {
+  std::pair<Vec3, double> best{Vec3::Zero(), -infinity};
+  std::vector<std::pair<double, int>> bounds;  // upper bound of sign * x_c on each element
+  for (int e = 0; e < surface.size(); ++e) {
+    const Patch& patch = surface[e];
+    for (const int corner : {0, patch.degree, patch.n_bezier() - 1 - patch.degree, patch.n_bezier() - 1})
+      if (const double here = sign * patch.coordinate(c, corner); here > best.second)
+        best = {{patch.coordinate(0, corner), patch.coordinate(1, corner), patch.coordinate(2, corner)}, here};
+    const Range range = hull(patch, c);
+    bounds.emplace_back(sign > 0 ? range.largest : -range.smallest, e);
+  }
+  std::ranges::sort(bounds, std::ranges::greater());
+  for (const auto& [bound, e] : bounds) {
+    if (bound <= best.second) break;
+    const auto [value, at] = summit(surface[e], c, sign, start(surface[e], c, sign));
+    if (value > best.second) best = {position(surface[e], at[0], at[1]), value};
   }
   return best;
 }
@@ -223,34 +230,9 @@ Range hull(const Patch& patch, int c) {
   return {*low, *high};
 }
 
-Range coordinate_range(const Patches& surface, int c) {
-  Range reached;  // range of the corners
-  std::vector<double> below(surface.size()), above(surface.size());
-  for (int e = 0; e < surface.size(); ++e) {
-    const Patch& patch = surface[e];
-    for (const int corner : {0, patch.degree, patch.n_bezier() - 1 - patch.degree, patch.n_bezier() - 1}) {
-      reached.smallest = std::min(reached.smallest, patch.coordinate(c, corner));
-      reached.largest = std::max(reached.largest, patch.coordinate(c, corner));
-    }
-    const Range bounds = hull(patch, c);
-    below[e] = -bounds.smallest;
-    above[e] = bounds.largest;
-  }
-  return {-largest_coordinate(surface, c, -1, -reached.smallest, below), largest_coordinate(surface, c, 1, reached.largest, above)};
-}
+Range coordinate_range(const Patches& surface, int c) { return {-highest(surface, c, -1).second, highest(surface, c, 1).second}; }
 
-Vec3 lowest(const Patches& surface, int c) {
-  std::vector<std::pair<double, int>> bounds;
-  for (int e = 0; e < surface.size(); ++e) bounds.emplace_back(hull(surface[e], c).smallest, e);
-  std::ranges::sort(bounds);
-  Vec3 best = Vec3::Constant(infinity);
-  for (const auto& [bound, e] : bounds) {
-    if (bound >= best[c]) break;
-    const Vec2 at = summit(surface[e], c, -1, start(surface[e], c, -1)).second;
-    if (const Vec3 there = position(surface[e], at[0], at[1]); there[c] < best[c]) best = there;
-  }
-  return best;
-}
+Vec3 lowest(const Patches& surface, int c) { return highest(surface, c, -1).first; }
 
 Range section_distances(const Patches& surface, const Vec3& centre) {
   std::vector<Candidate> candidates;

@@ -47,10 +47,6 @@ Vec3 value(const spline::Space& space, const Net& net, const spline::Site& site)
   return position(ElementPoints(space, net, site.element).patch(), site.s, site.t);
 }
 
-double mean_curvature(const spline::Space& space, const Net& net, const spline::Site& site) {
-  return mean_curvature(jet(ElementPoints(space, net, site.element).patch(), site.s, site.t));
-}
-
 Geometry::Geometry(const spline::Space& space) : map_(space), all_(indices(space.elements.size())), all_blocks_(indices(n_blocks())) {}
 
 double Geometry::volume(const Net& net) const {
@@ -115,11 +111,6 @@ Measures Geometry::measures(const Net& net, std::span<const double> of_blocks) {
   result.second_moments << second[0], second[3], second[4], second[3], second[1], second[5], second[4], second[5], second[2];
   result.second_moments -= result.volume * centre * centre.transpose();
   return result;
-}
-
-Deformation Geometry::deformation(const Net& net) const {
-  const Measures measures = this->measures(net);
-  return deformation(measures, extremes(net, measures.centroid, all_));
 }
 
 std::array<Range, Geometry::n_extremes> Geometry::extremes(const Net& net, const Vec3& centroid, std::span<const int> elements) const {

@@ -24,9 +24,6 @@ Point point(const spline::Space& space, const Net& net, const spline::Site& site
 /// Returns the value of the field with control values `net` at a site (element and local coordinates).
 Vec3 value(const spline::Space& space, const Net& net, const spline::Site& site);
 
-/// Returns the mean curvature chi = 1/2 div n with the outward normal n; 1/R for a sphere. Units 1/length.
-double mean_curvature(const spline::Space& space, const Net& net, const spline::Site& site);
-
 /// Integral measures by Gauss quadrature. Volume, centroid and moments are exact for the polynomials involved; the area, whose integrand is not a
 /// polynomial, is approximated with the same Gauss points.
 struct Measures {
@@ -93,16 +90,15 @@ class Geometry {
 
   int n_blocks() const { return surface::n_blocks(map_.n_elements()); }
 
-  /// Returns the inclination, the extents along x1, x2 and x3, and the Taylor parameter in the x1 x3 plane by two definitions. The first definition
-  /// (inertia) uses the second moments M_11, M_13, M_33. The second definition (surface) uses the longest and shortest distance of the centroid to
-  /// the curve in which the plane x2 = centroid_2 cuts the surface. Extreme points are found by Newton's method, to round-off.
-  Deformation deformation(const Net& net) const;
-
   /// Number of ranges (smallest and largest value) that extremes() returns for deformation(): distances of section points from the centroid (0),
-  /// coordinates x1, x2, x3 (1, 2, 3). The ranges of a whole surface are the unions of the ranges of its parts. deformation() throws RunFailure if
-  /// the plane of the section does not intersect the surface.
+  /// coordinates x1, x2, x3 (1, 2, 3). The ranges of a whole surface are the unions of the ranges of its parts. Extreme points are found by Newton's
+  /// method, to round-off.
   static constexpr int n_extremes = 4;
   std::array<Range, n_extremes> extremes(const Net& net, const Vec3& centroid, std::span<const int> elements) const;
+
+  /// Returns the inclination, the extents along x1, x2 and x3, and the Taylor parameter in the x1 x3 plane by two definitions. The first definition
+  /// (inertia) uses the second moments M_11, M_13, M_33. The second definition (surface) uses the longest and shortest distance of the centroid to
+  /// the curve in which the plane x2 = centroid_2 cuts the surface. Throws RunFailure if this plane does not intersect the surface.
   static Deformation deformation(const Measures& measures, const std::array<Range, n_extremes>& extremes);
 
  private:

@@ -39,7 +39,7 @@ double jacobian(const Jet& jet);
 /// Returns the position only.
 Vec3 position(const Patch& patch, double s, double t);
 
-/// Returns the mean curvature chi = 1/2 div n, positive on a sphere.
+/// Returns the mean curvature chi = 1/2 div n with the outward normal n; 1/R for a sphere. Units 1/length.
 double mean_curvature(const Jet& jet);
 
 constexpr int cells = 6;  ///< number of intervals per direction of the grid on which sample() evaluates an element

@@ -219,11 +219,8 @@ Symmetry::Symmetry(const std::vector<Image>& generators, const Net& net) : Symme
       if (const int b = g.point[a]; rank(b) > rank(first) + exact || (rank(b) > rank(first) - exact && b < first)) first = b;
     source_[a] = first;
     if (first == a) fundamental_.push_back(a);
-    Vec3 sum = Vec3::Zero();  // sum of Image::signs over the symmetries that map the point `first` to the point a
-    for (const Image& g : group)
-      if (g.point[first] == a) sum += g.signs;
-    signs_.row(a) = sum.cwiseSign().transpose();
   }
+  signs_ = Parity(*this).signs();
   description_ = names[0];
   for (std::size_t k = 1; k < names.size(); ++k) description_ += (k + 1 == names.size() ? " and " : ", ") + names[k];
 }

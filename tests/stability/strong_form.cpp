@@ -14,6 +14,7 @@
 #include "base/errors.hpp"
 #include "surface/geometry.hpp"
 #include "tests/evolution.hpp"
+#include "tests/shape_measures.hpp"
 
 namespace tanktread {
 namespace {

@@ -10,6 +10,7 @@
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
 #include "tests/evolution.hpp"
+#include "tests/shape_measures.hpp"
 
 namespace tanktread {
 namespace {

@@ -51,10 +51,10 @@ class LayerMedium {
   virtual ~LayerMedium() = default;
 
   /// Prepares the sums for the shape and the weights of `sources`.
-  virtual void set_sources(const LayerSources& sources);
+  virtual void set_sources(const LayerSources& /*sources*/) {}
 
   /// Divides the far sums of add() among the ranks, see TreeSum::share, if shares_sums() is true.
-  virtual void share(int part, int parts);
+  virtual void share(int /*part*/, int /*parts*/) {}
   /// Returns whether share() divides the far sums of add() among the ranks. If so, add() adds the part of this rank to the rows
   /// LayerTargets::far_rows, and the caller of the layer adds up the parts of all ranks. Otherwise, add() is called with far_rows equal to rows, and
   /// adds the sums over all nodes.
@@ -80,7 +80,7 @@ class LayerMedium {
   virtual bool add_row(LayerSources& sources, const Vec3& x0, std::vector<Mat3>& block) = 0;
 
   /// Adds to assembled rows `a` of a single layer at `sites` the part of the kernel that rows_include_images() does not cover.
-  virtual void add_remainder(const LayerSources& sources, std::span<const int> sites, Rows<double>& a) const;
+  virtual void add_remainder(const LayerSources& /*sources*/, std::span<const int> /*sites*/, Rows<double>& /*a*/) const {}
 
  private:
   std::vector<Vec3> itself_{Vec3::Zero()};

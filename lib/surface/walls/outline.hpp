@@ -133,14 +133,10 @@ class Outline {
 };
 
 /// Returns the cross-section of a tube: the exact circle or ellipse, the four straight sides of a rectangle, or the spline through the points of a
-/// file. Throws UserError if the file cannot be used.
+/// file, as described at `Tube/outline`. Throws UserError with a one-sentence message that names the file and, for a wrong line, its number.
 Outline outline(const TubeOptions& options);
 
 /// Returns the cross-section of a tube as cubic splines on `elements` elements.
 inline Outline outline(const TubeOptions& options, int elements) { return outline(options).spline(elements); }
-
-/// Returns the outline through the points of a file, as described at `Tube/outline`. Throws UserError with a one-sentence message that names the file
-/// and, for a wrong line, its number.
-Outline read_outline(const std::string& path);
 
 }  // namespace tanktread::surface

@@ -109,8 +109,6 @@ Outline through(const File& file) {
 
 }  // namespace
 
-Outline read_outline(const std::string& path) { return through(File("Tube", path)); }
-
 Outline outline(const TubeOptions& options) {
   if (options.section == "file") return through(File(options.list(), options.outline.value()));
   const Vec2 zero = Vec2::Zero();

@@ -5,6 +5,7 @@
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
 #include "surface/geometry.hpp"
+#include "tests/shape_measures.hpp"
 
 namespace tanktread::membrane {
 namespace {

@@ -8,6 +8,7 @@
 #include "surface/extremes.hpp"
 #include "surface/geometry.hpp"
 #include "surfaces.hpp"
+#include "tests/shape_measures.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -51,7 +52,7 @@ TEST(Deformation, OfAnEllipsoidInAnyPositionIsThatOfItsSectionAndItsMoments) {
   double before = 1;
   for (const int n : {6, 12, 24}) {
     const CubeMesh cube(n);
-    const Deformation d = Geometry(cube.space).deformation(cube.shape(shape));
+    const Deformation d = deformation(Geometry(cube.space), cube.shape(shape));
     const double error = std::abs(d.taylor_surface - (section.longest - section.shortest) / (section.longest + section.shortest));
     EXPECT_LT(error, before / 4);  // the error of the fit at two points
     before = error;
@@ -115,10 +116,10 @@ TEST(Deformation, TurnsWithTheEllipsoid) {
   ParticleShape shape;
   shape.shape = "ellipsoid";
   shape.semi_axes = Vec3(1.5, 1.0, 0.8);
-  const Deformation aligned = Geometry(cube.space).deformation(cube.shape(shape));
+  const Deformation aligned = deformation(Geometry(cube.space), cube.shape(shape));
   EXPECT_NEAR(aligned.inclination, 0, 1e-10);
   shape.orientation = Vec3(0, -25, 0);  // rotates x1 towards x3
-  const Deformation turned = Geometry(cube.space).deformation(cube.shape(shape));
+  const Deformation turned = deformation(Geometry(cube.space), cube.shape(shape));
   EXPECT_NEAR(turned.taylor_surface, aligned.taylor_surface, 1e-10);
   EXPECT_NEAR(turned.taylor_inertia, aligned.taylor_inertia, 1e-12);
   EXPECT_NEAR(turned.inclination, 25, 1e-9);
@@ -131,7 +132,7 @@ TEST(Deformation, AnUprightParticleIsInclinedBy90DegreesForAnyRounding) {
   shape.semi_axes = Vec3(0.8, 1.0, 1.5);
   for (const double tilt : {0.0, 1e-10, -1e-10}) {  // degrees; far above the round-off of the moments
     shape.orientation = Vec3(0, tilt, 0);
-    EXPECT_NEAR(Geometry(cube.space).deformation(cube.shape(shape)).inclination, 90, 1e-9) << tilt;
+    EXPECT_NEAR(deformation(Geometry(cube.space), cube.shape(shape)).inclination, 90, 1e-9) << tilt;
   }
 }
 
@@ -142,7 +143,7 @@ TEST(Deformation, InclinationIsUndefinedIfTheTwoSemiAxesInThePlaneAreEqual) {
       ParticleShape shape;
       shape.shape = "ellipsoid";
       shape.semi_axes = radius * axes;
-      return Geometry(cube.space).deformation(cube.shape(shape)).inclination;
+      return deformation(Geometry(cube.space), cube.shape(shape)).inclination;
     };
     EXPECT_TRUE(std::isnan(inclination(Vec3(1, 1, 1))));
     EXPECT_TRUE(std::isnan(inclination(Vec3(1 + 0.8e-6, 1, 1))));
@@ -172,7 +173,7 @@ TEST(Deformation, ExtentsAreAlsoFoundOnSidesAndCornersOfElements) {
   // The poles x_i = +-a_i of an aligned ellipsoid are at element corners for even n, in the middle of elements for odd n.
   for (const int n : {5, 6}) {
     const CubeMesh cube(n);
-    const Deformation d = Geometry(cube.space).deformation(cube.ellipsoid({1.3, 1.0, 0.8}));
+    const Deformation d = deformation(Geometry(cube.space), cube.ellipsoid({1.3, 1.0, 0.8}));
     EXPECT_NEAR(d.lengths[0], 2.6, 1e-3);
     EXPECT_NEAR(d.lengths[1], 2.0, 1e-3);
     EXPECT_NEAR(d.lengths[2], 1.6, 1e-3);

@@ -173,6 +173,13 @@ TEST(Outline, RejectsSidesThatCrossOrRunClockwise) {
   EXPECT_EQ(message({{0, 0}, {0, 1}, {1, 0}}), "The outline must run counter-clockwise, from x2 towards x3, but runs clockwise.");
 }
 
+Outline of_file(const std::string& path) {
+  TubeOptions options;
+  options.section = "file";
+  options.outline = path;
+  return outline(options);
+}
+
 /// A file that exists as long as the test.
 class OutlineFile : public testing::Test {
  protected:
@@ -180,7 +187,7 @@ class OutlineFile : public testing::Test {
 
   Outline read(const std::string& text) const {
     std::ofstream(path_) << text;
-    return read_outline(path_);
+    return of_file(path_);
   }
 
   /// Returns the error message after the name of the file.
@@ -240,7 +247,7 @@ TEST_F(OutlineFile, IsRejectedWithTheReason) {
   EXPECT_EQ(refusal(ring(40, 0.6)).substr(0, 50), " is open: its last point is 1.945 from its first, ");
   EXPECT_EQ(refusal("0,0,corner\n1,1,corner\n1,0,corner\n0,1,corner\n"), " crosses itself near (x2, x3) = (0.5, 0.5).");
   EXPECT_EQ(refusal("0,0,corner\n0,1,corner\n1,0,corner\n"), " must run counter-clockwise, from x2 towards x3, but runs clockwise.");
-  EXPECT_THROW(read_outline("no such file.csv"), UserError);
+  EXPECT_THROW(of_file("no such file.csv"), UserError);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "surface/geometry.hpp"
 #include "surface/partition.hpp"
 #include "surface/patch.hpp"
+#include "tests/shape_measures.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -143,7 +144,7 @@ TEST(PolarShapes, HaveThePositionAndOrientationOfTheDeck) {
     shape.orientation = Vec3(0, 0, 90);  // rotates the particle's x1 to x2
     shape.center = Vec3(1, 2, 3);
     const Net net = resting_shape(space, mesh, 0, shape);
-    const Deformation d = Geometry(space).deformation(net);
+    const Deformation d = deformation(Geometry(space), net);
     EXPECT_NEAR(d.lengths[0], 2, 1e-3);
     EXPECT_NEAR(d.lengths[1], 4, 1e-3);
     EXPECT_LT((measures(space, net).centroid - shape.center).norm(), 1e-5);

@@ -14,6 +14,7 @@
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
 #include "surfaces.hpp"
+#include "tests/shape_measures.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -113,7 +114,7 @@ TEST(Shapes, RedCellHasTheVolumeOfItsOutline) {
     const double error = std::abs(volume(cube.space, net) / exact - 1);
     EXPECT_LT(error, before / 8);
     before = error;
-    const Deformation d = Geometry(cube.space).deformation(net);
+    const Deformation d = deformation(Geometry(cube.space), net);
     EXPECT_NEAR(d.lengths[0], 2, n == 6 ? 2e-2 : 2e-3);
     if (n == 24) {
       EXPECT_LT(error, 1e-5);
@@ -178,7 +179,7 @@ TEST(Shapes, HaveThePositionAndOrientationOfTheDeck) {
   shape.orientation = Vec3(0, 0, 90);  // rotates the particle's x1 to x2
   shape.center = Vec3(1, 2, 3);
   const Net net = cube.shape(shape);
-  const Deformation d = Geometry(cube.space).deformation(net);
+  const Deformation d = deformation(Geometry(cube.space), net);
   EXPECT_NEAR(d.lengths[0], 2, 1e-3);
   EXPECT_NEAR(d.lengths[1], 4, 1e-3);
   EXPECT_LT((measures(cube.space, net).centroid - shape.center).norm(), 1e-12);
