@@ -67,7 +67,7 @@ bool intersects(const Body& body, const Post& post, const stokes::PeriodicCell& 
   return std::ranges::any_of(cell.around({2, 2, 2}), [&](const Vec3& image) {
     const surface::Patches patches(map, body.initial.rowwise() + (image - back).transpose());
     const surface::ElementBoxes boxes(patches);
-    return surface::distance(boxes.boxes()[0], its.boxes()[0]) < reach && surface::closest_points(boxes, its, 0.1 * reach, reach).gap < reach;
+    return boxes.whole().exteriorDistance(its.whole()) < reach && surface::closest_points(boxes, its, 0.1 * reach, reach).gap < reach;
   });
 }
 

@@ -21,11 +21,6 @@ namespace {
 using Box = ElementBoxes::Box;
 using Points = Eigen::Matrix3Xd;
 
-void widen(Box& box, const Box& by) {
-  box.low = box.low.min(by.low);
-  box.high = box.high.max(by.high);
-}
-
 Points bezier_points(const Patch& patch) {
   return Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>(patch.points, 3, patch.n_bezier());
 }
@@ -88,7 +83,7 @@ class PairSearch {
   }
 
   ClosestPoints nearest() {
-    push({distance(trees_[0]->boxes()[0], trees_[1]->boxes()[0]), {0, 0}, {}});
+    push({trees_[0]->whole().exteriorDistance(trees_[1]->whole()), {0, 0}, {}});
     while (!queue_.empty() && queue_.top().bound < best_.gap - tolerance_) {
       const Pair pair = queue_.top();
       queue_.pop();
@@ -120,12 +115,12 @@ class PairSearch {
       parts.bound = bound(parts);
       return push(parts);
     }
-    const auto extent = [&](int k) { return single(pair, k) ? -1 : (box(pair, k).high - box(pair, k).low).maxCoeff(); };
+    const auto extent = [&](int k) { return single(pair, k) ? -1 : box(pair, k).bounds.sizes().maxCoeff(); };
     const int opened = extent(0) > extent(1) ? 0 : 1;
     for (const int child : box(pair, opened).child) {
       Pair next = pair;
       next.box[opened] = child;
-      next.bound = distance(box(next, 0), box(next, 1));
+      next.bound = box(next, 0).bounds.exteriorDistance(box(next, 1).bounds);
       push(next);
     }
   }
@@ -190,30 +185,27 @@ ElementBoxes::ElementBoxes(const Patches& surface, std::vector<int> elements)
     : surface_(surface), order_(elements.empty() ? indices(surface.size()) : std::move(elements)) {
   for (int e = 0; e < surface.size(); ++e) {
     const Points points = bezier_points(surface[e]);
-    own_.push_back({points.rowwise().minCoeff(), points.rowwise().maxCoeff(), 0, 0});
+    own_.emplace_back(Vec3(points.rowwise().minCoeff()), Vec3(points.rowwise().maxCoeff()));
   }
   split(0, static_cast<int>(order_.size()));
 }
 
 int ElementBoxes::split(int first, int last) {
-  Box box{Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), Eigen::Array3d::Constant(-std::numeric_limits<double>::infinity()),
-          first, last};
-  for (int k = first; k < last; ++k) widen(box, own_[order_[k]]);
+  Box box{{}, first, last};
+  for (int k = first; k < last; ++k) box.bounds.extend(own_[order_[k]]);
   const int number = static_cast<int>(boxes_.size());
   boxes_.push_back(box);
   if (last - first == 1) return number;
   int longest;
-  (box.high - box.low).maxCoeff(&longest);
+  box.bounds.sizes().maxCoeff(&longest);
   const int middle = first + (last - first) / 2;
-  const auto centre = [&](int e) { return own_[e].low[longest] + own_[e].high[longest]; };
+  const auto centre = [&](int e) { return own_[e].min()[longest] + own_[e].max()[longest]; };
   std::nth_element(order_.begin() + first, order_.begin() + middle, order_.begin() + last, [&](int a, int b) { return centre(a) < centre(b); });
   const int left = split(first, middle), right = split(middle, last);
   boxes_[number].child[0] = left;
   boxes_[number].child[1] = right;
   return number;
 }
-
-double distance(const Box& a, const Box& b) { return (b.low - a.high).max(a.low - b.high).max(0.).matrix().norm(); }
 
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond) {
   return PairSearch(first, second, tolerance, beyond).nearest();

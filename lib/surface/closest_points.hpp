@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "base/types.hpp"
 #include "spline/space.hpp"
 #include "surface/patch.hpp"
@@ -22,7 +24,7 @@ struct ClosestPoints {
 class ElementBoxes {
  public:
   struct Box {
-    Eigen::Array3d low, high;
+    Eigen::AlignedBox3d bounds;
     int first, last;    ///< the box contains element(first) .. element(last - 1)
     int child[2] = {};  ///< indices in boxes() of the two halves of a box with several elements
   };
@@ -32,6 +34,7 @@ class ElementBoxes {
 
   const Patches& surface() const { return surface_; }
   const std::vector<Box>& boxes() const { return boxes_; }  ///< all boxes of the tree; the first one is the root
+  const Eigen::AlignedBox3d& whole() const { return boxes_[0].bounds; }
   int element(int k) const { return order_[static_cast<std::size_t>(k)]; }
 
  private:
@@ -39,11 +42,9 @@ class ElementBoxes {
 
   const Patches& surface_;
   std::vector<int> order_;
-  std::vector<Box> own_, boxes_;  // own_: bounding box of each element. boxes_: all bounding boxes of the tree
+  std::vector<Eigen::AlignedBox3d> own_;  // bounding box of each element
+  std::vector<Box> boxes_;
 };
-
-/// Returns a lower bound of the distance between the contents of two boxes.
-double distance(const ElementBoxes::Box& a, const ElementBoxes::Box& b);
 
 /// Returns the closest points of two surfaces if their distance is below `beyond`; otherwise returns `beyond` as the distance. Uses branch and bound:
 /// divides the pair of boxes, elements or parts of elements with the smallest lower bound of the distance, until no pair can be closer than the best

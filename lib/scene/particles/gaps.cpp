@@ -88,18 +88,15 @@ class Pairs {
   }
 
  private:
-  const surface::ElementBoxes::Box& box(std::size_t p) const { return placed_[p]->boxes.boxes()[0]; }
-  double size(std::size_t p) const { return (box(p).high - box(p).low).matrix().norm(); }
+  const Eigen::AlignedBox3d& box(std::size_t p) const { return placed_[p]->boxes.whole(); }
+  double size(std::size_t p) const { return box(p).diagonal().norm(); }
 
   template <class Act>
   void each(const std::optional<stokes::PeriodicCell>& cell, const Act& act) const {
     for (std::size_t p = 0; p < members_.size(); ++p)
       for (std::size_t q = 0; q <= p; ++q)
-        for (const Vec3& beyond : images(x_[q], x_[p], q == p, cell)) {
-          surface::ElementBoxes::Box moved = box(p);
-          moved.low += beyond.array(), moved.high += beyond.array();
-          act(Pair{distance(box(q), moved), q, p, beyond});
-        }
+        for (const Vec3& beyond : images(x_[q], x_[p], q == p, cell))
+          act(Pair{box(q).exteriorDistance(box(p).translated(beyond)), q, p, beyond});
   }
 
   const std::vector<Member>& members_;

@@ -82,10 +82,6 @@ std::pair<TubeWall, std::vector<Vec2>> woven(DuctKind kind, const Outline& secti
   return {std::move(wall), std::move(ring)};
 }
 
-}  // namespace
-
-namespace {
-
 TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std::vector<double>& knots, const std::vector<double>& periodic) {
   auto [wall, ring] = woven(DuctKind::straight_tube, section, knots, azimuthal_elements, periodic);
   wall.space.description = "tube, " + wall.space.description;
