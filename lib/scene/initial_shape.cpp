@@ -16,7 +16,6 @@
 #include "spline/transfer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
-#include "surface/stress_free.hpp"
 
 namespace tanktread {
 

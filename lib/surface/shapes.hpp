@@ -1,6 +1,6 @@
 #pragma once
-// Control nets of resting shapes, fitted with the order of accuracy of the space, and a smooth map from the surface of a cube to the sphere as a
-// start for fits.
+// Control nets of resting and stress-free shapes, fitted with the order of accuracy of the space, and a smooth map from the surface of a cube to the
+// sphere as a start for fits.
 
 #include "base/types.hpp"
 #include "spline/polar.hpp"
@@ -64,6 +64,15 @@ Net placed_again(const Net& net, const ParticleShape& from, const ParticleShape&
 /// Returns true if placed_again() can convert the resting shape `from` to the resting shape `to`, because `to` is a linear image of `from`. Shapes
 /// with different words are not compared: the result is false, even for a sphere and an ellipsoid.
 bool is_linear_image(const ParticleShape& from, const ParticleShape& to);
+
+/// Returns the control net of a stress-free oblate spheroid (a sphere if the reduced volume is 1) on the mesh of `unit_sphere`. The spheroid has the
+/// area, the centre and the axis of the resting `shape`. Each point of the spheroid corresponds to the point of the resting shape at the same
+/// azimuth, on the parallel that encloses the same area with the equator. So every part of the membrane has the same area in both shapes, and only
+/// the form of the part differs.
+///
+/// The reduced volume v = 6 sqrt(pi) V/A^(3/2) is above 0 and at most 1. The shape must have an axis of revolution: a sphere (axis: body-fixed x3), a
+/// spheroid, a red cell. Otherwise throws UserError.
+Net stress_free_spheroid(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape, double reduced_volume);
 
 /// Returns the surface read from a file. Its centroid is moved to the centre given in the deck, and the surface is rotated about this centre.
 Net imported_shape(const ParticleShape& shape);

@@ -1,4 +1,4 @@
-#include "surface/stress_free.hpp"
+#include "surface/shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 
 #include "base/errors.hpp"
 #include "quadrature/gauss.hpp"
-#include "surface/shapes.hpp"
 
 namespace tanktread::surface {
 

@@ -53,10 +53,8 @@ struct ImageOfStress {
 
 template <int Degree>
 struct Sums {
-  static int bernstein(const PointTable& table) { return Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1); }
-
   static void single_sum(const PointTable& table, const double* x, const double* f, const Register* weight, const double* x0, double* u) {
-    const int n_b = bernstein(table);
+    const int n_b = n_bernstein<Degree>(table);
     const Register z = Register{} - x0[2];
     Register total[3] = {};
     for (int k = 0; k < table.packs(); ++k) {
@@ -68,7 +66,7 @@ struct Sums {
   }
 
   static void single_moments(const PointTable& table, const double* x, const Register* weight, const double* x0, Register* g, double* moment) {
-    const int n_b = bernstein(table);
+    const int n_b = n_bernstein<Degree>(table);
     const Register z = Register{} - x0[2];
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);
@@ -84,7 +82,7 @@ struct Sums {
   }
 
   static void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
-    const int n_b = bernstein(table);
+    const int n_b = n_bernstein<Degree>(table);
     const Register z = Register{} - x0[2];
     Register total[3] = {};
     for (int k = 0; k < table.packs(); ++k) {
@@ -98,7 +96,7 @@ struct Sums {
   }
 
   static void double_moments(const PointTable& table, const double* x, const double* x0, Register* g, double* moment) {
-    const int n_b = bernstein(table);
+    const int n_b = n_bernstein<Degree>(table);
     const Register z = Register{} - x0[2];
     for (int k = 0; k < table.packs(); ++k) {
       const Points<Degree> points(table, k);

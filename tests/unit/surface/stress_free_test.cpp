@@ -1,4 +1,4 @@
-#include "surface/stress_free.hpp"
+#include "surface/shapes.hpp"
 
 #include <gtest/gtest.h>
 
