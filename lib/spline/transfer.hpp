@@ -11,8 +11,8 @@ namespace tanktread::spline {
 
 struct Transferred {
   Net net;
-  /// largest |new field - old field| at the Gauss points of the changed elements; about 1e-13 (round-off) if the spaces are nested and the field is of
-  /// order 1
+  /// largest |new field - old field| at the Gauss points of the changed elements; about 1e-13 (round-off) if the spaces are nested and the field is
+  /// of order 1
   double residual;
 };
 

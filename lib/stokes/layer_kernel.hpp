@@ -14,8 +14,8 @@ struct KernelProperties {
   bool is_steep;           ///< the integrand grows like 1/r^2 with the distance r from targets on other surfaces, otherwise like 1/r
   /// Identities of a closed surface (stokes/closed_surface_identities.hpp) subtract the singularity of the kernel if there are no singular rules.
   bool has_identities;
-  /// Tolerance of quadrature rules divided by the tolerance of the deck. Rules are chosen for the kernel of the single layer. The kernel of the double
-  /// layer is singular by one order more, so that its error with the same rule is up to five times as large (tests/verify/layers.cpp).
+  /// Tolerance of quadrature rules divided by the tolerance of the deck. Rules are chosen for the kernel of the single layer. The kernel of the
+  /// double layer is singular by one order more, so that its error with the same rule is up to five times as large (tests/verify/layers.cpp).
   double tolerance_factor;
   /// Tolerance of sums by clusters divided by the tolerance of quadrature rules. For the double layer, the tolerance of clusters is half of the
   /// tolerance of the deck, with which the measured error is a quarter of the deck's tolerance.
