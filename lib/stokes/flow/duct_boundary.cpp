@@ -9,6 +9,7 @@
 
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
+#include "surface/spline_lines.hpp"
 
 namespace tanktread::stokes {
 
@@ -85,56 +86,23 @@ std::vector<double> divided(const std::vector<double>& knots, int elements) {
 
 OutlineSpace::OutlineSpace(const Outline& outline, int elements) : outline_(outline) {
   const auto share = shares(outline, elements);
+  surface::Line line;
   for (int k = 0; k < outline.n_sides(); ++k) {
     crowding_.push_back({exponent(outline.corner_angle(k)), exponent(outline.corner_angle((k + 1) % outline.n_sides()))});
     const auto knots = divided(own_knots(outline.side(k), crowding_.back()), share[static_cast<std::size_t>(k)]);
-    surface::closed(outline.side(k)) ? add_closed(k, knots) : add_open(k, knots);
-  }
-}
-
-/// Adds an element. `knots`: the eight knots around the element. The element lies between the fourth and the fifth knot.
-void OutlineSpace::add_element(int side, double begin, double end, const std::array<int, 4>& functions,
-                               const std::array<double, 8>& knots) {
-  OutlineElement element{side, begin, end, functions, {}};
-  for (std::size_t a = 0; a < 4; ++a) {
-    const auto b = spline::b_spline_on({knots[a], knots[a + 1], knots[a + 2], knots[a + 3], knots[a + 4]}, begin, end);
-    for (std::size_t i = 0; i < 4; ++i) element.bernstein(static_cast<int>(a), static_cast<int>(i)) = b[i];
-  }
-  elements_.push_back(element);
-}
-
-void OutlineSpace::add_closed(int side, const std::vector<double>& knots) {
-  const int m = static_cast<int>(knots.size()) - 1, first = size();
-  const double period = knots.back() - knots.front();
-  const auto knot = [&](int i) {
-    const int turn = i < 0 ? -1 : i >= m ? 1 : 0;
-    return knots[static_cast<std::size_t>(i - turn * m)] + turn * period;
-  };
-  for (int e = 0; e < m; ++e) {
-    std::array<int, 4> functions;
-    std::array<double, 8> around;
-    for (int a = 0; a < 4; ++a) functions[static_cast<std::size_t>(a)] = first + (e - 1 + a + m) % m;
-    for (int i = 0; i < 8; ++i) around[static_cast<std::size_t>(i)] = knot(e - 3 + i);
-    sites_.push_back({side, knot(e), static_cast<int>(elements_.size())});
-    add_element(side, knot(e), knot(e + 1), functions, around);
-  }
-}
-
-void OutlineSpace::add_open(int side, const std::vector<double>& knots) {
-  const int m = static_cast<int>(knots.size()) - 1, first = size(), first_element = static_cast<int>(elements_.size());
-  const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, m))]; };
-  for (int e = 0; e < m; ++e) {
-    std::array<double, 8> around;
-    for (int i = 0; i < 8; ++i) around[static_cast<std::size_t>(i)] = knot(e - 3 + i);
-    add_element(side, knot(e), knot(e + 1), {first + e, first + e + 1, first + e + 2, first + e + 3}, around);
-  }
-  std::vector<double> greville;
-  for (int i = -1; i < m + 2; ++i) greville.push_back((knot(i - 1) + knot(i) + knot(i + 1)) / 3);
-  greville.front() = (greville[0] + greville[1]) / 2;
-  greville.back() = (greville[greville.size() - 1] + greville[greville.size() - 2]) / 2;
-  for (const double t : greville) {
-    const auto after = std::upper_bound(knots.begin() + 1, knots.end() - 1, t);
-    sites_.push_back({side, t, first_element + static_cast<int>(after - knots.begin()) - 1});
+    const bool closed = surface::closed(outline.side(k));
+    const std::size_t first_site = line.sites.size();
+    add(line, knots, closed, !closed);
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+      const auto& [functions, extraction] = line.pieces[elements_.size()];
+      if (closed) sites_.push_back({k, knots[i], static_cast<int>(elements_.size())});
+      elements_.push_back({k, knots[i], knots[i + 1], functions, extraction});
+    }
+    for (std::size_t i = first_site; i < line.sites.size() && !closed; ++i) {
+      const auto& [element, local] = line.sites[i].back();
+      const auto& [side, begin, end, functions, bernstein] = elements_[static_cast<std::size_t>(element)];
+      sites_.push_back({k, begin + local * (end - begin), element});
+    }
   }
 }
 

@@ -56,10 +56,6 @@ class OutlineSpace {
   const surface::Outline& outline() const { return outline_; }
 
  private:
-  void add_closed(int side, const std::vector<double>& knots);
-  void add_open(int side, const std::vector<double>& knots);
-  void add_element(int side, double begin, double end, const std::array<int, 4>& functions, const std::array<double, 8>& knots);
-
   surface::Outline outline_;
   std::vector<Crowding> crowding_;  // one per side
   std::vector<OutlineElement> elements_;
