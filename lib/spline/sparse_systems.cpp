@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <Eigen/IterativeLinearSolvers>
-
 namespace tanktread::spline {
 
 namespace {
@@ -50,27 +48,19 @@ Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& loca
   return out;
 }
 
-struct IncompleteSolver::Impl {
-  Eigen::BiCGSTAB<Eigen::SparseMatrix<double, Eigen::RowMajor>, Eigen::IncompleteLUT<double>> solver;
-};
-
-IncompleteSolver::IncompleteSolver() : impl_(std::make_unique<Impl>()) {
-  impl_->solver.preconditioner().setDroptol(dropped);
-  impl_->solver.preconditioner().setFillfactor(fill);
-  impl_->solver.setTolerance(1e-14);
-  impl_->solver.setMaxIterations(30);
+IncompleteSolver::IncompleteSolver() {
+  solver_.preconditioner().setDroptol(dropped);
+  solver_.preconditioner().setFillfactor(fill);
+  solver_.setTolerance(1e-14);
+  solver_.setMaxIterations(30);
 }
-IncompleteSolver::~IncompleteSolver() = default;
-IncompleteSolver::IncompleteSolver(IncompleteSolver&&) noexcept = default;
 
 bool IncompleteSolver::factor(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a) {
-  impl_->solver.compute(a);
-  return impl_->solver.info() == Eigen::Success;
+  solver_.compute(a);
+  return solver_.info() == Eigen::Success;
 }
 
-Eigen::VectorXd IncompleteSolver::solve(const Eigen::VectorXd& b) const { return impl_->solver.solve(b); }
-Eigen::VectorXd IncompleteSolver::solve(const Eigen::VectorXd& b, const Eigen::VectorXd& start) const {
-  return impl_->solver.solveWithGuess(b, start);
-}
+Eigen::VectorXd IncompleteSolver::solve(const Eigen::VectorXd& b) const { return solver_.solve(b); }
+Eigen::VectorXd IncompleteSolver::solve(const Eigen::VectorXd& b, const Eigen::VectorXd& start) const { return solver_.solveWithGuess(b, start); }
 
 }  // namespace tanktread::spline

@@ -1,10 +1,10 @@
 #pragma once
 // Assembly of sparse symmetric matrices from element matrices, and an iterative solver for sparse linear systems.
 
-#include <memory>
 #include <span>
 #include <vector>
 
+#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 
 namespace tanktread::spline {
@@ -25,8 +25,6 @@ Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& loca
 class IncompleteSolver {
  public:
   IncompleteSolver();
-  ~IncompleteSolver();
-  IncompleteSolver(IncompleteSolver&&) noexcept;
 
   /// Factors the square matrix A. A must exist as long as solve() is called, because the solver keeps a reference to it. Returns whether the
   /// factorisation succeeded.
@@ -38,8 +36,7 @@ class IncompleteSolver {
   Eigen::VectorXd solve(const Eigen::VectorXd& b, const Eigen::VectorXd& start) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Eigen::BiCGSTAB<Eigen::SparseMatrix<double, Eigen::RowMajor>, Eigen::IncompleteLUT<double>> solver_;
 };
 
 }  // namespace tanktread::spline

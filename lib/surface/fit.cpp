@@ -26,8 +26,8 @@ LeastSquaresFit::LeastSquaresFit(const spline::Space& space) : map_(space) {
     area_.push_back(element.size[0] * element.size[1]);
     local.push_back({element.points, &values.back(), area_.back()});
   }
-  matrix_ = std::make_unique<Eigen::SparseMatrix<double, Eigen::RowMajor>>(spline::assemble(space.n_points, local));
-  if (!solver_.factor(*matrix_)) throw std::logic_error("the functions of the spline space are linearly dependent");
+  matrix_ = spline::assemble(space.n_points, local);
+  if (!solver_.factor(matrix_)) throw std::logic_error("the functions of the spline space are linearly dependent");
 }
 
 Net LeastSquaresFit::fit_image(const Net& net, const std::function<Vec3(const Vec3&)>& f) const {
@@ -43,7 +43,7 @@ Net LeastSquaresFit::fit_image(const Net& net, const std::function<Vec3(const Ve
   }
   Net fitted = net;
   for (int c = 0; c < 3; ++c) fitted.col(c) = solver_.solve(right.col(c), net.col(c));
-  if (!((*matrix_ * fitted - right).norm() <= 1e-10 * right.norm())) throw std::logic_error("a least-squares fit did not converge");
+  if (!((matrix_ * fitted - right).norm() <= 1e-10 * right.norm())) throw std::logic_error("a least-squares fit did not converge");
   return fitted;
 }
 

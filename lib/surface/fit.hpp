@@ -34,7 +34,7 @@ class LeastSquaresFit {
   BezierMap map_;
   std::map<int, Table> tables_;  ///< tables by degree
   std::vector<double> area_;
-  std::unique_ptr<const Eigen::SparseMatrix<double, Eigen::RowMajor>> matrix_;  ///< on the heap, because the solver keeps its address
+  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix_;
   spline::IncompleteSolver solver_;
 };
 
