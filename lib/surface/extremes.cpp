@@ -82,17 +82,17 @@ Vec2 start(const Patch& patch, int c, double sign) {
   return Vec2(highest % (cells + 1), highest / (cells + 1)) / cells;
 }
 
-/// Returns the position with the largest sign * x_c on the surface, and the largest sign * x_c itself, which has a smaller round-off error.
+/// Returns the position with the largest sign * x_c on the surface, and this largest value. Elements with NaN are left out.
 std::pair<Vec3, double> highest(const Patches& surface, int c, double sign) {
   std::pair<Vec3, double> best{Vec3::Zero(), -infinity};
-  std::vector<std::pair<double, int>> bounds;  // upper bound of sign * x_c on each element
+  std::vector<std::pair<double, int>> bounds;  // upper bound of sign * x_c on each element that may exceed the corners found so far
   for (int e = 0; e < surface.size(); ++e) {
     const Patch& patch = surface[e];
     for (const int corner : {0, patch.degree, patch.n_bezier() - 1 - patch.degree, patch.n_bezier() - 1})
       if (const double here = sign * patch.coordinate(c, corner); here > best.second)
         best = {{patch.coordinate(0, corner), patch.coordinate(1, corner), patch.coordinate(2, corner)}, here};
     const Range range = hull(patch, c);
-    bounds.emplace_back(sign > 0 ? range.largest : -range.smallest, e);
+    if (const double bound = sign > 0 ? range.largest : -range.smallest; bound > best.second) bounds.emplace_back(bound, e);
   }
   std::ranges::sort(bounds, std::ranges::greater());
   for (const auto& [bound, e] : bounds) {
