@@ -58,6 +58,15 @@ void weigh_normals(int n, const double* a, const double* gauss, double* __restri
   }
 }
 
+void mark_within(int n, const double* x, const double* y, const double* z, const double* reach, const double* target,
+                 char* __restrict within) {
+  const double tx = target[0], ty = target[1], tz = target[2];
+  for (int k = 0; k < n; ++k) {
+    const double rx = x[k] - tx, ry = y[k] - ty, rz = z[k] - tz;
+    within[k] = rx * rx + ry * ry + rz * rz < reach[k];
+  }
+}
+
 }  // namespace INSTRUCTIONS
 
 KERNEL(void, extract, (int n_b, int functions, const int* points, const double* extraction, const double* net, double* bezier),
@@ -65,5 +74,7 @@ KERNEL(void, extract, (int n_b, int functions, const int* points, const double* 
 KERNEL(void, combine, (int n_b, int n, const double* table, const double* coefficient, double* value), (n_b, n, table, coefficient, value))
 KERNEL(void, weigh_normals, (int n, const double* tangents, const double* gauss, double* nx, double* ny, double* nz),
        (n, tangents, gauss, nx, ny, nz))
+KERNEL(void, mark_within, (int n, const double* x, const double* y, const double* z, const double* reach, const double* target, char* within),
+       (n, x, y, z, reach, target, within))
 
 }  // namespace tanktread::stokes

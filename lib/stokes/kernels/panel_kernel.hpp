@@ -15,4 +15,7 @@ void combine(int n_b, int n, const double* table, const double* coefficient, dou
 /// component c of a2 is tangents[n (3 + c) + k].
 void weigh_normals(int n, const double* tangents, const double* gauss, double* nx, double* ny, double* nz);
 
+/// Sets within[k] to 1 if the squared distance of the point (x[k], y[k], z[k]) from the target is below reach[k], and to 0 otherwise, k = 0 .. n - 1.
+void mark_within(int n, const double* x, const double* y, const double* z, const double* reach, const double* target, char* within);
+
 }  // namespace tanktread::stokes

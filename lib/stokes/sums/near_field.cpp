@@ -66,9 +66,11 @@ NearField::NearField(const Panels& panels, double tolerance, int smooth_order, b
       demand_{0, 0, tolerance, smooth_order},
       steep_(steep),
       largest_order_(1 + quadrature::order_for(tolerance, quadrature::ellipse(0, 1))),
-      views_(panels.size()) {
+      views_(panels.size()),
+      reach_(panels.size()) {
   n_surfaces_ = connected(panels, surface_);
   across_gaps_ = off_surface || n_surfaces_ > 1;
+  for (auto& c : centre_) c.resize(panels.size());
 }
 
 void NearField::view(int e) {
@@ -105,20 +107,21 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
     const double longest = std::max(view.flat.u.norm(), view.flat.v.norm());
     const auto& strictest = across_gaps_ ? view.across : view.demand;
     const double reach = view.radius + view.bulge + clearance(view.area, longest, strictest, panels_[e].table->order);
-    view.reach = reach * reach;
+    reach_[e] = reach * reach;
   }
-  std::vector<Ball> balls;
   for (int e = 0; e < panels_.size(); ++e) {
     if (images.is_image(e)) {
       const surface::Reflection& image = images.reflections[images.image[e]];
-      views_[e] = views_[images.source[e]];
+      const int source = images.source[e];
+      views_[e] = views_[source];
       quadrature::Patch& flat = views_[e].flat;
       flat = {image(flat.centre), image.of_vector(flat.u), image.of_vector(flat.v)};
       views_[e].normal = flat.u.cross(flat.v).normalized();
+      reach_[e] = reach_[source];
     }
-    balls.push_back({views_[e].flat.centre, views_[e].reach, e});
+    for (int c = 0; c < 3; ++c) centre_[c][e] = views_[e].flat.centre[c];
   }
-  vicinity_.set_balls(balls);
+  vicinity_.set_points(panels_.size(), centre_[0].data(), centre_[1].data(), centre_[2].data(), reach_.data());
 }
 
 bool NearField::on_same_surface(int e, std::span<const SelfPair> self_pairs) const {
@@ -147,7 +150,7 @@ bool NearField::far_enough(int e, const Vec3& target, std::span<const SelfPair> 
 void NearField::list(const Vec3& target, std::span<const SelfPair> self_pairs, std::vector<int>& near) {
   near.clear();
   suspects_.clear();
-  vicinity_.list(target, suspects_);
+  vicinity_.list(target.data(), suspects_);
   for (const int e : suspects_) {
     const bool on_it = std::any_of(self_pairs.begin(), self_pairs.end(), [&](const SelfPair& pair) { return pair.panel == e; });
     if (!on_it && !far_enough(e, target, self_pairs)) near.push_back(e);

@@ -50,7 +50,6 @@ class NearField {
     quadrature::Patch flat;
     Vec3 normal;  ///< normal of the planar approximation
     double area = 0, bulge = 0, radius = 0;
-    double reach = 0;  ///< squared distance from the centre beyond which the far rule reaches the tolerance
     quadrature::Demand demand, across;  ///< demand: accuracy required for targets on the closed surface of the panel. across: accuracy required for
                                         ///< all other targets
   };
@@ -67,6 +66,8 @@ class NearField {
   int largest_order_;
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;
+  std::vector<double> centre_[3], reach_;  ///< centre_: centre of each panel. reach_: squared distance from the centre beyond which the far rule
+                                           ///< reaches the tolerance
   Vicinity vicinity_;
   std::vector<int> suspects_;
   std::map<std::pair<int, int>, PointTable> whole_;  ///< tensor Gauss rules on the whole panel, by (degree, order)

@@ -67,13 +67,11 @@ void NodalOperator::share(int part, int parts, std::vector<int> everybody) {
 
 void NodalOperator::find_near(const Surface& surface, double reach) {
   const Eigen::VectorXd square = reach * reach * surface.areas;
-  std::vector<stokes::Ball> balls;
-  for (std::size_t k = 0; k < node_[0].size(); ++k) balls.push_back({{node_[0][k], node_[1][k], node_[2][k]}, square[k], static_cast<int>(k)});
   stokes::Vicinity vicinity;
-  vicinity.set_balls(balls);
+  vicinity.set_points(static_cast<int>(square.size()), node_[0].data(), node_[1].data(), node_[2].data(), square.data());
   near_ = {};
   for (const Vec3& x0 : at_) {
-    vicinity.list(x0, near_.point);
+    vicinity.list(x0.data(), near_.point);
     std::sort(near_.point.begin() + static_cast<std::ptrdiff_t>(near_.first.back()), near_.point.end());
     near_.first.push_back(near_.point.size());
   }
