@@ -66,7 +66,8 @@ class Load {
   virtual void add_tangent(const Net& /*dx*/, Net& /*change*/) const {}
   virtual void add_global_tangent(const Net& /*dx*/, Net& /*change*/) const {}
 
-  /// Returns whether the load is symmetric under this image. If not, this symmetry is not used to reduce the number of unknowns.
+  /// Returns whether the load is symmetric under this image. If not, this symmetry is not used to reduce the number of unknowns. The image of a force
+  /// is Reflection::of_vector, the image of a torque Reflection::of_axial.
   virtual bool admits(const surface::Image&) const { return false; }
 
   /// Returns the dimensionless conditions that a rigid motion U + W x r must satisfy so that the load moves with the particle. The search for steady
@@ -85,8 +86,18 @@ class Load {
 
 using LoadParts = deck::Parts<std::unique_ptr<Load>(const ParticleSurface&)>;
 
-/// Returns the conditions W x f = 0 on the angular velocity W of a rigid motion, for a force with the fixed direction f. If f = 0, there are no
-/// conditions.
+/// Returns all conditions of `parts`.
+inline RigidConditions stacked(std::span<const RigidConditions> parts) {
+  RigidConditions all(0, 6);
+  for (const RigidConditions& part : parts) {
+    all.conservativeResize(all.rows() + part.rows(), 6);
+    all.bottomRows(part.rows()) = part;
+  }
+  return all;
+}
+
+/// Returns the conditions W x f = 0 on the angular velocity W of a rigid motion, for a force or torque with the fixed direction f. If f = 0, there
+/// are no conditions.
 inline RigidConditions fixed_direction(const Vec3& f) {
   if (f.norm() == 0) return RigidConditions(0, 6);
   const Vec3 d = f.normalized();

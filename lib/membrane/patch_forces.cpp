@@ -117,13 +117,9 @@ bool PatchLoad::admits(const surface::Image& image) const {
 }
 
 RigidConditions PatchLoad::rigid_conditions() const {
-  RigidConditions all(0, 6);
-  for (const PatchForce& one : forces_) {
-    const RigidConditions more = fixed_direction(one.force);
-    all.conservativeResize(all.rows() + more.rows(), 6);
-    all.bottomRows(more.rows()) = more;
-  }
-  return all;
+  std::vector<RigidConditions> all;
+  for (const PatchForce& one : forces_) all.push_back(fixed_direction(one.force));
+  return stacked(all);
 }
 
 }  // namespace tanktread::membrane

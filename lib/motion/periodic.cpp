@@ -30,7 +30,8 @@ void PeriodicOptions::declare(deck::Section& section) {
   section.key("turn", turn, deck::between(-360, 360), "degrees",
               "angle, in degrees, about the x2 axis by which the shape at the end of Periodic/period is rotated relative to the initial "
               "shape; positive from x3 towards x1. The shape is rotated back by this angle before it is compared with the initial shape. "
-              "With 180, Periodic/period is the time of half a revolution in shear flow, which halves the cost");
+              "With 180, Periodic/period is the time of half a revolution in shear flow, which halves the cost. The rotation must not change "
+              "the flow, the walls, the lattice, and the forces and torques on the particle");
   section.key("tolerance", tolerance, deck::between(1e-10, 1e-2), "1",
               "largest allowed difference between the shape and its return after a period: root mean square displacement of the control "
               "points divided by R_C, the radius of the sphere with the particle's volume; about ten times Time/tolerance is suitable. If "

@@ -25,7 +25,7 @@ namespace tanktread::motion {
 struct PeriodicOptions {
   bool present = false;       ///< true if the deck has the section Periodic
   double period = 0;          ///< expected period
-  double turn = 0;            ///< rotation of the shape about x2 after a period, degrees
+  double turn = 0;            ///< rotation of the shape about x2 after a period, degrees; must not change flow, walls and loads
   double tolerance = 1e-5;    ///< tolerance of the distance between start and return, in the norm of `Time/tolerance`
   int iterations = 20;        ///< largest number of iterations
   double difference = 1e-2;   ///< size of the displacements in the finite differences for the multipliers, divided by the particle radius R_C

@@ -36,6 +36,7 @@ struct Reflection {
   Vec3 signs = Vec3::Ones(), middle = Vec3::Zero();
 
   Vec3 of_vector(const Vec3& v) const { return signs.cwiseProduct(v); }
+  Vec3 of_axial(const Vec3& w) const { return signs.prod() * of_vector(w); }  ///< image of an axial vector, such as an angular velocity or a torque
   Vec3 operator()(const Vec3& x) const { return middle + of_vector(x - middle); }
 };
 

@@ -124,7 +124,7 @@ void Capsule::restore_constraints(Net& x) {
 std::vector<Net> Capsule::relabellings(const Net& x) {
   std::vector<int> axes;
   for (int k = 0; k < 3; ++k) {
-    const auto keeps = [k](const surface::Image& g) { return g.signs.prod() * g.signs[k] > 0; };
+    const auto keeps = [k](const surface::Image& g) { return surface::Reflection{g.signs}.of_axial(Vec3::Unit(k))[k] > 0; };
     if (std::ranges::all_of(symmetry().images(), keeps)) axes.push_back(k);
   }
   std::vector<Net> all;

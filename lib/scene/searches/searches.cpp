@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <Eigen/SVD>
 
 #include "base/errors.hpp"
@@ -16,17 +19,16 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the linear conditions on a common rigid motion of all particles under which every load moves with its particle (Load::rigid_conditions),
-/// one row per condition.
+/// Returns the linear conditions on a common rigid motion of all particles under which every load (Load::rigid_conditions), and the force and torque
+/// on every rigid body, move with their particle, one row per condition.
 membrane::RigidConditions conditions(std::span<const coupling::Particle> particles) {
-  membrane::RigidConditions all(0, 6);
-  for (const coupling::Particle& particle : particles)
-    for (const auto& load : particle.loads) {
-      const membrane::RigidConditions more = load->rigid_conditions();
-      all.conservativeResize(all.rows() + more.rows(), 6);
-      all.bottomRows(more.rows()) = more;
-    }
-  return all;
+  std::vector<membrane::RigidConditions> all;
+  for (const coupling::Particle& particle : particles) {
+    for (const auto& load : particle.loads) all.push_back(load->rigid_conditions());
+    if (particle.rigid)
+      for (const Vec3& fixed : {particle.rigid->force, particle.rigid->torque}) all.push_back(membrane::fixed_direction(fixed));
+  }
+  return membrane::stacked(all);
 }
 
 /// Returns the lattice vectors of a periodic scene. Returns none if the scene is not periodic, or if it has a tube or channel.
@@ -38,12 +40,50 @@ std::vector<Vec3> lattice_vectors(const SharedOptions& shared) {
   return all;
 }
 
-/// Returns true if the flow has a uniform gradient with nonzero vorticity.
-bool turns(const SharedOptions& shared) {
-  if (shared.flow.type == "duct") return false;
-  const stokes::AmbientFlow ambient(shared.flow);
+/// Returns what turns a particle at all times: the torque on it, or a flow with a uniform gradient and nonzero vorticity. Returns nothing if neither
+/// does. A load that turns a particle must be asked here.
+std::optional<Chosen> turned_by(const ParticleScene& particle_scene) {
+  if (const auto& torque = particle_scene.particle.torque; torque && !torque->isZero(0)) return "Particle/torque";
+  if (particle_scene.flow.type == "duct") return {};
+  const stokes::AmbientFlow ambient(particle_scene.flow);
   const Mat3 gradient = ambient.gradient(Vec3::Zero());
-  return ambient.affine() && (gradient - gradient.transpose()).norm() > 1e-12 * gradient.norm();
+  if (!ambient.affine() || (gradient - gradient.transpose()).norm() <= 1e-12 * gradient.norm()) return {};
+  return particle_scene.flow_choice();
+}
+
+/// Returns true if the flow, in all its directions over time, has another velocity gradient after the rotation about the origin.
+bool changes(const stokes::AmbientFlow& ambient, const Mat3& rotation) {
+  for (const stokes::AmbientFlow& flow : ambient.rotated_copies())
+    for (const Vec3& x : {Vec3(0, 0, 0), Vec3(0.1, 0.5, -0.4), Vec3(0.2, -0.1, 0.3)}) {
+      const Mat3 gradient = flow.gradient(x);
+      if ((flow.gradient(rotation * x) - rotation * gradient * rotation.transpose()).norm() > 1e-9 * gradient.norm()) return true;
+    }
+  return false;
+}
+
+/// Returns the choice of the deck that the rotation by Periodic/turn about x2 changes: a duct, posts, a wall, a lattice, the flow, or a force or
+/// torque. Returns nothing if the rotation is the identity or changes none of them. The forces of registered loads are not known.
+std::optional<Chosen> changed_by_turn(const ParticleScene& one) {
+  const Mat3 rotation = Eigen::AngleAxisd(one.periodic.turn * std::numbers::pi / 180, Vec3::UnitY()).toRotationMatrix();
+  if (rotation.isIdentity()) return {};
+  const auto moves = [&](const Vec3& vector) { return (rotation * vector - vector).norm() > 1e-9 * vector.norm(); };
+  if (one.tube.present) return one.duct_choice();
+  if (!one.posts.empty()) return "Particle/shape `cylinder`";
+  const std::vector<stokes::PlaneWall> walls = one.wall.planes();
+  const auto is_wall = [&](const stokes::PlaneWall& image) {
+    return std::ranges::any_of(walls, [&](const stokes::PlaneWall& wall) {
+      return (wall.normal() - rotation * image.normal()).norm() < 1e-9 && std::abs(wall.height(rotation * image.point())) < 1e-9 * one.radius();
+    });
+  };
+  if (!std::ranges::all_of(walls, is_wall)) return "Wall";
+  for (const Vec3& vector : lattice_vectors(one))
+    if (const Vec3 image = rotation * vector; (image - one.domain.cell()->shift(image)).norm() > 1e-9 * vector.norm()) return "Domain";
+  if (changes(stokes::AmbientFlow(one.flow), rotation)) return one.flow_choice();
+  if (moves(one.body_force())) return "Particle/density difference";
+  if (moves(one.particle.force.value_or(Vec3::Zero()))) return "Particle/force";
+  if (moves(one.particle.torque.value_or(Vec3::Zero()))) return "Particle/torque";
+  if (std::ranges::any_of(one.membrane.forces.all, moves, &membrane::PatchForce::force)) return "Membrane/forces";
+  return {};
 }
 
 }  // namespace
@@ -64,12 +104,16 @@ void reject_searches(const ParticleScene& particle_scene, Rejections& to) {
           "the volume must be conserved exactly, because it distinguishes between steady shapes");
   to.pair(search && drop && particle_scene.interface_motion() == coupling::MeshMotion::material, particle_scene.sought(),
           "Interface/motion `material`", "mesh points that move along the interface with the fluid do not become steady; give `normal` or `relaxed`");
-  to.pair(steady && particle_scene.elastic() && unstressed != "sphere" && turns(particle_scene), {particle_scene.sought().here, "Steady"},
-          particle_scene.flow_choice(),
-          "the flow rotates, and a membrane whose unstressed shape is not a sphere swings or tumbles while it tank-treads; use Periodic");
+  const std::optional<Chosen> turns = turned_by(particle_scene), changed = changed_by_turn(particle_scene);
+  const Chosen turner(turns ? turns->here : "", "Flow/type");
+  to.pair(steady && particle_scene.elastic() && unstressed != "sphere" && turns, {particle_scene.sought().here, "Steady"}, turner,
+          "the particle is turned, and a membrane whose unstressed shape is not a sphere swings or tumbles while it tank-treads; use Periodic");
+  to.pair(particle_scene.periodic.present && changed, "Periodic/turn",
+          {changed ? changed->here : "", "Tube, Channel, posts, or a flow, walls, lattice, forces or torques that are not symmetric about x2"},
+          "the rotation about x2 must not change flow, walls, forces and torques; give 0");
   to.pair(particle_scene.spectrum.near && particle_scene.spectrum.method == "krylov", "Spectrum/near", "Spectrum/method `krylov`",
           "that method finds the modes nearest to Spectrum/shift; give that key, or `dense`");
-  to.pair(particle_scene.maxwell_membrane() && steady && turns(particle_scene), "Steady with Membrane/relaxation time", particle_scene.flow_choice(),
+  to.pair(particle_scene.maxwell_membrane() && steady && turns, "Steady with Membrane/relaxation time", turner,
           "the membrane tank-treads around its steady shape, so that the strain of its material points is not steady");
 }
 
