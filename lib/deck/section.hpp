@@ -89,16 +89,17 @@ class Section {
   void without_effect_except(const std::string& name, const std::string& because);  ///< without_effect() for all declared keys but `name`
   std::vector<std::string> idle_keys() const;  ///< one sentence per key without effect that the deck sets, also in inner sections
 
-  /// Declares a section inside this one by calling `options.declare(Section&)`.
+  /// Declares a section inside this one by calling `options(Section&)` if `options` is a function, and otherwise `options.declare(Section&)`.
   template <class Options>
-  void section(std::string_view name, Options& options, std::string_view meaning) {
+  void section(std::string_view name, Options&& options, std::string_view meaning) {
     Section inner = enter(name, meaning);
-    options.declare(inner);
+    if constexpr (std::is_invocable_v<Options&, Section&>) options(inner);
+    else options.declare(inner);
   }
 
   /// Declares a section that a deck may leave out. Returns whether the deck has it. If not, `options` does not change.
   template <class Options>
-  bool optional_section(std::string_view name, Options& options, std::string_view meaning) {
+  bool optional_section(std::string_view name, Options&& options, std::string_view meaning) {
     if (given(name) || documenting())
       section(name, options, meaning);
     else

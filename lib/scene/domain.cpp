@@ -113,19 +113,15 @@ void DomainOptions::reject(const ParticleScene& particle_scene, Rejections& to) 
           {"Domain/periodic `" + periodic + "`", "Domain/periodic"}, particle_scene.flow_choice(),
           "the flow must be the same in every cell, except for a uniform gradient");
   if (particle_scene.tube.present) return;
-  const bool prescribed = particle_scene.particle.motion == Motion::prescribed, weight = particle_scene.particle.density_difference.has_value();
-  const bool pushed = !particle_scene.particle.rigid() && !particle_scene.membrane.forces.total().isZero(0);
+  const bool prescribed = particle_scene.particle.motion == Motion::prescribed;
+  const std::string force = prescribed ? particle_scene.particle.choice() : std::string(particle_scene.net_force());
   to.pair(!to.every() && !particle_scene.runs_in_time() && deforms(particle_scene.flow), particle_scene.sought(), particle_scene.flow_choice(),
           reason::unsteady);
   to.pair(particle_scene.quadrature.rule == quadrature::LayerRule::desingularised, "Domain", "Quadrature/rule `desingularised`",
           reason::desingularised);
-  to.pair(directions() < 3 && !particle_scene.wall.solid && (prescribed || weight || pushed || particle_scene.particle.force),
+  to.pair(directions() < 3 && !particle_scene.wall.solid && !force.empty(),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
-          {prescribed ? particle_scene.particle.choice()
-           : weight   ? "Particle/density difference"
-           : pushed   ? "Membrane/forces"
-                      : "Particle/force",
-           "Particle/motion `prescribed`, Particle/density difference, Particle/force, or Membrane/forces with a net force"},
+          {force, "Particle/motion `prescribed`, Particle/density difference, Particle/force, or Membrane/forces with a net force"},
           "a net force in every cell needs a lattice that is periodic in three directions, or walls");
 }
 
@@ -156,7 +152,8 @@ void DomainRow::add_columns(const SharedOptions& shared, Columns& to) const {
   to.add(volume_fraction, {"volume_fraction", "1", "volume of the particles divided by the volume of the periodic cell"});
   to.add(components(stress), "11 22 33 12 13 23",
          {"particle_stress_", "force/length^2",
-          "component # of the contribution of the particles to the mean stress, without its trace (6.9)"});
+          "component # of the contribution of the particles to the mean stress, without its trace and, if Particle/torque is given, without its "
+          "antisymmetric part (6.9)"});
   to.add(pressure_gradient, "x1 x2 x3",
          {"pressure_gradient_", "force/length^3",
           "component # of the uniform pressure gradient that balances the force of the particles on the fluid; with posts or walls, the given "

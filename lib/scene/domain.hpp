@@ -62,7 +62,7 @@ void check_flow(const stokes::FlowOptions& flow, const stokes::Medium& medium, c
 struct DomainRow {
   Mat3 cell = Mat3::Zero();  ///< lattice vectors of the cell as columns
   double volume_fraction = 0, relative_viscosity = 1;
-  Mat3 stress = Mat3::Zero();  ///< contribution of the particles to the mean stress (6.9)
+  Mat3 stress = Mat3::Zero();  ///< symmetric part of the contribution of the particles to the mean stress (6.9), without its trace
   /// normal stress differences S_aa - S_bb and S_bb - S_cc of the stress S = `stress`. Axes a and b are in the plane of the flow, c is its normal; in
   /// simple shear, a is the direction of the flow and b the direction of its gradient
   Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();

@@ -13,56 +13,33 @@ namespace tanktread {
 
 namespace {
 
-/// Section Output.
-struct OutputSection {
-  Scene& scene;
-
-  void declare(deck::Section& section) {
-    scene.output.declare(section);
-    scene.series = scene.registry->series.read(section, "series", "series that this program adds to the record; none without this section");
-  }
-};
-
 /// Declares the sections Output, Expect and Accuracy.
 void declare_results(deck::Section& root, Scene& scene) {
-  OutputSection results{scene};
+  const auto results = [&scene](deck::Section& section) {
+    scene.output.declare(section);
+    scene.series = scene.registry->series.read(section, "series", "series that this program adds to the record; none without this section");
+  };
   root.section("Output", results, "output files of the run");
   root.section("Expect", scene.expect, "expected values of output series, with tolerances");
   root.optional_section("Accuracy", scene.accuracy,
                         "requested accuracy: the run is repeated on finer meshes, with finer tolerances, until the estimated errors meet it");
 }
 
-/// Section Channel.
-struct ChannelSection {
-  surface::TubeOptions& tube;
-
-  void declare(deck::Section& section) {
-    tube.channel.emplace();
-    tube.declare(section);
-  }
-};
-
-/// Section Particles.
-struct ParticlesSection {
-  std::vector<ParticleKind>& all;
-  const ParticleKind& defaults;  // values before any key is read
-  const Registry& registry;
-
-  void declare(deck::Section& section) {
-    section.each(
-        "one of several particles. It has the keys of Particle and sections Membrane, Surface, Interface and Adaptation, as in a deck with one "
-        "particle. Keys that are not set are taken from the particle that its key `like` names, or otherwise from Particles/defaults",
-        [this](const std::string& name, deck::Section& inner) {
-          if (name.find_first_of("/=") != name.npos) throw UserError(inner.path() + ": the name of a particle must not contain `/` or `=`.");
-          if (name == "." || name == "..") throw UserError(inner.path() + ": the name of a particle must not be `.` or `..`.");
-          all.emplace_back(defaults).name = name;
-          all.back().declare(inner, registry);
-        },
-        true);
-    if (section.documenting()) all.clear();
-    else if (all.empty()) throw UserError(section.path() + " names no particle.");
-  }
-};
+/// Declares the section Particles and adds its particles to `all`. `defaults`: values before any key is read.
+void declare_several(deck::Section& section, std::vector<ParticleKind>& all, const ParticleKind& defaults, const Registry& registry) {
+  section.each(
+      "one of several particles. It has the keys of Particle and sections Membrane, Surface, Interface and Adaptation, as in a deck with one "
+      "particle. Keys that are not set are taken from the particle that its key `like` names, or otherwise from Particles/defaults",
+      [&](const std::string& name, deck::Section& inner) {
+        if (name.find_first_of("/=") != name.npos) throw UserError(inner.path() + ": the name of a particle must not contain `/` or `=`.");
+        if (name == "." || name == "..") throw UserError(inner.path() + ": the name of a particle must not be `.` or `..`.");
+        all.emplace_back(defaults).name = name;
+        all.back().declare(inner, registry);
+      },
+      true);
+  if (section.documenting()) all.clear();
+  else if (all.empty()) throw UserError(section.path() + " names no particle.");
+}
 
 /// Adds the keys of several sections that have no effect together.
 void list_idle_keys(Scene& scene) {
@@ -109,10 +86,8 @@ std::vector<ParticleKind> declare_particles(deck::Section& root, ParticleKind& o
     root.section("Particle", only.particle, "resting shape, initial shape and motion of the particle");
     only.declare_sections(root, registry);
   }
-  if (ParticlesSection kinds{all, only, registry}; several || root.documenting())
-    root.section("Particles", kinds, "several particles, instead of the sections Particle, Membrane, Surface, Interface and Adaptation");
-  else
-    root.mention("Particles");
+  root.optional_section("Particles", [&](deck::Section& section) { declare_several(section, all, only, registry); },
+                        "several particles, instead of the sections Particle, Membrane, Surface, Interface and Adaptation");
   if (!several) all = {only};
   return all;
 }
@@ -127,9 +102,12 @@ void Scene::declare(deck::Section& root) {
   flow.registered = &registry->flows, domain.registered = &registry->media;
   root.section("Flow", flow, "the ambient flow and the outer fluid");
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
-  surface::TubeOptions documented;
-  ChannelSection channel{root.given("Channel") ? tube : documented};
   refuse(tube.present && root.given("Channel"), "Channel", "Tube", unread::two_ducts);
+  surface::TubeOptions documented;
+  const auto channel = [&one = root.given("Channel") ? tube : documented](deck::Section& section) {
+    one.channel.emplace();
+    one.declare(section);
+  };
   if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;
   ParticleKind only;  // options of the particle in the section Particle
@@ -199,6 +177,12 @@ double ParticleScene::modulus() const {
 }
 
 Vec3 ParticleScene::body_force() const { return particle.density_difference.value_or(0.) * flow.gravity.value_or(Vec3::Zero()); }
+std::string_view ParticleScene::net_force() const {
+  if (!body_force().isZero(0)) return "Particle/density difference";
+  if (!membrane.forces.total().isZero(0)) return "Membrane/forces";
+  return particle.force && !particle.force->isZero(0) ? "Particle/force" : "";
+}
+
 double ParticleScene::bending_modulus() const { return membrane.bending(modulus(), radius()); }
 
 bool ParticleScene::reciprocal_forces() const {

@@ -148,6 +148,8 @@ struct ParticleScene : SharedOptions, ParticleKind {
   bool kelvin_voigt_membrane() const { return viscous_membrane() && !membrane.relaxation_time; }
   bool has_velocity_system() const { return particle.rigid() || particle.viscosity_ratio != 1 || kelvin_voigt_membrane(); }
   Vec3 body_force() const;           ///< density difference x gravity, units force/length^3
+  /// Returns the key that gives a net force on the particle; empty if the net force is zero. The forces of registered loads are not known.
+  std::string_view net_force() const;
   double bending_modulus() const;    ///< E_b, units force x length
   coupling::MeshMotion interface_motion() const;  ///< motion of the control points along the interface: as set in the deck, or the default of the law
 };

@@ -259,4 +259,21 @@ def decks_that_are_impossible_on_a_lattice_are_rejected():
         refused(words, deck(_with(**lists)))
 
 
+def the_pressure_gradient_balances_the_weight_of_the_current_volume():
+    run(deck("""
+Tanktread:
+  Flow: {type: quiescent, gravity: [0.2, 0, -1]}
+  Domain: {side lengths: [4, 4, 4]}
+  Particle: {density difference: 0.7, initial shape: {stretch: [1.5, 1, 0.8]}}
+  Membrane: {law: surface tension, surface tension: 1}
+  Volume: {constraint: none}
+  Surface: {elements per side: 3}
+  Quadrature: {tolerance: 1.0e-3}
+  Time: {scheme: bs3, fixed step: 0.1, final time: 0.4}
+"""), "--output", "out", "--quiet")
+    volume, gradient = (series("out", name) for name in ("volume", "pressure_gradient_x3"))
+    check(abs(volume[-1] / volume[0] - 1) > 1e-6, "the volume does not change", volume)
+    check(abs(gradient / (-0.7 * volume / 64) - 1).max() < 1e-10, gradient, volume)
+
+
 main()

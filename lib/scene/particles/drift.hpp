@@ -9,9 +9,10 @@
 namespace tanktread {
 
 /// Returns true if the particle is moved after every step so that its centroid is at the centre given in the deck. The key `Particle/drift` decides
-/// this. If this key is not set, returns true if the particle is deformable, there are no walls, weights, net forces on the membrane or registered
-/// loads, and the given centre is a stagnation point of an affine flow with a growing direction (planar hyperbolic, four-roll, extension). In such a
-/// flow, a displacement of the particle by round-off grows like e^(rate t), so that a particle of steady shape would drift away.
+/// this. If this key is not set, returns true if the particle is deformable, there are no walls, no net force on the particle (such as a weight) and
+/// no registered loads, and the given centre is a stagnation point of an affine flow with a growing direction (planar hyperbolic, four-roll,
+/// extension). In such a flow, a displacement of the particle by round-off grows like e^(rate t), so that a particle of steady shape would drift
+/// away.
 bool holds_centre(const ParticleScene& particle_scene);
 
 /// Displaces the shape of the state by the vector c that moves the centroid to `place`, and changes the slopes and earlier positions of the time

@@ -4,16 +4,15 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the force of all particles on the fluid. Without contacts, the force of a deformable particle without registered loads is known exactly.
-/// With contacts or registered loads, it is computed as the virtual work of all loads of the particle in a translation, in which elastic loads do no
-/// work. `touching`: whether particles are in contact. The forces of contacts cancel in the sum.
+/// Returns the force of all particles on the fluid. The force of a deformable particle is minus the sum of dE/dx over its control points, to which
+/// elastic loads do not contribute. `touching`: whether particles are in contact. The forces of contacts cancel in the sum over all particles. A
+/// particle on which no force acts is left out, because its sum is a rounding error.
 Vec3 force_on_fluid(const std::vector<Member>& members, coupling::Evaluation& here, bool touching) {
   Vec3 force = Vec3::Zero();
   for (std::size_t p = 0; p < members.size(); ++p) {
     const ParticleScene& one = members[p].scene;
     if (one.particle.rigid()) force += here.rigid().force(p);
-    else if (one.loads.empty() && !touching) force += members[p].body->volume * one.body_force() + one.membrane.forces.total();
-    else force -= members[p].own(here.work()).colwise().sum().transpose();
+    else if (touching || !one.net_force().empty() || !one.loads.empty()) force -= members[p].own(here.work()).colwise().sum().transpose();
   }
   return force;
 }

@@ -112,6 +112,16 @@ TEST(Loads, AreComparedAmongDeformingParticlesOnly) {
   EXPECT_NE(refusal(start + body + capsule("a", 0, strong) + "  Output: {power balance: true}\n"), "");
 }
 
+TEST(NetForces, NeedALatticeOfThreeDirections) {
+  const auto refused = [](const std::string& keys) {
+    return refusal("  Flow: {type: quiescent, gravity: [0, 0, -1]}\n  Domain: {periodic: x1, side lengths: [6, 6, 6]}\n  Particle: {" + keys +
+                   "}\n  Membrane: {shear modulus: 1}\n");
+  };
+  EXPECT_EQ(refused("density difference: 1"), "Domain/periodic `x1` and Particle/density difference contradict each other: a net force in every cell "
+                                              "needs a lattice that is periodic in three directions, or walls.");
+  EXPECT_EQ(refused("density difference: 0"), "");
+}
+
 TEST(Rejections, OfSectionsThatCannotBeReadTogetherAreInTheTable) {
   const std::string table = rejection_table(no_parts);
   for (const char* row : {"| Channel | Tube |", "| Tube/periodic length | Domain |", "| Flow/pressure gradient | Flow/type `parabolic` |",
