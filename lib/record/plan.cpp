@@ -199,12 +199,6 @@ std::string rigid_line(const ParticleScene& particle_scene, const Body& body) {
          ", solved once, determine its motion";
 }
 
-std::string forces_line(const ParticleScene& particle_scene) {
-  const ParticleOptions& particle = particle_scene.particle;
-  if (particle.motion == Motion::free) return particle.force || particle.torque || particle.density_difference ? "as given" : "none";
-  return particle_scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
-}
-
 Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   const int n = body.space.n_points;
   const ParticleScene only = scene.first();
@@ -212,8 +206,10 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
                  {"unknowns", formatted("%d of the traction: single layer of the first kind, its null space made regular", 3 * n)}};
   add_fluid(lines, scene, {}, body, ranks);
   lines.emplace_back("particle", rigid_line(only, body));
-  lines.emplace_back("forces", forces_line(only));
-  lines.emplace_back("time", only.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
+  const bool free = only.particle.motion == Motion::free;
+  const char* const integrals = only.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
+  lines.emplace_back("forces", !free ? integrals : has_given_forces(only) ? "as given" : "none");
+  lines.emplace_back("time", free ? scene.time.scheme + " for centre and orientation" : "steady");
   lines.emplace_back("solvers", solvers_line(scene, {}));
   lines.emplace_back("assembled", formatted("%.1f MB on every rank, factored", (scene.tube.present ? 144e-6 : 72e-6) * n * n));
   lines.emplace_back("kernels", instructions());

@@ -57,8 +57,11 @@ std::string mesh_line(const ParticleScene& particle_scene) {
 /// Returns the lines of the plan about one particle. `n_points`: number of control points of all particles. `tree`: true if far-field sums use
 /// clusters.
 Lines particle_lines(const ParticleScene& particle_scene, const VelocityUnknowns& unknowns, int n_points, bool tree) {
+  Lines lines;
+  if (has_given_forces(particle_scene)) lines.emplace_back("forces", "as given");
   if (!particle_scene.particle.rigid()) {
-    Lines lines = {{"viscosity", viscosity_line(particle_scene, unknowns.system, n_points, tree)}, {"membrane", membrane_line(particle_scene)}};
+    lines.emplace_back("viscosity", viscosity_line(particle_scene, unknowns.system, n_points, tree));
+    lines.emplace_back("membrane", membrane_line(particle_scene));
     if (particle_scene.surfactant) lines.emplace_back("surfactant", surfactant_line(particle_scene));
     lines.emplace_back("mesh", mesh_line(particle_scene));
     return lines;
@@ -66,12 +69,18 @@ Lines particle_lines(const ParticleScene& particle_scene, const VelocityUnknowns
   const char* by_traction = unknowns.iterates ? "its traction, by GMRES preconditioned with factors of the bodies, for each velocity (2.40)"
                                                : "its traction, in a system that every rank factors for each velocity (2.40)";
   const char* motion = particle_scene.particle.motion == Motion::free ? "free" : "with prescribed motion";
-  return {{"body", formatted("rigid, %s: no membrane, no moving mesh; ", motion) +
-                       (unknowns.tractions ? by_traction
-                                           : formatted("a double layer, in a system of %d unknowns per velocity (2.23)", 3 * n_points))}};
+  lines.emplace_back("body", formatted("rigid, %s: no membrane, no moving mesh; ", motion) +
+                                 (unknowns.tractions ? by_traction
+                                                     : formatted("a double layer, in a system of %d unknowns per velocity (2.23)", 3 * n_points)));
+  return lines;
 }
 
 }  // namespace
+
+bool has_given_forces(const ParticleScene& particle_scene) {
+  const ParticleOptions& particle = particle_scene.particle;
+  return particle.force || particle.torque || particle.density_difference;
+}
 
 VelocityUnknowns velocity_unknowns(const Scene& scene, const std::vector<ParticleScene>& alone) {
   VelocityUnknowns found;

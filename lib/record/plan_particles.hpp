@@ -22,6 +22,9 @@ struct VelocityUnknowns {
 /// Returns the unknowns of a scene with the particles `alone`.
 VelocityUnknowns velocity_unknowns(const Scene& scene, const std::vector<ParticleScene>& alone);
 
+/// Returns true if the deck gives a force, a torque or a weight of the particle.
+bool has_given_forces(const ParticleScene& particle_scene);
+
 /// Adds the lines about all particles to the plan. A single particle has several lines. If there are several particles, the lines of each are joined
 /// into one, and consecutive particles with equal lines share one line. `n_points`: number of control points of all particles. `tree`: true if
 /// far-field sums use clusters.

@@ -44,6 +44,12 @@ def check_prints_the_effective_deck_and_the_plan_and_writes_nothing():
     check(sorted(p.name for p in pathlib.Path().iterdir()) == ["deck.yaml"], "something was written")
 
 
+def the_plan_names_given_forces_of_coupled_particles():
+    for keys, given in ("motion: free, torque: [0, 0, 1]", True), ("motion: free", False):
+        text = run(deck("Tanktread: {Flow: {type: quiescent}, Particle: {%s}, Output: {power balance: true}, Time: {final time: 1}}" % keys), "--check").stdout
+        check(bool(re.search(r"\n  forces +as given\n", text)) == given, text)
+
+
 def check_states_the_cost_of_a_velocity_unless_it_is_quiet():
     text = run(deck(SMALL), "--check").stdout
     cost = re.search(r"\n  evaluation +([\d.e+]+) kernel evaluations and ([\d.e-]+) s ", text)
