@@ -114,7 +114,12 @@ std::optional<output::Checkpoint> run_before(const ParticleScene& particle_scene
   }
   check_surface(particle_scene, run, name);
   drop_name(run, name);
+  using Names = std::vector<const char*>;
+  for (const char* needed : particle_scene.adaptation.enabled ? Names{"x", stored_rest, "mesh edges", "mesh spacing"} : Names{"x"})
+    static_cast<void>(run.arrays.at(needed));
   return run;
+} catch (const std::out_of_range&) {
+  throw UserError(key + "run: the run was written by another version of tanktread and lacks data that this version needs.");
 } catch (const std::runtime_error& error) {
   if (dynamic_cast<const UserError*>(&error)) throw;
   throw UserError(key + "run: " + error.what());

@@ -11,7 +11,7 @@
 namespace tanktread {
 
 /// Returns the last checkpoint of the run named by Particle/initial shape/run; nothing if the deck names no run. Throws UserError if there is no
-/// checkpoint, or if the mesh of the run does not fit the scene.
+/// checkpoint, if it lacks data, or if the mesh of the run does not fit the scene.
 std::optional<output::Checkpoint> run_before(const ParticleScene& particle_scene);
 
 /// Returns the control net of the initial shape on the body's mesh; by default the resting shape. `before`: checkpoint that run_before() returned, or

@@ -166,4 +166,16 @@ def another_mesh_is_rejected_in_one_sentence():
         check(result.stderr.strip().count("\n") == 0 and "Particle/initial shape/" in result.stderr, result.stderr)
 
 
+def a_run_that_lacks_data_is_rejected_in_one_sentence():
+    import h5py
+
+    for adapts, missing in ("false", "arrays/x"), ("false", "texts/deck"), ("true", "arrays/mesh edges"), ("true", "arrays/initial"):
+        run(deck(FIRST % ("0.01", adapts)), "--output", "first", "--overwrite", "--quiet")
+        for snapshot in pathlib.Path("first").glob("snapshot_*.hdf"):
+            with h5py.File(snapshot, "r+") as file:
+                del file["checkpoint"].attrs["checksum"], file[f"checkpoint/{missing}"]
+        said = run(deck(THEN % "run: first" + (ADAPTS if adapts == "true" else "")), "--check", code=2).stderr
+        check(said.strip().count("\n") == 0 and "Particle/initial shape/run" in said and "lacks" in said, missing, said)
+
+
 main()

@@ -30,6 +30,7 @@ TEST(SeriesManual, ListsOnlySeriesWithAPlaceInTheOrder) {
   EXPECT_FALSE(has_place("another"));
   for (const Column& one : columns_of_all_runs().all()) EXPECT_TRUE(has_place(one.name)) << "`order` in scene/series/series.cpp: " << one.name;
   EXPECT_TRUE(has_place("post/post_force_x1"));  // a post with a name
+  for (const char* one : {"torque_applied", "torque_error_x", "angular_velocity"}) EXPECT_FALSE(has_place(one)) << one;  // not components
 }
 
 TEST(SeriesManual, DescribesTheArraysOfChannels) {
