@@ -146,27 +146,14 @@ void Options::declare(deck::Section& section) {
 }
 
 void Options::reject(Rejections& to) const {
-  to.pair(bending(1, 1) > 0 && load == "strong",
-          {std::string("Membrane/bending ") + (bending_number ? "number" : "modulus"), "Membrane/bending modulus or bending number"},
-          "Membrane/load `strong`", "bending is implemented in the form `weak` only");
-  to.pair(area_order > 0 && load == "strong", "Membrane/area points", "Membrane/load `strong`",
-          "the form `strong` has no quadrature of the area resistance");
-  to.pair(global_area_dilatation > 0 && load == "strong", "Membrane/global area dilatation", "Membrane/load `strong`",
-          "it is implemented by virtual work, in the form `weak` only");
   to.pair(fluid_interface() && pre_inflation != 0.0, "Membrane/pre-inflation", "Membrane/law `surface tension`",
          "a fluid interface has no unstressed shape");
   to.pair(bending_reference == "unstressed" && fluid_interface(), "Membrane/bending reference `unstressed`",
           "Membrane/law `surface tension`", "a fluid interface has no unstressed shape, whose curvature it could keep at points that flow");
   to.pair(relaxation_time.has_value() && fluid_interface(), "Membrane/relaxation time", "Membrane/law `surface tension`",
          "the viscosity of a fluid interface has no memory, because the interface has no stress-free shape");
-  to.pair(viscosity.any() && load == "strong",
-          {std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity",
-           "Membrane/shear viscosity or dilatational viscosity"},
-          "Membrane/load `strong`", "membrane viscosity is implemented in the form `weak` only");
   to.pair(!forces.all.empty() && fluid_interface(), "Membrane/forces", "Membrane/law `surface tension`",
           "a fluid interface has no material patch on which a force could act");
-  to.pair(!forces.all.empty() && load == "strong", "Membrane/forces", "Membrane/load `strong`",
-          "forces on patches are implemented in the form `weak` only");
 }
 
 void Options::check() const {

@@ -8,26 +8,6 @@
 
 namespace tanktread {
 
-namespace {
-
-std::string motion_word(Motion motion) {
-  switch (motion) {
-    case Motion::deforming: return "deforming";
-    case Motion::prescribed: return "prescribed";
-    case Motion::free: return "free";
-  }
-  throw std::logic_error("this Motion has no word");
-}
-
-/// Returns the words for `Particle/motion` in the order of the enumerators.
-deck::Choice motion_words() {
-  deck::Choice words;
-  for (int k = 0; k <= static_cast<int>(last_motion); ++k) words.push_back(motion_word(static_cast<Motion>(k)));
-  return words;
-}
-
-}  // namespace
-
 bool ParticleOptions::rigid() const {
   switch (motion) {
     case Motion::deforming: return false;
@@ -37,7 +17,7 @@ bool ParticleOptions::rigid() const {
   throw std::logic_error("this Motion is neither that of a rigid body nor of a deforming particle");
 }
 
-std::string text(Motion motion) { return "`" + motion_word(motion) + "`"; }
+std::string text(Motion motion) { return "`" + deck::word(particle_motions, motion) + "`"; }
 
 std::string ParticleOptions::choice() const { return "Particle/motion " + text(motion); }
 
@@ -85,7 +65,7 @@ void ParticleOptions::declare(deck::Section& section) {
               "lambda: viscosity of the fluid inside the particle divided by the viscosity of the outer fluid, at most 1e14 x "
               "Solvers/tolerance. Above 1e4, Time/scheme `bs3` takes fewer steps than implicit schemes. Above 1e5 the particle hardly "
               "deforms; for a rigid particle use Particle/motion `free`");
-  section.key("motion", motion, motion_words(),
+  section.key("motion", motion, particle_motions,
               "motion of the particle. `deforming`: its surface moves with the velocity of the fluid. `prescribed`: it is rigid and moves "
               "with Particle/velocity and Particle/angular velocity; for a single particle, the flow and the force are computed once, without time "
               "steps. `free`: it is rigid and moves such that Particle/force and Particle/torque, zero by default, balance the forces of the "
@@ -105,8 +85,8 @@ void ParticleOptions::declare(deck::Section& section) {
       "drift", drift, deck::Choice{"free", "held"},
       "treatment of the motion of the particle's centroid. `free`: it moves with the flow. `held`: it is moved back to its initial "
       "position after every step, which does not change the shape in a flow with a uniform gradient. The default is `held` for a "
-      "particle without weight, other forces and registered loads at the stagnation point of a flow that diverges in some direction, where "
-      "rounding errors would grow into a drift, and `free` otherwise");
+      "particle without net force and registered loads at the stagnation point of a flow that diverges in some direction, where rounding "
+      "errors would grow into a drift, and `free` otherwise");
   section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
               "method of computing force and torque on a single particle with Particle/motion `prescribed`. `integral`: integral of the "
               "traction, as by Maestre et al. (2017). `reciprocal`: this integral corrected by the reciprocal theorem, which is more "
@@ -128,48 +108,6 @@ void ParticleKind::declare(deck::Section& section, const Registry& registry) {
   declare_sections(section, registry);
 }
 
-namespace {
-
-/// Reader of the section Membrane.
-struct MembraneSection {
-  ParticleKind& kind;
-  const Registry& registry;
-
-  void declare(deck::Section& section) {
-    kind.membrane.declare(section);
-    kind.loads = registry.loads.read(section, "loads", "loads that this program adds to the loads of the library; none without this section");
-  }
-};
-
-/// Reader of the section Interface.
-struct InterfaceSection {
-  ParticleKind& kind;
-  const Registry& registry;
-
-  void declare(deck::Section& section) {
-    kind.interface.declare(section);
-    if (kind.surface.of_cylinder) section.without_effect_except("", only_keys_of_post);
-    membrane::SurfactantOptions given;
-    if (section.optional_section("surfactant", given,
-                                 "an insoluble surfactant on the interface of a drop; without this section the interface is clean"))
-      kind.surfactant = given;
-    kind.fields = registry.fields.read(section, "fields",
-                                             "fields on the interface or membrane that this program adds; none without this section");
-  }
-};
-
-/// Reader of the section Adaptation.
-struct AdaptationSection {
-  ParticleKind& kind;
-
-  void declare(deck::Section& section) {
-    kind.adaptation.declare(section);  // without `enabled`, also states that the other keys have no effect
-    if (kind.surface.of_cylinder && kind.adaptation.enabled) section.without_effect_except("", only_keys_of_post);
-  }
-};
-
-}  // namespace
-
 void ParticleKind::declare_sections(deck::Section& section, const Registry& registry) {
   surface.of_cylinder = particle.shape.shape == "cylinder";
   surface.fits_tightly = particle.rigid() && particle.shape.sized() && particle.shape.equivalent_radius() > 0.75 * duct_half_width;
@@ -178,17 +116,31 @@ void ParticleKind::declare_sections(deck::Section& section, const Registry& regi
   if (!deforms) section.leave_out("Membrane");
   if (surface.of_cylinder) section.leave_out("Interface"), section.leave_out("Adaptation");
   membrane_given = section.given("Membrane");
-  if (MembraneSection list{*this, registry}; deforms || membrane_given)
-    section.section("Membrane", list, "mechanical properties of the particle's membrane or interface");
+  const auto of_membrane = [&](deck::Section& inner) {
+    membrane.declare(inner);
+    loads = registry.loads.read(inner, "loads", "loads that this program adds to the loads of the library; none without this section");
+  };
+  if (deforms || membrane_given) section.section("Membrane", of_membrane, "mechanical properties of the particle's membrane or interface");
   if (particle.shape.shape != "file") section.section("Surface", surface, "spline space and mesh of the particle's surface");
   else
     refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
            unread::two_meshes);
-  InterfaceSection of_interface{*this, registry};
+  const auto of_interface = [&](deck::Section& inner) {
+    interface.declare(inner);
+    if (surface.of_cylinder) inner.without_effect_except("", only_keys_of_post);
+    membrane::SurfactantOptions given;
+    if (inner.optional_section("surfactant", given,
+                               "an insoluble surfactant on the interface of a drop; without this section the interface is clean"))
+      surfactant = given;
+    fields = registry.fields.read(inner, "fields", "fields on the interface or membrane that this program adds; none without this section");
+  };
   section.section("Interface", of_interface, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
   complete_film_resolution(false);  // before the section is read, so that the deck's values contain the default
-  AdaptationSection of_adaptation{*this};
+  const auto of_adaptation = [&](deck::Section& inner) {
+    adaptation.declare(inner);  // without `enabled`, also states that the other keys have no effect
+    if (surface.of_cylinder && adaptation.enabled) inner.without_effect_except("", only_keys_of_post);
+  };
   section.section("Adaptation", of_adaptation, "refinement and coarsening of the particle's surface mesh");
 }
 
@@ -211,7 +163,6 @@ void ParticleKind::reject(const ParticleScene& particle_scene, Rejections& to) c
           "the mesh of a file is not refined, so that its error cannot be estimated");
   to.pair(!constrained && !strong && membrane.load_measure == "reference", "Volume/constraint `none`",
           "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
-  to.pair(!drop && strong && degenerate, plain, "Membrane/load `strong`", reason::strong);
   to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain, reason::desingularised);
   to.pair(!drop && particle_scene.interface_motion() != coupling::MeshMotion::material,
           {"Interface/motion `" + deck::word(coupling::mesh_motions, particle_scene.interface_motion()) + "`",
@@ -220,17 +171,27 @@ void ParticleKind::reject(const ParticleScene& particle_scene, Rejections& to) c
   to.pair(surfactant && (rigid || !drop), "Interface/surfactant",
           {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"},
           reason::interface);
-  to.pair(surfactant && strong, "Interface/surfactant", "Membrane/load `strong`", reason::strong);
   const bool pieces = surface.replaces_elements();
   to.pair(adaptation.enabled && pieces && (surfactant || particle_scene.maxwell_membrane() || !fields.empty() || particle_scene.contact.limiter),
           "Adaptation/enabled with fields on surfaces or Contact/limiter", "Surface/poles `bezier transform`",
           "the elements at these poles are not those of the mesh that adapts; give `c1`");
   const surface::TubeOptions& tube = particle_scene.tube;
-  const std::pair<bool, Chosen> works[] = {{particle_scene.contact.limiter, "Contact/limiter"},
-                                                {particle.density_difference.has_value(), "Particle/density difference"},
-                                                {tube.repulsion.has_value(), {tube.list() + "/repulsion", "Tube/repulsion"}}};
-  for (const auto& [with, what] : works)
-    to.pair(with && strong, what, "Membrane/load `strong`", reason::strong);
+  const std::pair<bool, Chosen> weak[] = {  // choices that need loads by virtual work
+      {membrane.bending(1, 1) > 0, {std::string("Membrane/bending ") + (membrane.bending_number ? "number" : "modulus"),
+                                    "Membrane/bending modulus or bending number"}},
+      {membrane.area_order > 0, "Membrane/area points"},
+      {membrane.global_area_dilatation > 0, "Membrane/global area dilatation"},
+      {membrane.viscosity.any(), {std::string("Membrane/") + (membrane.viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity",
+                                  "Membrane/shear viscosity or dilatational viscosity"}},
+      {!membrane.forces.all.empty(), "Membrane/forces"},
+      {!loads.empty(), "Membrane/loads"},
+      {!drop && degenerate, plain},
+      {surfactant.has_value(), "Interface/surfactant"},
+      {!fields.empty(), "Interface/fields"},
+      {particle_scene.contact.limiter, "Contact/limiter"},
+      {particle.density_difference.has_value(), "Particle/density difference"},
+      {tube.repulsion.has_value(), {tube.list() + "/repulsion", "Tube/repulsion"}}};
+  for (const auto& [with, what] : weak) to.pair(with && strong, what, "Membrane/load `strong`", reason::strong);
 }
 
 }  // namespace tanktread

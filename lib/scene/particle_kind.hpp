@@ -22,7 +22,7 @@ struct ParticleScene;
 
 /// `Particle/motion`. A new motion needs a decision wherever Motion is asked: see the recipe of a kind of particle in lib/README.md.
 enum class Motion { deforming, prescribed, free };
-inline constexpr Motion last_motion = Motion::free;  ///< last enumerator of Motion
+inline const std::vector<std::string> particle_motions{"deforming", "prescribed", "free"};  ///< words for Motion in decks
 
 std::string text(Motion motion);  ///< returns the name of the motion in the deck, in backquotes
 

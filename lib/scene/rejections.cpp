@@ -15,8 +15,6 @@ namespace {
 
 /// Adds to `to` the choices that contradict user-defined loads and fields.
 void reject_registered(const ParticleScene& particle_scene, Rejections& to) {
-  to.pair(!particle_scene.loads.empty() && particle_scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`", reason::strong);
-  to.pair(!particle_scene.fields.empty() && particle_scene.load_is_strong(), "Interface/fields", "Membrane/load `strong`", reason::strong);
   if (to.every())  // for a given deck, Load::rigid_conditions of each load is checked instead
     to.pair(true, "Membrane/loads that depend on the position", "Domain", "such a load is not the same in all cells");
   to.pair(!particle_scene.fields.empty() && particle_scene.particle.rigid(), "Interface/fields",
