@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <stdexcept>
@@ -57,25 +58,26 @@ std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   return copies;
 }
 
-/// Returns half the side lengths of a box around the region of the copies, a box or ball.
-Vec3 half_sides(const CopiesOptions& how) {
-  switch (how.region()) {
-    case CopiesOptions::Region::box: return *how.box / 2;
-    case CopiesOptions::Region::ball: return Vec3::Constant(*how.ball);
-    case CopiesOptions::Region::cell: break;
-  }
-  throw std::logic_error("this region of copies is neither a box nor a ball");
+/// Returns the volume of the cell in which copies are placed. A cell with fewer than three periods has no volume.
+double volume_of(const stokes::PeriodicCell& cell) {
+  if (cell.n() != 3) throw std::logic_error("copies need a cell with three periods");
+  return cell.volume();
 }
 
-/// Returns whether a sphere is inside the region of the copies, for positions that at_random() draws from a box. `centre`: centre of the sphere
-/// relative to the centre of the region.
-bool is_inside(const CopiesOptions& how, const Vec3& centre, double radius) {
+/// Region of copies at random positions.
+struct Region {
+  double volume;                                            // volume to which the volume fraction of the copies refers
+  Vec3 half_sides = Vec3::Zero();                           // half the side lengths of a box around the box or ball
+  double radius = std::numeric_limits<double>::infinity();  // radius of the ball that contains all copies; infinite without a ball
+};
+
+Region region_of(const CopiesOptions& how, const std::optional<stokes::PeriodicCell>& cell) {
   switch (how.region()) {
-    case CopiesOptions::Region::box: return true;
-    case CopiesOptions::Region::ball: return centre.norm() <= *how.ball - radius;
-    case CopiesOptions::Region::cell: break;
+    case CopiesOptions::Region::box: return {how.box->prod(), *how.box / 2};
+    case CopiesOptions::Region::ball: return {ball_volume(*how.ball), Vec3::Constant(*how.ball), *how.ball};
+    case CopiesOptions::Region::cell: return {volume_of(cell.value())};
   }
-  throw std::logic_error("this region of copies is neither a box nor a ball");
+  throw std::logic_error("this region of copies is unknown");
 }
 
 /// Returns copies at random positions in a box or ball. Draws positions one by one and discards a position that is too close to a sphere in `taken`
@@ -83,7 +85,8 @@ bool is_inside(const CopiesOptions& how, const Vec3& centre, double radius) {
 std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, const std::optional<stokes::PeriodicCell>& cell,
                             std::vector<PackedSphere>& taken, const std::string& list) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
-  const Vec3 half = half_sides(how);
+  const Region region = region_of(how, cell);
+  const Vec3& half = region.half_sides;
   if ((half.array() < radius).any())
     throw UserError(formatted("%s: a particle of radius %g does not fit into the box or ball of the copies; give a larger one.", list.c_str(),
                               radius));
@@ -100,7 +103,7 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
                     list.c_str(), copies.size(), number, most));
     Vec3 place;
     for (int c = 0; c < 3; ++c) place[c] = (2 * uniform(random) - 1) * (half[c] - radius);
-    if (!is_inside(how, place, radius)) continue;
+    if (place.norm() > region.radius - radius) continue;
     const PackedSphere here{origin + place, radius, how.least_gap, true};
     const auto meets = [&](const PackedSphere& other) {
       const Vec3 apart = here.centre - other.centre, nearest = cell ? Vec3(apart - cell->shift(apart)) : apart;
@@ -112,22 +115,6 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
     copies.push_back({place});
   }
   return copies;
-}
-
-/// Returns the volume of the cell in which copies are placed. A cell with fewer than three periods has no volume.
-double volume_of(const stokes::PeriodicCell& cell) {
-  if (cell.n() != 3) throw std::logic_error("copies need a cell with three periods");
-  return cell.volume();
-}
-
-/// Returns the volume to which the volume fraction of the copies refers.
-double volume_of_region(const CopiesOptions& how, const std::optional<stokes::PeriodicCell>& cell) {
-  switch (how.region()) {
-    case CopiesOptions::Region::box: return how.box->prod();
-    case CopiesOptions::Region::ball: return ball_volume(*how.ball);
-    case CopiesOptions::Region::cell: return volume_of(cell.value());
-  }
-  throw std::logic_error("this region of copies has no volume");
 }
 
 /// Returns the number of copies on the lattice or at random positions. Throws UserError if the number is too large, or if it follows from a volume
@@ -144,7 +131,7 @@ int count(const CopiesOptions& how, const surface::ParticleShape& shape, const s
     if (!of_one)
       throw UserError(list + "/volume fraction cannot be used with Particle/initial shape/volume `own` and a shape from a file or run, because the "
                              "volume of a copy is not known when copies are counted: give `number`.");
-    number = std::max(1.0, std::round(*how.volume_fraction * volume_of_region(how, cell) / *of_one));
+    number = std::max(1.0, std::round(*how.volume_fraction * region_of(how, cell).volume / *of_one));
   }
   if (number > most)
     throw UserError(list + formatted(" may ask for at most %.0f copies, because more surfaces do not fit into memory, but asks for %.0f.", most,
@@ -199,7 +186,8 @@ void CopiesOptions::declare(deck::Section& section) {
   section.key("file", file, deck::Choice{},
               "path of a file with the positions of the copies of the particle, one row per copy: the centre x1,x2,x3 in the deck's unit "
               "of length, optionally followed by a rotation vector of three numbers in degrees, all separated by commas. The first row "
-              "may hold column names. A relative path is looked up in the working directory, then in the directory of the deck");
+              "may hold column names. A rotation turns the shape only: forces, torques and velocities of the copies keep their components "
+              "along x1, x2, x3. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("lattice", lattice, deck::at_least(1), "1",
               "numbers of copies of the particle along x1, x2 and x3 on a rectangular lattice, which is centred at the particle's centre");
   section.key("spacing", spacing, deck::positive(), "length",

@@ -14,7 +14,8 @@ namespace tanktread {
 struct ParticleKind;
 
 /// Options `Particles/<name>/copies`. Positions from file, lattice and packing are relative to the particle's centre. The orientation of the particle
-/// is applied first, then the orientation of the copy.
+/// is applied first, then the orientation of the copy. It turns the shape only: forces, torques and velocities keep their components along the axes
+/// of space.
 struct CopiesOptions {
   std::optional<std::string> file;    ///< CSV file: per row a centre, and optionally a rotation vector in degrees
   std::optional<Vec3> lattice;        ///< number of copies along x1, x2, x3

@@ -140,33 +140,28 @@ std::string solids_line(const Scene& scene, int ranks) {
 
 void SolidsRow::add_columns(const SharedOptions& shared, Columns& to) const {
   constexpr const char *walls = "; with walls in a Domain", *posts = "; with posts", *both = "; with two walls or posts in a Domain";
+  const auto add = [&](const Vec3& value, const std::string& name, const char* unit, const char* description, const char* where) {
+    to.add(value, "x1 x2 x3", {name, unit, description, {}, where});
+  };
   if (to.when(shared.wall.solid)) {
-    to.add(wall_force, "x1 x2 x3",
-           {"wall_force_",
-            "force",
-            "component # of the force of the fluid on one period of the wall. The uniform part of the pressure, which is arbitrary, is not "
-            "included: between two walls it is chosen such that the normal forces on both are equal",
-            {},
-            walls});
+    add(wall_force, "wall_force_", "force",
+        "component # of the force of the fluid on one period of the wall. The uniform part of the pressure, which is arbitrary, is not "
+        "included: between two walls it is chosen such that the normal forces on both are equal",
+        walls);
     if (to.when(shared.wall.distance.has_value()))
-      to.add(second_wall_force, "x1 x2 x3",
-             {"second_wall_force_", "force", "component # of the force of the fluid on one period of the second wall", {}, walls});
+      add(second_wall_force, "second_wall_force_", "force", "component # of the force of the fluid on one period of the second wall", walls);
   }
   const auto add_force = [&](const std::string& name, const Vec3& force) {
     const std::string prefix = name.empty() ? "" : name + "/";
-    to.add(force, "x1 x2 x3",
-           {prefix + "post_force_", "force", "component # of the force of the fluid on one period of the post", {}, posts});
+    add(force, prefix + "post_force_", "force", "component # of the force of the fluid on one period of the post", posts);
   };
   for (std::size_t k = 0; k < shared.posts.size(); ++k) add_force(shared.posts[k].name, k < post_forces.size() ? post_forces[k] : Vec3::Zero());
   if (shared.posts.empty() && to.when(false)) add_force({}, Vec3::Zero());
   if (!to.when(shared.wall.distance.has_value() || !shared.posts.empty())) return;
-  to.add(mean_velocity, "x1 x2 x3",
-         {"mean_velocity_",
-          "length/time",
-          "component # of the velocity averaged over the periodic cell (between two walls, over the space between them), particles and "
-          "posts included: flow rate divided by the area of the cross-section",
-          {},
-          both});
+  add(mean_velocity, "mean_velocity_", "length/time",
+      "component # of the velocity averaged over the periodic cell (between two walls, over the space between them), particles and posts "
+      "included: flow rate divided by the area of the cross-section",
+      both);
   if (to.when(shared.flow.pressure_gradient.has_value()))
     to.add(
         permeability,

@@ -184,61 +184,46 @@ std::unique_ptr<coupling::Tube> make_tube(const SharedOptions& shared, const Bod
 void TubeRow::add_columns(const SharedOptions& shared, Columns& to) const {
   if (!to.when(shared.tube.present)) return;
   constexpr const char *tube = "; in a tube", *channel = "; in a channel";
-  to.add(pressure_drop,
-         {"disturbed_pressure_drop",
-          "force/length^2",
-          "pressure drop in the tube caused by the particles, in addition to the pressure drop of the empty tube (2.7); in a periodic tube, "
-          "over one period",
-          {},
-          tube});
+  const auto add = [&](double value, const char* name, const char* unit, const char* description, const char* where) {
+    to.add(value, {name, unit, description, {}, where});
+  };
+  add(pressure_drop, "disturbed_pressure_drop", "force/length^2",
+      "pressure drop in the tube caused by the particles, in addition to the pressure drop of the empty tube (2.7); in a periodic tube, "
+      "over one period",
+      tube);
   add_gap(gap, to);
   if (to.when(shared.flow.held == "pressure drop"))
-    to.add(flow_rate, {"flow_rate", "length^3/time",
-                       "flow rate through the tube or channel with the particles in it, if Flow/held is `pressure drop`",
-                       {}, "; if Flow/held is `pressure drop`"});
+    add(flow_rate, "flow_rate", "length^3/time", "flow rate through the tube or channel with the particles in it, if Flow/held is `pressure drop`",
+        "; if Flow/held is `pressure drop`");
   if (to.when(shared.tube.channel.has_value())) {
-    to.add(channel_pressure_drop,
-           {"channel_pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel, at this time (2.30)", {}, channel});
-    to.add(channel_extra_pressure_drop, {"channel_extra_pressure_drop",
-                                         "force/length^2",
-                                         "pressure drop of the empty channel minus the pressure drop of a straight tube of the same length "
-                                         "with the cross-section of the inlet",
-                                         {},
-                                         channel});
+    add(channel_pressure_drop, "channel_pressure_drop", "force/length^2",
+        "pressure drop between the ends of the empty channel, at this time (2.30)", channel);
+    add(channel_extra_pressure_drop, "channel_extra_pressure_drop", "force/length^2",
+        "pressure drop of the empty channel minus the pressure drop of a straight tube of the same length with the cross-section of the inlet",
+        channel);
   }
-  to.add(checks.flux, {"disturbance_flux",
-                       "1",
-                       "flow rate of the disturbance velocity through the inlet divided by the flow rate of the empty duct; a measure of error "
-                       "that vanishes in the exact solution (2.14)",
-                       {},
-                       tube});
-  to.add(checks.force,
-         {"force_imbalance",
-          "1",
-          "axial force of the disturbance flow on ends, wall and particle, divided by the pressure force of the empty duct over the length "
-          "R_T (radius of the circle with the area of the cross-section); a measure of error that vanishes in the exact solution (2.14)",
-          {},
-          tube});
+  add(checks.flux, "disturbance_flux", "1",
+      "flow rate of the disturbance velocity through the inlet divided by the flow rate of the empty duct; a measure of error that vanishes "
+      "in the exact solution (2.14)",
+      tube);
+  add(checks.force, "force_imbalance", "1",
+      "axial force of the disturbance flow on ends, wall and particle, divided by the pressure force of the empty duct over the length R_T "
+      "(radius of the circle with the area of the cross-section); a measure of error that vanishes in the exact solution (2.14)",
+      tube);
   if (to.when(!shared.domain.present))
-    to.add(checks.cap_velocity, {"cap_velocity",
-                                 "1",
-                                 "largest disturbance velocity on the ends of the computed part of the tube divided by the mean velocity of "
-                                 "the empty duct (if Flow/type is not `duct`: R_C times the rate of the flow or of relaxation); a measure of "
-                                 "error that decreases with the length of the tube",
-                                 {},
-                                 tube});
-  to.add(checks.pressure_by_flux, {"pressure_drop_by_flux",
-                                   "force/length^2",
-                                   "pressure drop caused by the particles, computed from the condition that the disturbance has zero flow "
-                                   "rate; agrees with `disturbed_pressure_drop` in the exact solution",
-                                   {},
-                                   tube});
-  to.add(checks.pressure_by_force, {"pressure_drop_by_force",
-                                    "force/length^2",
-                                    "pressure drop caused by the particles, computed from the balance of axial forces; agrees with "
-                                    "`disturbed_pressure_drop` in the exact solution",
-                                    {},
-                                    tube});
+    add(checks.cap_velocity, "cap_velocity", "1",
+        "largest disturbance velocity on the ends of the computed part of the tube divided by the mean velocity of the empty duct (if "
+        "Flow/type is not `duct`: R_C times the rate of the flow or of relaxation); a measure of error that decreases with the length of the "
+        "tube",
+        tube);
+  add(checks.pressure_by_flux, "pressure_drop_by_flux", "force/length^2",
+      "pressure drop caused by the particles, computed from the condition that the disturbance has zero flow rate; agrees with "
+      "`disturbed_pressure_drop` in the exact solution",
+      tube);
+  add(checks.pressure_by_force, "pressure_drop_by_force", "force/length^2",
+      "pressure drop caused by the particles, computed from the balance of axial forces; agrees with `disturbed_pressure_drop` in the exact "
+      "solution",
+      tube);
 }
 
 TubeRow tube_row(const coupling::Tube& tube, const stokes::AmbientFlow& flow, coupling::Evaluation& e) {

@@ -103,12 +103,12 @@ class Free : public ParticleSystem {
   static std::unique_ptr<coupling::LoneRigidBody> make_driven_body(const ParticleScene& particle_scene, const Body& body,
                                                                    coupling::RigidTractions& tractions) {
     const Vec3& centre = particle_scene.particle.shape.center;
+    const coupling::RigidDrive driven = drive_of(particle_scene, body);
     if (particle_scene.tube.present)
-      return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, particle_scene.flow.viscosity,
-                                                        drive_of(particle_scene, body));
+      return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, particle_scene.flow.viscosity, driven);
     if (particle_scene.medium())
-      return std::make_unique<coupling::FreeBodyInMedium>(tractions, body.rest, centre, body.radius, body.flow, drive_of(particle_scene, body));
-    return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, drive_of(particle_scene, body));
+      return std::make_unique<coupling::FreeBodyInMedium>(tractions, body.rest, centre, body.radius, body.flow, driven);
+    return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, driven);
   }
 
   /// Advances the phase of the rigid body by `step`. Sets in the row the phase, and the tank-treading velocity and frequency in the plane of the flow

@@ -180,17 +180,12 @@ void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, doub
 /// q. `same`: true if q is p itself, which is then not returned.
 std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<Net> found;
-  if (!cell) {
-    if (!same) found.push_back(q);
-    return found;
-  }
-  const Vec3 apart = cell->shift((q.colwise().mean() - p.colwise().mean()).transpose());
   const Eigen::Array3d low = p.colwise().minCoeff(), high = p.colwise().maxCoeff();
-  for (const Vec3& lattice_vector : cell->around({2, 2, 2})) {
-    if (same && lattice_vector.isZero(0)) continue;
-    const Net image = q.rowwise() + (lattice_vector - apart).transpose();
+  for (const Vec3& beyond : images(p, q, false, cell)) {
+    if (same && beyond.isZero(0)) continue;
+    const Net image = q.rowwise() + beyond.transpose();
     const Eigen::Array3d from = image.colwise().minCoeff(), to = image.colwise().maxCoeff();
-    if ((from - high).max(low - to).max(0).matrix().norm() <= reach) found.push_back(image);
+    if (!cell || (from - high).max(low - to).max(0).matrix().norm() <= reach) found.push_back(image);
   }
   return found;
 }

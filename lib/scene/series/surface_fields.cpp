@@ -106,16 +106,12 @@ std::shared_ptr<coupling::Evaluation> SurfaceFields::evaluate(const Net& y, cons
 }
 
 void SurfactantRow::add_columns(Columns& to) const {
-  constexpr const char* of = "drop with surfactant";
-  to.add(mass, {"surfactant_mass", "1", "total mass of surfactant divided by its initial value; it stays 1 up to rounding errors", {}, of});
-  to.add(smallest, {"smallest_concentration",
-                    "1",
-                    "smallest concentration of surfactant on the interface divided by the initial concentration",
-                    {},
-                    of});
-  to.add(
-      largest,
-      {"largest_concentration", "1", "largest concentration of surfactant on the interface divided by the initial concentration", {}, of});
+  const auto add = [&](double value, const char* name, const char* description) {
+    to.add(value, {name, "1", description, {}, "drop with surfactant"});
+  };
+  add(mass, "surfactant_mass", "total mass of surfactant divided by its initial value; it stays 1 up to rounding errors");
+  add(smallest, "smallest_concentration", "smallest concentration of surfactant on the interface divided by the initial concentration");
+  add(largest, "largest_concentration", "largest concentration of surfactant on the interface divided by the initial concentration");
 }
 
 surface::FieldsAt SurfaceFields::values_at(std::size_t p) const {
