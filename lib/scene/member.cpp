@@ -200,7 +200,8 @@ std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& memb
   return all;
 }
 
-/// Name of the surfactant's mass in checkpoints. At the start it is equal to the area, where the concentration is 1.
+/// Name of the surfactant's mass in checkpoints, although the mass is not an area: this name is taken, and another one would make checkpoints
+/// unreadable. At the start the mass is equal to the area, where the concentration is 1.
 constexpr const char* stored_mass = "initial area";
 
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
