@@ -128,7 +128,7 @@ def two_ranks_agree_with_one_and_a_run_is_resumed():
 
 def contradictory_decks_are_rejected():
     for setting, sentence in (
-        ("Membrane/load=strong", "implemented in the form `weak` only"),
+        ("Membrane/load=strong", "it needs loads by virtual work, `weak`"),
         ("Membrane/relaxation time=1", "the interface has no stress-free shape"),
     ):
         refused([sentence], deck(RUN), "--set", setting)

@@ -129,7 +129,7 @@ def two_ranks_agree_with_one_and_a_run_is_resumed():
 def contradictory_decks_are_rejected():
     for setting, sentence in (
         ("Membrane/shear viscosity=-1", "shear viscosity"),
-        ("Membrane/load=strong", "implemented in the form `weak` only"),
+        ("Membrane/load=strong", "it needs loads by virtual work, `weak`"),
     ):
         refused([sentence], deck(DECK), "--set", setting)
 

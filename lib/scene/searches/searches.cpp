@@ -109,7 +109,7 @@ void reject_searches(const ParticleScene& particle_scene, Rejections& to) {
   to.pair(steady && particle_scene.elastic() && unstressed != "sphere" && turns, {particle_scene.sought().here, "Steady"}, turner,
           "the particle is turned, and a membrane whose unstressed shape is not a sphere swings or tumbles while it tank-treads; use Periodic");
   to.pair(particle_scene.periodic.present && changed, "Periodic/turn",
-          {changed ? changed->here : "", "Tube, Channel, posts, or a flow, walls, lattice, forces or torques that are not symmetric about x2"},
+          {changed ? changed->here : "", "Tube, Channel, posts, or a flow, Wall, Domain, force or torque that the rotation about x2 changes"},
           "the rotation about x2 must not change flow, walls, forces and torques; give 0");
   to.pair(particle_scene.spectrum.near && particle_scene.spectrum.method == "krylov", "Spectrum/near", "Spectrum/method `krylov`",
           "that method finds the modes nearest to Spectrum/shift; give that key, or `dense`");
