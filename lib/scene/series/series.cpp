@@ -36,7 +36,7 @@ std::size_t rank(const std::string& column) {
   }();
   const std::string name = column.substr(column.find('/') + 1);
   auto at = ranks.find(name);
-  const std::string component = "x0123456789", stem = name.substr(0, name.find_last_not_of(component) + 1);  // `cell_1_` of `cell_1_x2`
+  const std::string component = "xk0123456789", stem = name.substr(0, name.find_last_not_of(component) + 1);  // `cell_1_` of `cell_1_x2`
   if (at == ranks.end() && stem.ends_with('_')) at = ranks.find(stem);
   return at == ranks.end() ? ranks.size() : at->second;
 }
