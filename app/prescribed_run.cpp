@@ -1,4 +1,4 @@
-// The traction on a body with prescribed motion, and what all runs without time steps have in common.
+// The traction on a body with prescribed motion, and what runs of all kinds and runs without time steps have in common.
 
 #include <cstdio>
 #include <memory>
@@ -39,24 +39,28 @@ SurfaceSnapshot snapshot(const ParticleScene& particle_scene, const Body& body, 
 
 }  // namespace
 
-StationaryRun::StationaryRun(const Scene& scene, const RunRequest& request, const std::string& why) : scene_(scene), request_(request) {
+void AnyRun::print(const output::Entries<std::string>& plan) const {
+  if (prints()) std::fputs(plan_text(plan).c_str(), stdout);
+}
+
+StationaryRun::StationaryRun(const Scene& scene, const RunRequest& request, const std::string& why) : AnyRun(scene, request) {
   refuse(request.resume, "--resume", why, "a steady problem has no time steps to continue");
 }
 
 void StationaryRun::show(output::Entries<std::string> plan) {
   plan_ = std::move(plan);
-  if (ranks.rank() == 0 && !request_.quiet) std::fputs(plan_text(plan_).c_str(), stdout);
+  print(plan_);
 }
 
 void StationaryRun::end_set_up() {
-  set_up_.reset();
+  clock_.reset();
   stop_where_told(scene_.output.too_late(seconds()));
 }
 
 int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel,
                           std::span<const Warning> remarks) {
-  std::optional<Phases::Scope> clock(std::in_place, phases, "output");
-  Results results(scene_, request_, body, surface::BezierMap(body.space), ranks);
+  clock_.emplace(phases_, "output");
+  Results results(scene_, request_, body, surface::BezierMap(body.space), ranks_);
   results.record(row);
   for (const Warning& remark : remarks) results.warn(remark);
   if (const std::string coarse = coarse_wall(scene_, body, row); !coarse.empty()) results.warn(coarse);
@@ -64,11 +68,10 @@ int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot&
   state.x = body.rest;
   results.save({}, state, {}, results.sample(snapshot, state.time));
   if (scene_.output.surface_text) results.write_surface(body.rest);
-  clock.reset();
-  account.plan = plan_;
-  for (const auto& [name, count] : {std::pair("far", kernel.far), {"near", kernel.near}, {"self", kernel.self}})
-    account.counts.emplace_back(std::string("kernel_evaluations_") + name, static_cast<long>(count));
-  return results.close(account, phases);
+  clock_.reset();
+  account.summary.plan = plan_;
+  each_kernel_count(kernel, [&](const char* name, auto, auto, auto count) { account.summary.counts.emplace_back(name, static_cast<long>(count)); });
+  return results.close(account, phases_);
 }
 
 int resist(const Scene& scene, const RunRequest& request) {
@@ -76,18 +79,18 @@ int resist(const Scene& scene, const RunRequest& request) {
   const ParticleScene particle_scene = scene.first();
   Body body = make_body(particle_scene);
   const std::vector<Warning> remarks = refine_isolated_body(particle_scene, body, [&](const Body& on) {
-    const std::unique_ptr<coupling::Tube> wall = make_tube(particle_scene, on, run.phases);
-    coupling::RigidTractions there = make_tractions(particle_scene, on, run.ranks, wall.get());
-    return rigid_solution(particle_scene, on, there, run.phases).density;
+    const std::unique_ptr<coupling::Tube> wall = make_tube(particle_scene, on, run.phases());
+    coupling::RigidTractions there = make_tractions(particle_scene, on, run.ranks(), wall.get());
+    return rigid_solution(particle_scene, on, there, run.phases()).density;
   });
-  run.show(plan(scene, body, run.ranks.size()));
-  const std::unique_ptr<coupling::Tube> around = make_tube(particle_scene, body, run.phases);
-  coupling::RigidTractions tractions = make_tractions(particle_scene, body, run.ranks, around.get());
+  run.show(plan(scene, body, run.ranks().size()));
+  const std::unique_ptr<coupling::Tube> around = make_tube(particle_scene, body, run.phases());
+  coupling::RigidTractions tractions = make_tractions(particle_scene, body, run.ranks(), around.get());
   run.end_set_up();
-  const RigidSolution solution = rigid_solution(particle_scene, body, tractions, run.phases);
+  const RigidSolution solution = rigid_solution(particle_scene, body, tractions, run.phases());
   stop_where_told();
   const double seconds = run.seconds();
-  const stokes::Evaluations kernel = run.ranks.of_all(tractions.kernel_evaluations() + particle_scene.walls->evaluations());
+  const stokes::Evaluations kernel = run.ranks().of_all(tractions.kernel_evaluations() + particle_scene.walls->evaluations());
   RunRow row{.progress = {.wall_seconds = seconds}};
   row.progress.counts.solver_iterations = solution.iterations;
   if (around) row.tube = tube_row(*around, body.flow, solution.density, solution.pressure_drop);
@@ -99,8 +102,8 @@ int resist(const Scene& scene, const RunRequest& request) {
   finish(columns);
 
   Account account;
-  account.counts = {{"unknowns", 3L * body.space.n_points}, {"solver_iterations", solution.iterations}};
-  account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
+  account.summary.counts = {{"unknowns", 3L * body.space.n_points}, {"solver_iterations", solution.iterations}};
+  account.summary.final_vectors = {{"drag", solution.force}, {"torque", solution.torque}};
   return run.record(body, columns, snapshot(particle_scene, body, solution), std::move(account), kernel, remarks);
 }
 

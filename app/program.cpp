@@ -156,8 +156,9 @@ void print(bool speaks, const std::string& text) {
 int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, const Registry& registry, bool speaks) {
   const RunRequest whole = run_request(arguments, deck.effective(), registry);
   if (!arguments.check) check_vacant(whole);
-  accuracy::LadderRequest task{scene.accuracy, scene.expect, deck.values(), deck.effective(), whole.output, whole.resume, whole.overwrite,
-                               whole.quiet, scene.has_time()};
+  accuracy::LadderRequest task{.options = scene.accuracy, .expect = scene.expect, .undefined = undefined_series(scene), .values = deck.values(),
+                               .deck = whole.deck_text, .directory = whole.output, .resume = whole.resume, .overwrite = whole.overwrite,
+                               .quiet = whole.quiet, .runs_in_time = scene.has_time()};
   accuracy::check_levels(task.values);
   std::string base = accuracy::without_section(accuracy::without_section(task.deck, "Accuracy"), "Expect");
   arguments.accuracy.clear();

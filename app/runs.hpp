@@ -26,29 +26,42 @@ int resist(const Scene& scene, const RunRequest& request);
 /// Returns the exit code like `simulate`. Collective.
 int flow_past_solids(const Scene& scene, const RunRequest& request);
 
+/// Scene, request, ranks and timers, which runs of all kinds have. Begins the set-up.
+class AnyRun {
+ protected:
+  AnyRun(const Scene& scene, const RunRequest& request) : scene_(scene), request_(request) {}
+
+  /// Returns the wall time on this rank since the run began.
+  double seconds_here() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  bool prints() const { return ranks_.rank() == 0 && !request_.quiet; }  ///< returns whether this rank prints the plan and the progress of the run
+  void print(const output::Entries<std::string>& plan) const;            ///< prints the plan of the run
+
+  const Scene& scene_;
+  const RunRequest& request_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Phases phases_ = started();
+  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // timer of the phase `set-up`, later of the main phase of the run
+  coupling::Ranks ranks_;
+};
+
 /// A run that solves one problem without time steps, and records one row of the series and one snapshot. Every call is collective.
-class StationaryRun {
+class StationaryRun : AnyRun {
  public:
   /// Begins the set-up. Throws UserError if the run is to be resumed. `why`: key of the deck because of which there are no time steps.
   StationaryRun(const Scene& scene, const RunRequest& request, const std::string& why);
 
   void show(output::Entries<std::string> plan);  ///< prints the plan of the run
   void end_set_up();  ///< throws motion::Stopped if a stop signal has arrived or the wall-clock limit has passed
-  double seconds() const { return ranks.seconds_since(start_); }  ///< returns the wall time since the run began
+  double seconds() const { return ranks_.seconds_since(start_); }  ///< returns the wall time since the run began
+  coupling::Ranks& ranks() { return ranks_; }
+  Phases& phases() { return phases_; }
 
   /// Records the row, and the snapshot of the surface body.rest. Adds the plan and `kernel`, the kernel evaluations of all ranks, to `account`,
   /// shows the warnings `remarks`, and closes the results. Returns the exit code like `simulate`.
   int record(const Body& body, Columns& row, const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel,
              std::span<const Warning> remarks = {});
 
-  coupling::Ranks ranks;
-  Phases phases = started();
-
  private:
-  const Scene& scene_;
-  const RunRequest& request_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::optional<Phases::Scope> set_up_{std::in_place, phases, "set-up"};
   output::Entries<std::string> plan_;
 };
 

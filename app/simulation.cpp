@@ -1,7 +1,6 @@
 // A run in time: steps, snapshots, adaptation of meshes, and the reasons for which the run ends.
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <functional>
 #include <optional>
@@ -32,20 +31,20 @@ namespace tanktread {
 namespace {
 
 /// A time-dependent run, from its first to its last step.
-class Run {
+class Run : AnyRun {
  public:
   Run(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), particles_(make_particle_system(scene, ranks_, phases_)),
+      : AnyRun(scene, request), particles_(make_particle_system(scene, ranks_, phases_)),
         results_(scene, request, particles_->body(), particles_->bezier(), ranks_), steps_(scene, *particles_) {
     ranks_.measure(phases_);
   }
 
   int go() {
     stop_where_told();
-    if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(plan(scene_, particles_->body(), ranks_.size())).c_str(), stdout);
+    print(plan(scene_, particles_->body(), ranks_.size()));
     begin();
     clock_.emplace(phases_, "time stepping");
-    output::Progress progress(state_.time, scene_.time.final_time, request_.quiet || ranks_.rank() != 0);
+    output::Progress progress(state_.time, scene_.time.final_time, !prints());
     std::string reason;
     while (reason.empty() && state_.time < scene_.time.final_time) {
       reason = step();
@@ -60,9 +59,6 @@ class Run {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  double seconds_here() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
   void begin() {
     if (auto resumed = results_.resumed()) {
       resume(*resumed);
@@ -227,6 +223,7 @@ class Run {
 
   /// Prints a warning for each limit of validity that the last step has come close to.
   void warn_of_limits() {
+    if (const std::string coarse = coarse_wall(scene_, particles_->body(), row_); !coarse.empty()) warn({"coarse wall", coarse});
     if (first_.particle.rigid()) return;
     const auto n_elements = static_cast<int>(particles_->body().space.elements.size());
     for (const Warning& warning : warnings_.of_step({first_, row_, quality_, n_elements})) results_.warn(warning);
@@ -237,7 +234,8 @@ class Run {
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const Results::Sampled snapshot = within_step_ && within_step_->sampled ? *within_step_->sampled : sample();
-    // sample() has evaluated the velocity at the time of the snapshot; the totals are collected again to include this evaluation.
+    // A snapshot within the step needs an evaluation of the velocity, which the totals must include. In two other cases, the totals must stay as they
+    // are: a snapshot at the state of the last row needs no evaluation, and the evaluations of a discarded step do not count.
     if (within_step_) collect_totals();
     output::Checkpoint checkpoint;
     particles_->store(checkpoint);
@@ -277,7 +275,6 @@ class Run {
   /// wall.
   std::string reason_to_stop() {
     if (scene_.tube.present) end_at_wall(scene_.tube.list(), scene_.tube.contact_gap);
-    if (const std::string coarse = coarse_wall(scene_, particles_->body(), row_); !coarse.empty()) warn({"coarse wall", coarse});
     if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
     if (scene_.has_gaps()) end_at_contact();
     const bool signalled = coupling::any_stop_requested(stop_requested()), late = scene_.output.too_late(ranks_.seconds_since(start_));
@@ -291,27 +288,22 @@ class Run {
   }
 
   Account account(const std::string& status) const {
-    return {plan(scene_, particles_->body(), ranks_.size()), counts(totals_), status, {}, earlier_seconds_, {}, {}};
+    return {.summary = {.status = status, .counts = counts(totals_), .plan = plan(scene_, particles_->body(), ranks_.size())},
+            .earlier = earlier_seconds_};
   }
 
   /// Closes the results and returns the exit code. `reason` is the reason for an early end, or empty.
   int end(const std::string& reason) {
     if (scene_.output.surface_text) results_.write_surface(particles_->snapshot(state_).surface);
     Account last = account(reason.empty() ? output::run_status::done : reason);
-    const bool whole = output::reached_end(last.status);
+    const bool whole = output::reached_end(last.summary.status);
     if (!reason.empty() && !request_.of_ladder) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
     if (!whole && !request_.of_ladder) last.remark += "; --resume " + results_.directory().string() + " continues the run";
     const int code = results_.close(last, phases_);
     return whole ? code : Exit::stopped;
   }
 
-  const Scene& scene_;
-  const RunRequest& request_;
-  const Clock::time_point start_ = Clock::now();
   double earlier_wall_seconds_ = 0;  // wall time of the earlier parts of a resumed run
-  Phases phases_ = started();
-  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // timer of the phase `set-up`, later of `time stepping`
-  coupling::Ranks ranks_;
   std::unique_ptr<ParticleSystem> particles_;
   Results results_;
   TimeSteps steps_;

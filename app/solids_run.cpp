@@ -11,8 +11,8 @@ namespace tanktread {
 
 int flow_past_solids(const Scene& scene, const RunRequest& request) {
   StationaryRun run(scene, request, "Particle/shape `cylinder`");
-  run.show(plan(scene, run.ranks.size()));
-  const coupling::SolidScene around = *make_solids(scene, run.phases);
+  run.show(plan(scene, run.ranks().size()));
+  const coupling::SolidScene around = *make_solids(scene, run.phases());
   coupling::PlatesAndPosts& all = *around.solids;
   run.end_set_up();
   const stokes::AmbientFlow ambient(scene.flow);
@@ -30,8 +30,8 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   const Net force = all.on_space(flow.force);
   const SurfaceSnapshot snapshot{body.rest, [&](const auto& nodes) { return std::vector<output::Field>{{"traction", -nodes.values(force)}}; }};
   Account account;
-  account.counts = {{"unknowns", 3L * all.surface().n_points()}};
-  return run.record(body, columns, snapshot, std::move(account), run.ranks.of_all(all.evaluations()));
+  account.summary.counts = {{"unknowns", 3L * all.surface().n_points()}};
+  return run.record(body, columns, snapshot, std::move(account), run.ranks().of_all(all.evaluations()));
 }
 
 }  // namespace tanktread

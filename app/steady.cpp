@@ -1,6 +1,5 @@
 // Searches for steady and periodic shapes, branches of steady shapes, and spectra.
 
-#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -34,10 +33,10 @@ namespace tanktread {
 namespace {
 
 /// A run that computes shapes one after another and records the results of each. Derived classes search for the shapes. Every call is collective.
-class SteadyRun {
+class SteadyRun : protected AnyRun {
  public:
   SteadyRun(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), pool_(scene, request.changed, ranks_, phases_, stop_requested_), system_(pool_.latest()),
+      : AnyRun(scene, request), pool_(scene, request.changed, ranks_, phases_, stop_requested_), system_(pool_.latest()),
         chosen_(plan(scene, system_->particles->body(), ranks_.size())),
         results_(scene, request, system_->particles->body(), system_->particles->bezier(), ranks_) {
     ranks_.measure(phases_);
@@ -48,8 +47,8 @@ class SteadyRun {
   /// Computes and records all shapes. Returns the exit code.
   int go() {
     stop_where_told();
-    if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(chosen_).c_str(), stdout);
-    for (const Warning& warning : first_warnings(scene_)) results_.warn(warning.sentence);
+    print(chosen_);
+    for (const Warning& warning : first_warnings(scene_)) results_.warn(warning);
     check_parity(*system_);
     clock_.emplace(phases_, "steady shape");
     try {
@@ -102,7 +101,7 @@ class SteadyRun {
     };
     const motion::Approach way = motion::approach_steady(equations, scene_.steady, scene_.solvers, reached);
     chosen_.emplace_back("search", way.text());
-    if (ranks_.rank() == 0 && !request_.quiet) std::printf("  %s\n", way.text().c_str());
+    if (prints()) std::printf("  %s\n", way.text().c_str());
     if (way.arrived()) x = std::move(reached);
     return way.arrived() ? way.last : failed;
   }
@@ -122,8 +121,6 @@ class SteadyRun {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   /// Computes the modes of the current shape. Returns the failure or stop if there is one.
   std::exception_ptr error_of_modes() {
     const auto clock = phases_.time("spectrum");
@@ -139,17 +136,15 @@ class SteadyRun {
     return lost;
   }
 
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
   void record() {
     const auto clock = phases_.time("diagnostics");
     pool_.count(totals_);
     totals_.phase_angle = system_->particles->phase_angle();
-    Columns row = system_->particles->next_row(state_, {.step = report_, .wall_seconds = seconds(), .evaluations = totals_.counts.evaluations});
+    Columns row = system_->particles->next_row(state_, {.step = report_, .wall_seconds = seconds_here(), .evaluations = totals_.counts.evaluations});
     found_.add_columns(scene_, row);
     row.check();
     results_.record(row);
-    if (const std::string coarse = coarse_wall(scene_, system_->particles->body(), row); !coarse.empty()) results_.warn_once("coarse wall", coarse);
+    if (const std::string coarse = coarse_wall(scene_, system_->particles->body(), row); !coarse.empty()) warn_once_({"coarse wall", coarse});
   }
 
   void save() {
@@ -175,38 +170,35 @@ class SteadyRun {
 
   int close() {
     Account account;
-    account.plan = chosen_;
+    account.summary.plan = chosen_;
     pool_.count(totals_);
-    account.counts = counts(totals_);
-    if (!failure_.empty()) account.status = output::run_status::failed + failure_;
+    account.summary.counts = counts(totals_);
+    if (!failure_.empty()) account.summary.status = output::run_status::failed + failure_;
     if (!stopped_.empty()) {
-      account.status = stopped_;
+      account.summary.status = stopped_;
       account.remark = spoken(stopped_) + "; the results so far are in " + results_.directory().string();
     }
     int k = 0;
-    for (const motion::Mode& mode : found_.modes) account.modes.emplace_back(std::to_string(++k), motion::name(mode.kind));
+    for (const motion::Mode& mode : found_.modes) account.summary.modes.emplace_back(std::to_string(++k), motion::name(mode.kind));
     const int code = results_.close(account, phases_);
     if (!failure_.empty()) throw RunFailure(failure_ + "; the results so far are in " + results_.directory().string());
     return stopped_.empty() ? code : Exit::stopped;
   }
 
-  const Clock::time_point start_ = Clock::now();
   // Function that returns whether this rank has received a stop signal or has passed the wall-clock limit.
-  const std::function<bool()> stop_requested_ = [this] { return stop_requested() || scene_.output.too_late(seconds()); };
-  Phases phases_ = started();
-  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};
+  const std::function<bool()> stop_requested_ = [this] { return stop_requested() || scene_.output.too_late(seconds_here()); };
   int earlier_coarsenings_ = 0;  // coarsenings up to the last recorded shape
   std::string failure_, stopped_;  // reasons for which the search failed or was stopped
 
  protected:
-  const Scene& scene_;
-  const RunRequest& request_;
-  coupling::Ranks ranks_;
   SystemPool pool_;
   std::shared_ptr<SteadySystem> system_;  // system of the current shape; results_ refers to its mesh
   output::Entries<std::string> chosen_;
   Results results_;
-  const Warn warn_once_ = [this](const Warning& warning) { results_.warn_once(warning.kind, warning.sentence); };
+  Warnings warnings_{scene_};
+  const Warn warn_once_ = [this](const Warning& warning) {
+    if (warnings_.fresh(warning)) results_.warn(warning);
+  };
   motion::State state_;
   motion::StepReport report_;
   RunTotals totals_;
@@ -289,7 +281,7 @@ class BranchSearch : public SteadyRun {
       system_->motion->restore_constraints(state_.x);
       report_.iterations = point->iterations, report_.error = point->rest, found_.point = *point;
       write();
-      if (ranks_.rank() == 0 && !request_.quiet)
+      if (prints())
         std::printf("  %-11d %s%s\n", k, scene_.continuation.text(point->parameter, point->second).c_str(), point->fold ? ", a fold" : "");
       if (const std::string remark = scene_.continuation.remark(*point); !remark.empty()) results_.warn(remark);
     }

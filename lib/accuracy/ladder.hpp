@@ -35,6 +35,7 @@ struct Program {
 struct LadderRequest {
   Options options;
   deck::Expectations expect;
+  deck::UndefinedSeries undefined;  ///< conditions under which series are NaN
   Values values;        ///< values of all keys of the deck
   std::string deck;     ///< effective deck, with its requests
   std::filesystem::path directory;

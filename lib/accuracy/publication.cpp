@@ -113,7 +113,7 @@ std::string publish(const LadderRequest& task, const std::vector<Outcome>& level
   record.move(task.directory / output::record_file);
   record.write(output::Durable::yes);
 
-  const std::vector<deck::Verdict> verdicts = deck::verdicts(task.expect.all, table);
+  const std::vector<deck::Verdict> verdicts = deck::verdicts(task.expect.all, table, task.undefined);
   std::string text = text_of_file(finest.directory / output::summary_file, output::summary_file, 10'000'000);
   for (const std::string& one : output::listed(text, "warnings")) print_warning(one);
   if (!end.status.empty()) text = output::with_entry(text, "status", output::yaml_status(end.status));

@@ -98,12 +98,6 @@ void check_vacant(const RunRequest& request) {
   });
 }
 
-/// Runs `action` on the first rank; all ranks throw if it fails.
-template <class Write>
-void Results::write(const Write& action) {
-  coupling::together(writes_, action);
-}
-
 std::map<std::string, std::string> Results::origin() const {
   std::map<std::string, std::string> made_by = request_.provenance;
   made_by["ranks"] = std::to_string(ranks_.size());
@@ -117,7 +111,7 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
       directory_(request.output) {
   std::vector<output::Array> channel;
   if (const auto* flow = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get()); flow && !request.resume) channel = channel_arrays(*flow);
-  write([&] {
+  coupling::together(writes_, [&] {
     occupation_.emplace(directory_);
     request.resume ? output::tidy_directory(directory_) : begin();
     if (!channel.empty()) output::write_arrays(directory_ / output::channel_file, channel);
@@ -131,9 +125,10 @@ void Results::begin() {
   for (const auto& [file, name] : scene_.files) keep(file, name);  // first, because it may be a result of the run that is overwritten
   output::start_directory(directory_);
   run_ = identifier();
+  // A ChannelFlow is copied as its base, the flow in the straight duct at its inlet.
   if (body_->duct) output::write_arrays(directory_ / output::duct_file, duct_arrays(stokes::DuctFlow(*body_->duct)));
   record_.emplace(directory_ / output::record_file, request_.deck_text, origin());
-  series_.emplace(directory_);
+  snapshots_.emplace(directory_);
   declare_series();
 }
 
@@ -167,10 +162,10 @@ std::optional<Resumed> Results::resumed() {
     throw UserError("--resume " + directory_.string() + ": " + chosen +
                     formatted(" contains step %d, but its name states another step", last_saved_));
   for (const Warning& warning : resumed.totals.warnings.shown) warnings_.push_back(warning.sentence), add_obstacle(warning.kind);
-  write([&] {
+  coupling::together(writes_, [&] {
     load_record(saved.checkpoint, chosen);
     set_aside(saved.damaged, chosen);
-    series_.emplace(output::SnapshotSeries::resumed(directory_, last_saved_, run_));
+    snapshots_.emplace(output::SnapshotSeries::resumed(directory_, last_saved_, run_));
   });
   if (writes_ && !request_.quiet) std::printf("  resumed     from %s\n", chosen.c_str());
   return resumed;
@@ -208,7 +203,7 @@ void Results::record(Columns& row) {
   if (own != row.all().end() || declared != columns_.all().end())
     throw std::logic_error("a row has the column " + (own == row.all().end() ? "none" : own->name) + " where the run declared " +
                            (declared == columns_.all().end() ? "none" : declared->name));
-  write([&] {
+  coupling::together(writes_, [&] {
     record_->append(row.values());
     if (record_->rows() > 1 && Clock::now() < due_) return;
     try {
@@ -226,7 +221,7 @@ void Results::write_files() {
     const auto begun = Clock::now();
     record_->write(durable());
     const Clock::time_point now = Clock::now();
-    due_ = now + std::max(50 * (now - begun), std::min<Clock::duration>(now - start_, std::chrono::seconds(1)));
+    due_ = now + std::max(50 * (now - begun), std::min<Clock::duration>(now - process_start_, std::chrono::seconds(1)));
     rows_written_ = record_->rows();
   }
   for (const auto& [step, bytes] : unwritten_snapshots_) output::write_whole(directory_ / output::snapshot_name(step), bytes, durable());
@@ -243,22 +238,18 @@ void Results::warn(const Warning& warning) {
   warn(warning.sentence);
 }
 
-void Results::warn_once(const std::string& kind, const std::string& sentence) {
-  if (kinds_of_warnings_.insert(kind).second) warn(Warning{kind, sentence});
-}
-
 void Results::add_obstacle(const std::string& kind) {
   const std::string why = accuracy::obstacle_of(kind);
   if (!why.empty() && std::ranges::find(obstacles_, why) == obstacles_.end()) obstacles_.push_back(why);
 }
 
 void Results::write_surface(const Net& surface) {
-  write([&] { output::write_whole(directory_ / output::surface_file, spline::iga_text(body_->space, surface), durable()); });
+  coupling::together(writes_, [&] { output::write_whole(directory_ / output::surface_file, spline::iga_text(body_->space, surface), durable()); });
 }
 
 Results::Sampled Results::sample(const SurfaceSnapshot& snapshot, double time) {
   Sampled sampled;
-  write([&] {
+  coupling::together(writes_, [&] {
     sampled = {time, nodes_->mesh(), output::shape_fields(*nodes_, snapshot.surface)};
     std::ranges::move(snapshot.fields(*nodes_), std::back_inserter(sampled.fields));
   });
@@ -266,15 +257,15 @@ Results::Sampled Results::sample(const SurfaceSnapshot& snapshot, double time) {
 }
 
 void Results::save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& snapshot) {
-  write([&] {
+  coupling::together(writes_, [&] {
     complete(checkpoint, state, totals, snapshot.time);
     unwritten_snapshots_.emplace_back(totals.step, output::snapshot_file(checkpoint, snapshot.mesh, snapshot.fields));
-    series_->add(totals.step, snapshot.time);
+    snapshots_->add(totals.step, snapshot.time);
     if (last_saved_ >= 0 && young() && rows_written_ != record_->rows()) return;
     write_files();
     if (young()) return;
     output::sync(directory_);
-    series_->write();
+    snapshots_->write();
   });
   last_saved_ = totals.step;
 }
@@ -291,13 +282,13 @@ void Results::complete(output::Checkpoint& checkpoint, const motion::State& stat
 int Results::close(const Account& account, const Phases& phases) {
   memory_ = peak_memory(ranks_);
   std::string missed;
-  write([&] {
+  coupling::together(writes_, [&] {
     if (!unwritten_snapshots_.empty() || rows_written_ != record_->rows()) write_files();
     missed = finish(account, phases);
   });
-  if (!output::reached_end(account.status)) missed.clear();
+  if (!output::reached_end(account.summary.status)) missed.clear();
   if (writes_) {
-    if (!request_.quiet) std::fputs(output::closing_table(phases, account.counts, directory_).c_str(), stdout);
+    if (!request_.quiet) std::fputs(output::closing_table(phases, account.summary.counts, directory_).c_str(), stdout);
     const std::string line = account.remark + (account.remark.empty() || missed.empty() ? "" : "; ") + missed;
     if (!line.empty()) std::fprintf(stderr, "tanktread: %s\n", line.c_str());
   }
@@ -323,31 +314,23 @@ output::Entries<std::string> Results::known_errors() const {
 /// Writes the summary. If a missed expectation has the key `not binding`, only warns about it. Returns one line with the other missed expectations,
 /// which make the run fail.
 std::string Results::finish(const Account& account, const Phases& phases) {
-  output::Summary summary;
-  summary.status = account.status;
+  output::Summary summary = account.summary;
   deck::SeriesTable table;
   for (const output::Series& series : record_->series()) {
     table[series.name] = series.values;
     summary.final.emplace_back(series.name, series.values.back());
     if (!series.si.empty()) summary.final_in_si.emplace_back(series.name, scene_.units->in_si(series.unit, series.values.back()));
   }
-  deck::UndefinedSeries undefined;
-  for (const Column& one : columns_.all())
-    if (!one.undefined_if.empty()) undefined[one.name] = one.undefined_if;
-  summary.expect = deck::verdicts(scene_.expect.all, table, undefined);
+  summary.expect = deck::verdicts(scene_.expect.all, table, undefined_series(scene_));
   const std::string missed = deck::missed(summary.expect, [this](const std::string& sentence) { warn(sentence); });
-  for (const auto& [name, value] : account.vectors) summary.final_vectors.emplace_back(name, std::vector<double>(value.begin(), value.end()));
-  summary.counts = account.counts;
   summary.seconds = with_earlier(phases, account.earlier);
   summary.memory = memory_;
-  summary.plan = account.plan;
   summary.numbers = numbers(scene_, *body_);
-  summary.modes = account.modes;
   summary.errors = known_errors();
   summary.warnings = warnings_;
   summary.obstacles = obstacles_;
   output::write_whole(directory_ / output::summary_file, output::yaml(summary));
-  series_->write();
+  snapshots_->write();
   std::set<std::string> copies;
   for (const auto& [file, name] : scene_.files) copies.insert(name);
   if (!young()) output::sync_results(directory_, copies);
@@ -358,6 +341,13 @@ std::vector<std::string> names_of_series(const Scene& scene) {
   std::vector<std::string> names;
   for (const Column& one : columns(scene).all()) names.push_back(one.name);
   return names;
+}
+
+deck::UndefinedSeries undefined_series(const Scene& scene) {
+  deck::UndefinedSeries undefined;
+  for (const Column& one : columns(scene).all())
+    if (!one.undefined_if.empty()) undefined[one.name] = one.undefined_if;
+  return undefined;
 }
 
 std::vector<std::string> check_expectations(const Scene& scene) {

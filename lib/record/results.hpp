@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -46,14 +45,11 @@ struct RunRequest {
 
 /// Data of a finished run for its summary and its messages.
 struct Account {
-  output::Entries<std::string> plan;
-  output::Entries<long> counts;
-  /// status in summary.yaml (output::run_status). A missed value of Expect fails the run only if the run has reached its end (output::reached_end)
-  std::string status = output::run_status::done;
-  std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expected values
-  output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run
-  output::Entries<Vec3> vectors;    ///< drag and torque of a body with prescribed motion, for Summary::final_vectors
-  output::Entries<std::string> modes;  ///< modes of a spectrum
+  /// status, plan, counts, final_vectors and modes; Results::close() sets all other entries. A missed value of Expect fails the run only if the run
+  /// has reached its end (output::reached_end)
+  output::Summary summary = {};
+  std::string remark = {};  ///< why the run ended early, if it did; printed on standard error together with missed expected values
+  output::Entries<double> earlier = {};  ///< seconds by phase of earlier parts of a resumed run
 };
 
 /// Returns the seconds by phase, to which the seconds `earlier` of earlier parts of a resumed run are added.
@@ -66,7 +62,8 @@ output::Saved newest_checkpoint(const std::filesystem::path& directory, const co
 /// Returns the effective deck from the newest checkpoint of a directory. Throws like newest_checkpoint. Collective.
 std::string stored_deck(const std::string& directory);
 
-/// Throws UserError if the directory holds results that the request does not allow to delete, or if another run writes to it. Collective.
+/// Throws UserError if the directory holds results that the request does not allow to delete, or if another run writes to it. This early check spares
+/// the set-up of a run that cannot write. The constructor of Results checks again when the directory is locked; that check decides. Collective.
 void check_vacant(const RunRequest& request);
 
 /// Files of a run (inputs/manual/results/index.md). The first rank samples snapshots and writes all files. Every call is collective, and all ranks
@@ -78,7 +75,8 @@ void check_vacant(const RunRequest& request);
 /// its results and the copies of files that the deck names are flushed. `run.hdf.series` is written for the first time after a second, or at the end
 /// of the run.
 ///
-/// Order of calls: resumed() if the run continues another one, then record() and save() for each recorded state, and close() last.
+/// Order of calls: resumed() if the run continues another one, then record() and save() for each recorded state, and close() last. lib/README.md
+/// (files of `record`) has the order of all calls, also after a failure.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);
@@ -95,10 +93,11 @@ class Results {
   /// the row on every rank to the values of the first rank, so that all ranks take the same decisions.
   void record(Columns& row);
 
-  /// Prints a warning on standard error and adds it to the summary.
+  /// Prints a warning on standard error and adds it to the summary. A Warning has a kind. Pass it if errors may not be estimated because of the
+  /// warning (accuracy::obstacle_of), or if the condition can recur: call Warnings::fresh() first, which admits each kind once, also in a run that is
+  /// resumed. A sentence has no kind. Pass it if the condition occurs once.
   void warn(const std::string& sentence);
-  void warn(const Warning& warning);  ///< also adds to the summary whether its kind prevents estimates of errors
-  void warn_once(const std::string& kind, const std::string& sentence);  ///< does nothing after the first warning of this kind
+  void warn(const Warning& warning);
 
   /// Fields of a snapshot, sampled at the nodes of the current mesh, on the first rank. They can be written to a file even after the mesh has
   /// changed.
@@ -126,8 +125,6 @@ class Results {
 
  private:
   using Clock = std::chrono::steady_clock;
-  template <class Write>
-  void write(const Write& action);
   void begin();
   void keep(const std::filesystem::path& file, const std::filesystem::path& name);
   void declare_series();
@@ -136,7 +133,7 @@ class Results {
   void load_record(const output::Checkpoint& checkpoint, const std::string& chosen);
   void add_obstacle(const std::string& kind);
   void write_files();
-  bool young() const { return Clock::now() - start_ < std::chrono::seconds(1); }
+  bool young() const { return Clock::now() - process_start_ < std::chrono::seconds(1); }
   output::Durable durable() const { return young() ? output::Durable::no : output::Durable::yes; }
   std::string finish(const Account& account, const Phases& phases);
   output::Entries<std::string> known_errors() const;
@@ -153,18 +150,20 @@ class Results {
   std::optional<output::Occupation> occupation_;
   std::optional<output::RunRecord> record_;
   std::size_t rows_written_ = 0;  // rows that this process has written to `run.h5`
-  std::optional<output::SnapshotSeries> series_;
+  std::optional<output::SnapshotSeries> snapshots_;
   std::optional<output::Nodes> nodes_;  // nodes of the snapshots
   std::vector<std::pair<int, std::string>> unwritten_snapshots_;  // snapshots that are not written yet: step number and contents of the file
   std::vector<std::string> warnings_, obstacles_;
-  std::set<std::string> kinds_of_warnings_;  // kinds passed to warn_once()
   output::Entries<long> memory_;  // peak memory, for the summary
   int last_saved_ = -1;
-  Clock::time_point start_ = Clock::now(), due_ = start_;  // start_: beginning of this process; due_: time at which `run.h5` is to be written next
+  Clock::time_point process_start_ = Clock::now(), due_ = process_start_;  // due_: time at which `run.h5` is to be written next
 };
 
 /// Returns the names of the series that a run of this scene records.
 std::vector<std::string> names_of_series(const Scene& scene);
+
+/// Returns the conditions under which series of this scene are NaN.
+deck::UndefinedSeries undefined_series(const Scene& scene);
 
 /// Returns a sentence for each expectation that the run cannot meet because it ends before the time of the expectation. Throws UserError if an
 /// expected series is not recorded in this scene.

@@ -1,5 +1,9 @@
 #pragma once
 // Checkpoints, from which a run is resumed.
+//
+// A checkpoint of another version of the program is either used in full or refused. An entry that every run has is read by `.at(name)`; if it is
+// missing, Results::resumed() throws UserError. An entry may be missing only if the run had no such data, for example no contacts. An entry that has
+// changed its meaning gets another name.
 
 #include <filesystem>
 #include <map>

@@ -1,6 +1,8 @@
 #include "record/files/hdf.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <stdexcept>
 
 #include "record/files/file.hpp"
@@ -96,6 +98,8 @@ Id open_copy(const std::filesystem::path& path) {
 }
 
 Id write(hid_t file, const std::string& name, std::span<const double> values, const Shape& shape) {
+  if (std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies()) != values.size())
+    throw std::logic_error("the number of values of " + name + " does not agree with its shape");
   return write_any(file, name, H5T_NATIVE_DOUBLE, shape, values.data());
 }
 Id write(hid_t file, const std::string& name, std::span<const std::int64_t> values) {

@@ -45,8 +45,8 @@ Id open_copy(const std::filesystem::path& path);
 
 using Shape = std::vector<hsize_t>;  ///< shape of a dataset; empty for a scalar
 
-/// Write or read datasets of a file, row-major. `write` returns the dataset. It creates the missing groups of a name `group/name`. `read_doubles`
-/// sets `shape` to the shape of the dataset.
+/// Write or read datasets of a file, row-major. `write` returns the dataset. It creates the missing groups of a name `group/name`. It throws
+/// std::logic_error if `values` has another size than `shape`. `read_doubles` sets `shape` to the shape of the dataset.
 Id write(hid_t file, const std::string& name, std::span<const double> values, const Shape& shape);
 Id write(hid_t file, const std::string& name, std::span<const std::int64_t> values);
 Id write(hid_t file, const std::string& name, std::span<const std::uint8_t> values);

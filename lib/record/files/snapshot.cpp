@@ -71,6 +71,7 @@ SnapshotSeries SnapshotSeries::resumed(fs::path directory, int step, const std::
 }
 
 void SnapshotSeries::add(int step, double time) {
+  // Results::save() may have failed after it called add(), and is then called again for the same step.
   std::erase_if(entries_, [step](const Entry& entry) { return entry.step == step; });
   entries_.push_back({step, time});
 }

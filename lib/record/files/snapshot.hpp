@@ -38,7 +38,7 @@ class SnapshotSeries {
   /// Returns the list for a resumed run: the readable snapshots in `directory` up to `step` whose run identifier (SnapshotLabel::run) is `run`.
   static SnapshotSeries resumed(std::filesystem::path directory, int step, const std::string& run);
 
-  void add(int step, double time);  ///< adds the snapshot of a step, whose file exists already
+  void add(int step, double time);  ///< adds or replaces the snapshot of a step
   void write() const;               ///< writes the list
 
  private:

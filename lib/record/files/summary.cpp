@@ -13,11 +13,7 @@ std::string scalar(double value) { return deck::real_text(value); }
 std::string scalar(long value) { return std::to_string(value); }
 std::string scalar(bool value) { return value ? "true" : "false"; }
 std::string scalar(const std::string& value) { return deck::in_quotes(value); }
-std::string scalar(const std::vector<double>& values) {
-  std::vector<std::string> words;
-  for (const double value : values) words.push_back(scalar(value));
-  return "[" + deck::joined(words, ", ") + "]";
-}
+std::string scalar(const Vec3& value) { return "[" + scalar(value[0]) + ", " + scalar(value[1]) + ", " + scalar(value[2]) + "]"; }
 
 template <class Value>
 std::string lines(const Entries<Value>& entries) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/types.hpp"
 #include "deck/expectation.hpp"
 
 namespace tanktread::output {
@@ -28,7 +29,7 @@ struct Summary {
   std::string status = run_status::done;  ///< one of the values in the namespace `run_status`
   Entries<double> final;  ///< last value of every series; steady problems add values such as drag and drag_error
   Entries<std::string> final_in_si;  ///< last values of series with a physical unit, in SI units; empty if the deck does not set its units
-  Entries<std::vector<double>> final_vectors;  ///< last values of vectors, as lists: drag, torque
+  Entries<Vec3> final_vectors;  ///< last values of vectors, as lists: drag, torque
   std::vector<deck::Verdict> expect;
   Entries<long> counts;       ///< work: steps, evaluations, assemblies, ...
   Entries<double> seconds;    ///< wall time by phase

@@ -70,6 +70,8 @@ class ParticleSystem {
   /// `progress`, with the time and the work of the run. To be called once per row, in the order of times.
   virtual Columns next_row(const motion::State& state, const ProgressRow& progress) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
+  /// Returns the surface and the fields of a snapshot. At the state of the last row, it must neither solve systems nor evaluate kernels: a run does
+  /// not collect the counts of operations again before it stores them in the checkpoint.
   virtual SurfaceSnapshot snapshot(const motion::State& state) = 0;
 };
 

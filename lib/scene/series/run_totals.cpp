@@ -49,6 +49,14 @@ coupling::Contacts stored_contacts(const output::Checkpoint& checkpoint) {
 
 }  // namespace
 
+static_assert(sizeof(coupling::Contacts) == sizeof(std::vector<coupling::Contact>) + sizeof(double) && sizeof(PhaseAngle) == 2 * sizeof(double) &&
+                  sizeof(Warnings::Memory) == 2 * sizeof(double) + sizeof(std::vector<Warning>),
+              "store the new member in a checkpoint, and read it");
+static_assert(sizeof(RunTotals) == 2 * sizeof(double) + sizeof(coupling::OperationCounts) + 2 * sizeof(int) + sizeof(stokes::Evaluations) +
+                                       sizeof(Warnings::Memory) + sizeof(std::vector<PhaseAngle>) + sizeof(coupling::Contacts) +
+                                       sizeof(output::Entries<double>),
+              "store the new member in a checkpoint, and read it, or add it to each_count()");
+
 output::Entries<long> counts(const RunTotals& totals) {
   output::Entries<long> all;
   each_count(totals, [&](const char* name, auto, auto, const auto& count) { all.emplace_back(name, static_cast<long>(count)); });

@@ -26,11 +26,20 @@ struct RunTotals {
   output::Entries<double> seconds;  ///< wall time of the first rank in each phase of the program
 };
 
+/// Calls act(name, kinds of particles, description, value) for the counters of kernel evaluations on all ranks, see each_count().
+template <class Some, class Act>
+void each_kernel_count(Some& kernel, const Act& act) {
+  act("kernel_evaluations_far", "all", "number of evaluations of the Stokes kernels (2.1) on all ranks by far-field quadrature", kernel.far);
+  act("kernel_evaluations_near", "all", "number of evaluations of the Stokes kernels on all ranks by near-singular quadrature", kernel.near);
+  act("kernel_evaluations_self", "all",
+      "number of evaluations of the Stokes kernels on all ranks by singular quadrature, on the element of the target", kernel.self);
+}
+
 /// Calls act(name, kinds of particles, description, value) for every counter of a run, for example the number of accepted steps. The counter is
 /// reported only for these kinds of particles. Checkpoints and the summary store each counter under its name.
 template <class Some, class Act>
 void each_count(Some& totals, const Act& act) {
-  constexpr const char *moving = "capsule, drop, free body", *all = "all";
+  constexpr const char* moving = "capsule, drop, free body";
   act("steps", moving, "number of accepted time steps", totals.step);
   act("refinements", moving, "number of mesh changes that refined elements", totals.refinements);
   act("coarsenings", moving, "number of mesh changes that merged elements", totals.coarsenings);
@@ -40,7 +49,7 @@ void each_count(Some& totals, const Act& act) {
   act("tangents", moving, "number of times that the tangent stiffness of the membrane was evaluated", totals.counts.tangents);
   act("linear_solves", moving, "number of linear systems solved in implicit time steps; for a free body, linear systems for its motion",
       totals.counts.solves);
-  act("solver_iterations", all,
+  act("solver_iterations", "all",
       "number of iterations of the linear solver in `linear_solves`; for a prescribed body, in the solutions for its traction and the "
       "tractions of unit motions",
       totals.counts.solver_iterations);
@@ -48,12 +57,7 @@ void each_count(Some& totals, const Act& act) {
   act("velocity_solves", moving, "number of linear systems solved for velocities", totals.counts.velocity_solves);
   act("most_velocity_iterations", moving, "largest number of iterations of one linear solve for a velocity",
       totals.counts.most_velocity_iterations);
-  act("kernel_evaluations_far", all, "number of evaluations of the Stokes kernels (2.1) on all ranks by far-field quadrature",
-      totals.kernel.far);
-  act("kernel_evaluations_near", all, "number of evaluations of the Stokes kernels on all ranks by near-singular quadrature",
-      totals.kernel.near);
-  act("kernel_evaluations_self", all,
-      "number of evaluations of the Stokes kernels on all ranks by singular quadrature, on the element of the target", totals.kernel.self);
+  each_kernel_count(totals.kernel, act);
 }
 
 /// Returns every count of the run with its name, for the summary.
