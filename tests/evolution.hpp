@@ -9,6 +9,7 @@
 #include "motion/integrator.hpp"
 #include "scene/member.hpp"
 #include "scene/scene.hpp"
+#include "tests/membrane_totals.hpp"
 #include "tests/shape_measures.hpp"
 
 namespace tanktread {
@@ -47,7 +48,7 @@ class Evolution {
   const Body& body() const { return *members_.front().body; }
   surface::Deformation deformation() const { return surface::deformation(capsule->geometry(), state.x); }
   double volume_error() const { return capsule->volume_error(capsule->geometry().volume(state.x)); }
-  double energy() const { return capsule->membrane().energy(state.x); }
+  double energy() const { return membrane::energy(capsule->membrane(), state.x); }
 
   Scene scene;
   std::shared_ptr<coupling::Capsule> capsule;

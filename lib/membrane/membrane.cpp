@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numeric>
 
 #include "base/indices.hpp"
 #include "membrane/packed.hpp"
@@ -125,13 +124,6 @@ std::shared_ptr<const Part> Membrane::part(std::span<const int> elements) const 
   return parts_.front();
 }
 
-double Membrane::energy(const Net& x) const { return energy(x, all_); }
-
-double Membrane::energy(const Net& x, std::span<const int> elements) const {
-  const std::vector<double> energies = element_energies(x, elements);
-  return std::accumulate(energies.begin(), energies.end(), 0.);
-}
-
 std::vector<double> Membrane::element_energies(const Net& x, std::span<const int> elements) const {
   std::vector<double> sum(space_->elements.size(), 0.);
   part(elements)->each_batch([&](const Part::Points& at) {
@@ -170,12 +162,6 @@ Net Membrane::load(const Net& x) const {
   return d;
 }
 
-TensionSummary Membrane::tension_summary(const Net& x) const {
-  const ElementTensions all = element_tensions(x, all_);
-  const auto sum = [](const std::vector<double>& areas) { return std::accumulate(areas.begin(), areas.end(), 0.); };
-  return {all.smallest, sum(all.compressed) / sum(all.area), all.area_change};
-}
-
 ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> elements, double uniform) const {
   const std::vector<double> none(space_->elements.size(), 0.);
   ElementTensions result{std::numeric_limits<double>::infinity(), 0, none, none};
@@ -211,35 +197,36 @@ Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstress
   return result;
 }
 
-namespace {
-
 /// Stresses in the surface that are linear in a displacement or a velocity u, at the Gauss points of a set of elements.
-struct LinearStresses {
+struct LinearLoad::Points {
   std::shared_ptr<const Part> part;
   std::vector<std::vector<TangentPoint>> of_group;  // one list per group of elements; empty if the group has no such stresses
-
-  /// Sets `sum` to the virtual work of the stresses due to u, one row per control point of the n_points points of the surface.
-  void apply(int n_points, const Net& u, Net& sum) const {
-    sum.setZero(n_points, 3);
-    part->each_batch([&](const Part::Points& at) {
-      if (of_group[at.g].empty()) return;
-      Pack gradient[6 * max_gauss], p[6 * max_gauss];
-      tangents(at.group, at.batch, u, gradient);
-      membrane::apply(at.n, &of_group[at.g][at.first], gradient, p);
-      add_transpose(at.group, at.batch, p, sum);
-    });
-  }
+  // per group: derivatives of x up to the second order at the Gauss points; empty without bending moments that depend on u
+  std::vector<std::vector<Pack>> jets;
 };
 
-}  // namespace
+LinearLoad::LinearLoad(const Membrane& membrane) : membrane_(&membrane), points_(std::make_unique<Points>()) {}
+LinearLoad::~LinearLoad() = default;
+LinearLoad::LinearLoad(LinearLoad&&) noexcept = default;
 
-struct Tangent::Points : LinearStresses {
-  std::vector<std::vector<Pack>> jets;  // per group: derivatives of x up to the second order at the Gauss points; only with bending
-};
-
-Tangent::Tangent(const Membrane& membrane) : membrane_(&membrane), points_(std::make_unique<Points>()) {}
-Tangent::~Tangent() = default;
-Tangent::Tangent(Tangent&&) noexcept = default;
+void LinearLoad::apply(const Net& u, Net& hu) const {
+  hu.setZero(membrane_->space().n_points, 3);
+  points_->part->each_batch([&](const Part::Points& at) {
+    if (points_->of_group[at.g].empty()) return;
+    Pack gradient[6 * max_gauss], p[6 * max_gauss];
+    tangents(at.group, at.batch, u, gradient);
+    membrane::apply(at.n, &points_->of_group[at.g][at.first], gradient, p);
+    add_transpose(at.group, at.batch, p, hu);
+  });
+  if (points_->jets.empty()) return;
+  points_->part->each_bending_batch([&](const Part::Points& at) {
+    Pack gradient[15 * max_gauss], p[15 * max_gauss];
+    jets(at.group, at.batch, u, gradient);
+    const Pack* now = &points_->jets[at.g][15 * at.first];
+    bending_apply(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, now, gradient, p);
+    add_jet_transpose(at.group, at.batch, p, hu);
+  });
+}
 
 void Tangent::update(const Net& x, std::span<const int> elements) {
   points_->part = membrane_->part(elements);
@@ -258,23 +245,6 @@ void Tangent::update(const Net& x, std::span<const int> elements) {
   part.each_bending_batch([&](const Part::Points& at) { jets(at.group, at.batch, x, &points_->jets[at.g][15 * at.first]); });
 }
 
-void Tangent::apply(const Net& u, Net& hu) const {
-  points_->apply(membrane_->space().n_points, u, hu);
-  points_->part->each_bending_batch([&](const Part::Points& at) {
-    Pack gradient[15 * max_gauss], p[15 * max_gauss];
-    jets(at.group, at.batch, u, gradient);
-    const Pack* now = &points_->jets[at.g][15 * at.first];
-    bending_apply(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, now, gradient, p);
-    add_jet_transpose(at.group, at.batch, p, hu);
-  });
-}
-
-struct ViscousLoad::Points : LinearStresses {};
-
-ViscousLoad::ViscousLoad(const Membrane& membrane) : membrane_(&membrane), points_(std::make_unique<Points>()) {}
-ViscousLoad::~ViscousLoad() = default;
-ViscousLoad::ViscousLoad(ViscousLoad&&) noexcept = default;
-
 void ViscousLoad::update(const Net& x, std::span<const int> elements) {
   points_->part = membrane_->part(elements);
   const Part& part = *points_->part;
@@ -288,8 +258,6 @@ void ViscousLoad::update(const Net& x, std::span<const int> elements) {
     viscous_points(at.material.viscosity, at.n, at.reference, a, &points_->of_group[at.g][at.first]);
   });
 }
-
-void ViscousLoad::apply(const Net& v, Net& cv) const { points_->apply(membrane_->space().n_points, v, cv); }
 
 Net unstressed(const Net& rest, const Vec3& centre, double alpha) {
   return ((rest.rowwise() - centre.transpose()) / (1 + alpha)).rowwise() + centre.transpose();

@@ -14,15 +14,10 @@ namespace tanktread::membrane {
 
 struct Part;
 
-/// Summary of tensions and area changes over the Gauss points, for the columns `smallest_tension`, `compressed_area` and `local_area_change` of the
-/// time series. smallest: smallest principal tension divided by the modulus. compressed_area: fraction of the current area in which a principal
-/// tension is less than -1e-9 of the modulus. area_change: largest |J - 1|, with J the ratio of current to unstressed area.
-struct TensionSummary {
-  double smallest = 0, compressed_area = 0, area_change = 0;
-};
-
-/// Contributions of some elements to a TensionSummary: the smallest tension and the largest |J - 1| on the given elements, and for each element of
-/// the space its area and its area under compression. Both areas are zero for elements that are not given.
+/// Tensions and area changes over the Gauss points of some elements, for the columns `smallest_tension`, `compressed_area` and `local_area_change` of
+/// the time series. smallest: smallest principal tension divided by the modulus. area_change: largest |J - 1|, with J the ratio of current to
+/// unstressed area. area, compressed: for each element of the space its current area, and the part of it in which a principal tension is less than
+/// -1e-9 of the modulus. Both areas are zero for elements that are not given.
 struct ElementTensions {
   double smallest = 0, area_change = 0;
   std::vector<double> area, compressed;
@@ -42,12 +37,8 @@ class Membrane {
   /// Creates a membrane of several materials.
   Membrane(const spline::Space& space, const Net& unstressed, const Materials& materials, int order = 4);
 
-  /// Returns E = int Psi dGamma_0 plus the bending energy, over all or the given elements, with the strain energy Psi per unstressed area. Units
-  /// force x length.
-  double energy(const Net& x) const;
-  double energy(const Net& x, std::span<const int> elements) const;
-
-  /// Returns the energy of each element of the space, zero for elements that are not given.
+  /// Returns the energy E = int Psi dGamma_0 plus the bending energy of each element of the space, zero for elements that are not given, with the
+  /// strain energy Psi per unstressed area. Units force x length.
   std::vector<double> element_energies(const Net& x, std::span<const int> elements) const;
 
   /// Computes the load d_A = int tau^ab R_A,a g_b dGamma = dE/dx_A, with R_A the spline functions, shape (N, 3); d is set to zero first (3.6). A row
@@ -55,9 +46,7 @@ class Membrane {
   void load(const Net& x, std::span<const int> elements, Net& d) const;
   Net load(const Net& x) const;
 
-  /// Returns the smallest principal tension, the fraction of the area under compression, and the largest area change over all Gauss points.
-  /// `uniform`: uniform tension that a load adds, in the unit of the summary.
-  TensionSummary tension_summary(const Net& x) const;
+  /// Returns the tensions and area changes. `uniform`: uniform tension that a load adds, divided by the modulus.
   ElementTensions element_tensions(const Net& x, std::span<const int> elements, double uniform = 0) const;
 
   /// Returns the strong form of the load, t = -div_s tau (equation 3 of Maestre et al. 2017), at a parametric point. It uses second derivatives of
@@ -90,45 +79,36 @@ class Membrane {
 /// Returns the principal tensions, smaller first, divided by the modulus, from jets of the unstressed and current surface. Shape (points, 2).
 Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstressed, std::span<const surface::Jet> now);
 
-/// Hessian H = d^2E/dx^2 of the energy at a configuration. It is symmetric and applied without being assembled.
-class Tangent {
+/// Symmetric operator H that gives a load that is linear in a displacement or a velocity u. It is applied without being assembled.
+class LinearLoad {
  public:
-  explicit Tangent(const Membrane& membrane);
-  ~Tangent();
-  Tangent(Tangent&&) noexcept;
+  explicit LinearLoad(const Membrane& membrane);
+  ~LinearLoad();
+  LinearLoad(LinearLoad&&) noexcept;
 
-  /// Linearises the load at x on the given elements.
-  void update(const Net& x, std::span<const int> elements);
-
-  /// Sets `hu` to H u, shape (N, 3). Only the elements of the last update contribute. A row is complete if the whole support of its function is in
-  /// these elements.
+  /// Sets `hu` to H u, shape (N, 3). Only the elements of the last update() of the derived class contribute. A row is complete if the whole support
+  /// of its function is in these elements.
   void apply(const Net& u, Net& hu) const;
 
- private:
+ protected:
   struct Points;
   const Membrane* membrane_;
   std::unique_ptr<Points> points_;
 };
 
+/// Hessian H = d^2E/dx^2 of the energy at a configuration.
+class Tangent : public LinearLoad {
+ public:
+  using LinearLoad::LinearLoad;
+  void update(const Net& x, std::span<const int> elements);  ///< linearises the load at x on the given elements
+};
+
 /// Viscous load (3.10) of the membrane in a given shape: (C v)_A = int J tau^ab R_A,a g_b for the velocity v, with R_A the spline functions. C is
 /// symmetric, and v.C v is the dissipated power.
-class ViscousLoad {
+class ViscousLoad : public LinearLoad {
  public:
-  explicit ViscousLoad(const Membrane& membrane);
-  ~ViscousLoad();
-  ViscousLoad(ViscousLoad&&) noexcept;
-
-  /// Sets the shape x and the elements that apply() uses.
-  void update(const Net& x, std::span<const int> elements);
-
-  /// Computes the viscous load C v for the velocity v from the elements of the last update. `cv`, shape (N, 3), is set to zero first. A row is
-  /// complete if the whole support of its function is in these elements.
-  void apply(const Net& v, Net& cv) const;
-
- private:
-  struct Points;
-  const Membrane* membrane_;
-  std::unique_ptr<Points> points_;
+  using LinearLoad::LinearLoad;
+  void update(const Net& x, std::span<const int> elements);  ///< sets the shape x and the elements that apply() uses
 };
 
 /// Returns the unstressed net of a membrane that is inflated to `rest`: X = centre + (x - centre)/(1 + alpha).

@@ -43,12 +43,6 @@ std::vector<WallRepulsion::RepulsionPoint> WallRepulsion::places(const Net& x, s
   return found;
 }
 
-double WallRepulsion::potential(const Net& x, std::span<const int> elements) const {
-  double sum = 0;
-  for (const RepulsionPoint& at : places(x, elements)) sum += at.energy;
-  return sum;
-}
-
 void WallRepulsion::add_work(const Net& x, std::span<const int> elements, Net& d, std::span<Net> /*sums*/) const {
   for (const RepulsionPoint& at : places(x, elements)) {
     const std::vector<int>& points = space_.elements[static_cast<std::size_t>(at.element)].points;

@@ -18,14 +18,13 @@ struct Repulsion {
   double stress = 0, range = 1;
 };
 
-/// Load of the wall repulsion (3.22) on a membrane. Its tangent contains only the stiff part, the change of the force with the gap g, and neglects
+/// Load of the wall repulsion (3.22) on a membrane, whose energy is not part of the membrane's elastic energy. Its tangent contains only the stiff part, the change of the force with the gap g, and neglects
 /// the change of the wall's normal.
 class WallRepulsion : public Load {
  public:
   /// `space` must outlive this object.
   WallRepulsion(const spline::Space& space, const Net& unstressed, Repulsion repulsion);
 
-  double potential(const Net& x, std::span<const int> elements) const;  ///< energy (3.22), force x length; not part of the membrane's elastic energy
   void add_work(const Net& x, std::span<const int> elements, Net& work, std::span<Net> sums) const override;
   void linearise(const Net& x, std::span<const int> elements, std::span<const Net> sums) override;
   void add_tangent(const Net& dx, Net& change) const override;

@@ -12,6 +12,7 @@
 #include "membrane/membrane.hpp"
 #include "tests/assembled_tangent.hpp"
 #include "tests/evolution.hpp"
+#include "tests/membrane_totals.hpp"
 
 namespace tanktread {
 namespace {
@@ -33,7 +34,7 @@ double lowest_wave(int n, double bending) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(h, m);
   if (modes.eigenvalues()[0] >= 0) return 0;
   const Eigen::VectorXd u = modes.eigenvectors().col(0);
-  const double tension = -plain.tension_summary(x).smallest;
+  const double tension = -tension_summary(plain, x).smallest;
   return std::sqrt(std::max(0.0, -u.dot(tense * u) / u.dot(m * u) / tension));
 }
 

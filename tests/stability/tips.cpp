@@ -10,6 +10,7 @@
 #include "surface/geometry.hpp"
 #include "surface/patch.hpp"
 #include "tests/evolution.hpp"
+#include "tests/membrane_totals.hpp"
 #include "tests/shape_measures.hpp"
 
 namespace tanktread {
@@ -27,7 +28,7 @@ Tip tip(int n, double ca) {
   double curvature = std::numeric_limits<double>::infinity();
   for (const auto& sites : run.body().space.collocation)
     curvature = std::min(curvature, surface::mean_curvature(run.body().space, run.state.x, sites.front()));
-  return {run.capsule->membrane().tension_summary(run.state.x).smallest, curvature};
+  return {tension_summary(run.capsule->membrane(), run.state.x).smallest, curvature};
 }
 
 TEST(Tips, OnACoarseMeshAreCompressedAlthoughTheMembraneIsNot) {

@@ -13,6 +13,7 @@
 #include "surface/geometry.hpp"
 #include "system/coupled_motion.hpp"
 #include "tests/evolution.hpp"
+#include "tests/membrane_totals.hpp"
 
 namespace tanktread {
 namespace surfactant_test {
@@ -137,7 +138,7 @@ TEST(Surfactant, TheFreeEnergyOfADropAtRestDecreases) {
   state.step = motion::first_step(drop.motion, state, drop.scene.scene.time);
   const auto energy = [&] {
     drop.motion.set_state(state.x);
-    return drop.scene.capsule->membrane().energy(drop.motion.shape(state.x)) + drop.surfactant.energy();
+    return membrane::energy(drop.scene.capsule->membrane(), drop.motion.shape(state.x)) + drop.surfactant.energy();
   };
   for (double before = energy(); state.time < 10; before = energy()) {
     scheme->advance(drop.motion, state, 10);
