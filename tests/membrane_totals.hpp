@@ -17,11 +17,7 @@ inline double energy(const Membrane& membrane, const Net& x, std::span<const int
 }
 inline double energy(const Membrane& membrane, const Net& x) { return energy(membrane, x, indices(membrane.space().elements.size())); }
 
-/// Summary of ElementTensions. compressed_area: fraction of the current area.
-struct TensionSummary {
-  double smallest = 0, compressed_area = 0, area_change = 0;
-};
-
+/// Returns the summary of the tensions of all elements.
 inline TensionSummary tension_summary(const Membrane& membrane, const Net& x) {
   const ElementTensions all = membrane.element_tensions(x, indices(membrane.space().elements.size()));
   const auto sum = [](const std::vector<double>& areas) { return std::accumulate(areas.begin(), areas.end(), 0.); };

@@ -108,47 +108,38 @@ struct Layers {
 
 }  // namespace
 
-struct Document::Held {
-  std::shared_ptr<Teuchos::ParameterList> given;
-  bool documenting;
-  Record root;
-};
-
-Document::Document(std::shared_ptr<Teuchos::ParameterList> given, bool documenting)
-    : held_(std::make_unique<Held>(Held{std::move(given), documenting, {}})) {
-  held_->root.name = root_name;
-  held_->root.given = held_->given.get();
+Document::Document(std::shared_ptr<const Teuchos::ParameterList> given, bool documenting)
+    : given_(std::move(given)), documenting_(documenting), root_(std::make_shared<Record>()) {
+  root_->name = root_name;
+  root_->given = given_.get();
 }
 
-Document::~Document() = default;
-Document::Document(Document&&) noexcept = default;
+Section Document::begin() { return Section(*root_, documenting_); }
 
-Section Document::begin() { return Section(std::make_shared<Section::State>(Section::State{&held_->root, held_->documenting, {}})); }
-
-void Document::refuse_wrong_values() const { require_none(mistakes(held_->root)); }
+void Document::refuse_wrong_values() const { require_none(mistakes(*root_)); }
 
 void Document::finish() const {
-  std::vector<std::string> all = mistakes(held_->root);
-  std::ranges::copy(unknown_keys(held_->root, held_->root), std::back_inserter(all));
+  std::vector<std::string> all = mistakes(*root_);
+  std::ranges::copy(unknown_keys(*root_, *root_), std::back_inserter(all));
   require_none(std::move(all));
 }
 
-std::string Document::effective() const { return std::string(root_name) + ":\n" + yaml_text(held_->root, 1); }
+std::string Document::effective() const { return std::string(root_name) + ":\n" + yaml_text(*root_, 1); }
 
 std::map<std::string, std::string> Document::values() const {
   std::map<std::string, std::string> out;
-  add_values(held_->root, out);
+  add_values(*root_, out);
   return out;
 }
 
-std::string Document::reference() const { return markdown_text(held_->root); }
+std::string Document::reference() const { return markdown_text(*root_); }
 
 std::string Document::schema() const {
   return R"({"$schema": "http://json-schema.org/draft-07/schema#", "type": "object", "properties": {)" + in_quotes(root_name) + ": " +
-         schema_text(held_->root, 0) + R"(}, "required": [)" + in_quotes(root_name) + "]}\n";
+         schema_text(*root_, 0) + R"(}, "required": [)" + in_quotes(root_name) + "]}\n";
 }
 
-std::string Document::commented() const { return std::string(root_name) + ":\n" + commented_text(held_->root, 1); }
+std::string Document::commented() const { return std::string(root_name) + ":\n" + commented_text(*root_, 1); }
 
 Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored,
               const std::string& excuse) {

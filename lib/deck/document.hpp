@@ -18,9 +18,7 @@ namespace tanktread::deck {
 ///   std::cout << deck.effective();        // YAML with the value of every key; read again, it gives the same scene bit for bit
 class Document {
  public:
-  explicit Document(std::shared_ptr<Teuchos::ParameterList> given, bool documenting = false);
-  ~Document();
-  Document(Document&&) noexcept;
+  explicit Document(std::shared_ptr<const Teuchos::ParameterList> given, bool documenting = false);
 
   /// Reads the value of every key that `options.declare` declares from the deck into `options`. Call it once per document.
   template <class Options>
@@ -54,8 +52,10 @@ class Document {
   Section begin();
   void refuse_wrong_values() const;
   void finish() const;
-  struct Held;
-  std::unique_ptr<Held> held_;
+
+  std::shared_ptr<const Teuchos::ParameterList> given_;
+  bool documenting_;
+  std::shared_ptr<Record> root_;
 };
 
 /// Reads and merges a deck, key by key. Each of `files` (XML if its name ends with .xml, otherwise YAML) overrides `stored` and the files before it.

@@ -14,10 +14,15 @@ namespace tanktread::membrane {
 
 struct Part;
 
-/// Tensions and area changes over the Gauss points of some elements, for the columns `smallest_tension`, `compressed_area` and `local_area_change` of
-/// the time series. smallest: smallest principal tension divided by the modulus. area_change: largest |J - 1|, with J the ratio of current to
-/// unstressed area. area, compressed: for each element of the space its current area, and the part of it in which a principal tension is less than
-/// -1e-9 of the modulus. Both areas are zero for elements that are not given.
+/// Summary of tensions and area changes over the Gauss points, for the columns `smallest_tension`, `compressed_area` and `local_area_change` of the
+/// time series. smallest: smallest principal tension divided by the modulus. compressed_area: fraction of the current area in which a principal
+/// tension is less than -1e-9 of the modulus. area_change: largest |J - 1|, with J the ratio of current to unstressed area.
+struct TensionSummary {
+  double smallest = 0, compressed_area = 0, area_change = 0;
+};
+
+/// Contributions of some elements to a TensionSummary: the smallest tension and the largest |J - 1| on the given elements, and for each element of
+/// the space its area and its area under compression. Both areas are zero for elements that are not given.
 struct ElementTensions {
   double smallest = 0, area_change = 0;
   std::vector<double> area, compressed;

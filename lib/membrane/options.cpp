@@ -71,6 +71,21 @@ void declare_bending(Options& options, deck::Section& section) {
               "vanishes, divided by the area difference of a sphere of the same area; if not given, the value of the unstressed surface");
 }
 
+void declare_stress_free(Options& options, deck::Section& section) {
+  section.key("stress-free shape", options.stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
+              "shape in which the membrane has no stress. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, axis "
+              "and centre of the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in `stress-free "
+              "file`. If it is not `resting`, the resting shape is not in equilibrium; a run without flow finds the equilibrium shape");
+  section.key("stress-free reduced volume", options.reduced_volume, deck::between(0.05, 1), "1",
+              "reduced volume 6 sqrt(pi) V/A^1.5 (V: volume, A: area) of the stress-free `spheroid`: 1 for a sphere, 0.646 for a red cell");
+  section.key("stress-free file", options.stress_free_file, deck::Choice{},
+              "path of a file with the stress-free surface of the membrane in Bezier-extraction format (.iga), on the same mesh as the "
+              "particle. A relative path is looked up in the working directory, then in the directory of the deck");
+  section.key("pre-inflation", options.pre_inflation, deck::between(0.0, 1.0), "1",
+              "relative inflation alpha of a capsule: the shape of section Particle is the unstressed shape enlarged by 1 + alpha about its "
+              "centre, so that the membrane is under tension. A `stress-free shape` other than `resting` is shrunk by this factor");
+}
+
 void check_energy(const Options& options) {
   const std::string other = " belongs to Membrane/law `expression`, but Membrane/law is `" + options.law + "`.";
   if (options.energy.has_value() != (options.law == "expression"))
@@ -113,18 +128,7 @@ void Options::declare(deck::Section& section) {
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
               "fraction m of the neo-Hookean term in the energy of Membrane/law `Mooney-Rivlin` (required for this law); the smaller it is, "
               "the stiffer the membrane at large stretch");
-  section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
-              "shape in which the membrane has no stress. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, axis "
-              "and centre of the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in `stress-free "
-              "file`. If it is not `resting`, the resting shape is not in equilibrium; a run without flow finds the equilibrium shape");
-  section.key("stress-free reduced volume", reduced_volume, deck::between(0.05, 1), "1",
-              "reduced volume 6 sqrt(pi) V/A^1.5 (V: volume, A: area) of the stress-free `spheroid`: 1 for a sphere, 0.646 for a red cell");
-  section.key("stress-free file", stress_free_file, deck::Choice{},
-              "path of a file with the stress-free surface of the membrane in Bezier-extraction format (.iga), on the same mesh as the "
-              "particle. A relative path is looked up in the working directory, then in the directory of the deck");
-  section.key("pre-inflation", pre_inflation, deck::between(0.0, 1.0), "1",
-              "relative inflation alpha of a capsule: the shape of section Particle is the unstressed shape enlarged by 1 + alpha about its "
-              "centre, so that the membrane is under tension. A `stress-free shape` other than `resting` is shrunk by this factor");
+  declare_stress_free(*this, section);
   section.key("load", load, deck::Choice{"weak", "strong"},
               "method of computing the load (force per area) of the membrane on the fluid. `weak`: by virtual work (3.5). `strong`: by the "
               "surface divergence of the tensions, which fails as Maestre et al. (2017) show");

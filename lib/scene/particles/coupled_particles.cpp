@@ -159,13 +159,7 @@ class CoupledParticles : public ParticleSystem {
 
   Columns next_row(const motion::State& whole_state, const ProgressRow& progress) override {
     const motion::State state = fields_->of_shape(whole_state);
-    const auto here = fields_->evaluate(whole_state.x, state.history.front(), scene_.time.tolerance);
-    // Solves the linear system for the velocity again in two cases: if the velocity of the step is not accurate enough for the series of tractions
-    // on walls, and if deformable particles and rigid bodies occur together, because the loads of the deformable particles then follow from this
-    // solution.
-    const auto rigid = [](const Member& member) { return member.scene.particle.rigid(); };
-    const bool mixed = std::ranges::any_of(members_, rigid) && !std::ranges::all_of(members_, rigid);
-    if (mixed || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
+    const auto here = evaluated_for_walls(whole_state.x, state);
     const Net v = here->fluid_velocity();
     RunRow row{.progress = progress};
     row.progress.time = state.time, row.progress.counts = capsule_->counts();
@@ -203,6 +197,17 @@ class CoupledParticles : public ParticleSystem {
   /// Returns the number of control points of all particles on their current meshes.
   Eigen::Index n_points() const {
     return std::accumulate(members_.begin(), members_.end(), 0, [](int n, const Member& member) { return n + member.body->space.n_points; });
+  }
+
+  /// Evaluates the velocities at the state x, whose shape is `state`. Solves the linear system for the velocity again in two cases: if the velocity
+  /// of the step is not accurate enough for tractions on walls, and if deformable particles and rigid bodies occur together, because the loads of
+  /// the deformable particles then follow from this solution.
+  std::shared_ptr<coupling::Evaluation> evaluated_for_walls(const Net& x, const motion::State& state) {
+    std::shared_ptr<coupling::Evaluation> here = fields_->evaluate(x, state.history.front(), scene_.time.tolerance);
+    const auto rigid = [](const Member& member) { return member.scene.particle.rigid(); };
+    const bool mixed = std::ranges::any_of(members_, rigid) && !std::ranges::all_of(members_, rigid);
+    if (mixed || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
+    return here;
   }
 
   static void require_fit(bool fits) {

@@ -63,7 +63,7 @@ class ChannelFlow : public stokes::DuctFlow {
   double pressure_drop() const;  ///< pressure drop between the ends
   double pressure_drop(double /*length*/) const override { return pressure_drop(); }
   double extra_pressure_drop() const override;  ///< extra_pressure_drop of DuctFlow; the straight duct is as long as the centre line
-  const Net& wall_traction() const;    ///< control values of f
+  const Net& wall_traction() const;    ///< control values of f: the traction on the wall, but in a periodic channel only a density that gives v_inf
 
   /// Returns the flow rates through the cross-sections at the arc lengths s of the centre line. All velocities for them are evaluated in one call.
   std::vector<double> flow_rates_at(const std::vector<double>& s) const;

@@ -112,7 +112,10 @@ class Tube {
   /// Response (2.5) of the tube to the particle: the disturbance due to the wall and the pressure drop.
   struct Response {
     Net velocity;       ///< velocity u (2.5) that wall and pressure drop cause at the particle's collocation points, shape (N, 3)
-    Net wall_traction;  ///< disturbance f^D of the traction on the wall, control values
+    /// control values of the density f^D. In an open duct, it is the disturbance of the traction on the wall. In a periodic duct, it lacks the
+    /// traction of the flow that pressure_drop drives, pressure_drop/dp_inf times that of v_inf (2.38); in a periodic channel,
+    /// ChannelFlow::wall_traction() does not give the traction of v_inf either.
+    Net wall_traction;
     double pressure_drop = 0;  ///< disturbance dp of the pressure drop
     Net load, particle_velocity;  ///< load f and velocity v of the particle that cause this response; set only in a periodic duct
   };
