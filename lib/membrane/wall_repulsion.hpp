@@ -18,8 +18,8 @@ struct Repulsion {
   double stress = 0, range = 1;
 };
 
-/// Load of the wall repulsion (3.22) on a membrane. Its energy is not part of the membrane's elastic energy. Its tangent contains only the stiff part,
-/// the change of the force with the gap g, and neglects the change of the wall's normal.
+/// Load of the wall repulsion (3.22) on a membrane. Its energy is not part of the membrane's elastic energy. Its tangent contains only the stiff
+/// part, the change of the force with the gap g, and neglects the change of the wall's normal.
 class WallRepulsion : public Load {
  public:
   /// `space` must outlive this object.
