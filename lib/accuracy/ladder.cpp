@@ -22,7 +22,6 @@ namespace tanktread::accuracy {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 using output::failure_file, output::ladder_file, output::summary_file;
 
 /// Calls `choose` on the first rank only, and returns its result (a number, or true or false) on all ranks. Collective.
@@ -102,7 +101,7 @@ class Ladder {
   std::string reason_to_stop(int k) const {
     const auto limit = task_.options.wall_clock_limit;
     if (!limit) return {};
-    const double so_far = decided([&] { return seconds_here(); }), next = decided([&] { return predicted_seconds(seconds()); });
+    const double so_far = ranks_.seconds_since(start_), next = decided([&] { return predicted_seconds(seconds()); });
     if (so_far + next <= *limit) return {};
     return formatted("level %d is predicted to take %.3g s, which exceeds Accuracy/wall-clock limit, %g s", k, next, *limit);
   }
@@ -113,8 +112,6 @@ class Ladder {
     for (const Outcome& one : levels_) all.push_back(one.seconds);
     return all;
   }
-
-  double seconds_here() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
   /// Runs level k, unless it is finished already. Returns Exit::stopped if the run was interrupted and can be resumed, or 0 if the run ended or
   /// failed.
@@ -180,10 +177,9 @@ class Ladder {
     double seconds = 0;
     if (start != Start::finished) {
       const auto limit = task_.options.wall_clock_limit;
-      const double before = seconds_here();
-      const double left = decided([&] { return limit ? std::max(1e-3, *limit - before) : 0; });
-      const int code = run_deck(name, deck, start == Start::resume, limit ? std::optional(left) : std::nullopt);
-      seconds = seconds_here() - before;
+      const double before = ranks_.seconds_since(start_);
+      const int code = run_deck(name, deck, start == Start::resume, limit ? std::optional(std::max(1e-3, *limit - before)) : std::nullopt);
+      seconds = ranks_.seconds_since(start_) - before;
       if (code == Exit::stopped || !failure_of_last_.empty()) {
         seconds_ += seconds;
         return code;
@@ -312,7 +308,7 @@ class Ladder {
 
   const LadderRequest& task_;
   const Program& program_;
-  const Clock::time_point start_ = Clock::now();
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   coupling::Ranks ranks_;
   std::unique_ptr<output::Occupation> occupation_;  // lock of the results directory, on the first rank
   std::vector<Outcome> levels_;                     // finished levels, on the first rank

@@ -31,12 +31,8 @@ Curve part(const Curve& whole, Of of) {
   return {{0}, {of == Of::end ? whole.values.back() : average(whole).value}};
 }
 
-double magnitude(const Curve& whole) {
-  double most = 0;
-  for (const double value : whole.values)
-    if (!std::isnan(value)) most = std::max(most, std::abs(value));
-  return most;
-}
+/// Returns the largest magnitude of the values that are not NaN; 0 if there are none.
+double magnitude(const Curve& whole) { return std::fmax(largest(whole.values), 0); }
 
 /// Returns the changes of a series from each level to the next finer one, coarse to fine.
 std::vector<Curve> changes(const std::string& series, Of of, const std::vector<Outcome>& levels) {

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <set>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -17,6 +15,7 @@
 #include "accuracy/estimate.hpp"
 #include "record/files/nodes.hpp"
 #include "spline/limits.hpp"
+#include "spline/point_search.hpp"
 
 namespace tanktread::accuracy {
 
@@ -93,30 +92,29 @@ FromCell distance_from_cell(const StoredSurface& surface, const std::vector<int>
   return found;
 }
 
-/// The nodes of a surface, sorted into cubes of space so that the node nearest to a position is found quickly.
-class Cubes {
+/// Distances from a surface: its nodes, among which the nearest one is found quickly, and the cells around them.
+class Distances {
  public:
-  explicit Cubes(const StoredSurface& surface) : surface_(surface), cells_of_(static_cast<std::size_t>(surface.points.rows())) {
-    double diameter = 0;  // largest distance of a node from the first node of its cell
+  explicit Distances(const StoredSurface& surface) : surface_(surface), cells_of_(static_cast<std::size_t>(surface.points.rows())) {
     for (std::size_t c = 0; c < surface.cells.size(); ++c)
       for (const int node : surface.cells[c]) {
         cells_of_[static_cast<std::size_t>(node)].push_back(c);
-        diameter = std::max(diameter, (surface.points.row(node) - surface.points.row(surface.cells[c].front())).norm());
+        diameter_ = std::max(diameter_, (surface.points.row(node) - surface.points.row(surface.cells[c].front())).norm());
       }
-    size_ = std::max(diameter / cubes_per_cell, std::numeric_limits<double>::min());
-    for (Eigen::Index k = 0; k < surface.points.rows(); ++k) nodes_[key(cube(surface.points.row(k).transpose()))].push_back(static_cast<int>(k));
+    std::vector<Vec3> points;
+    for (const auto& row : surface.points.rowwise()) points.emplace_back(row);
+    nodes_.emplace(std::move(points), 0);
   }
 
-  double distance(const Vec3& x) const {
-    Nearest nearest = nearest_within(x, 1);
-    if (!(nearest.distance <= size_)) nearest = nearest_within(x, cubes_per_cell);
-    if (nearest.node < 0) return std::numeric_limits<double>::quiet_NaN();
-    double least = nearest.distance;
+  double operator()(const Vec3& x) const {
+    const int nearest = nodes_->nearest(x, far * diameter_);
+    if (nearest < 0) return std::numeric_limits<double>::quiet_NaN();
+    double least = (nodes_->all()[static_cast<std::size_t>(nearest)] - x).norm();
     std::set<std::size_t> around;  // cells that share a node with the cells at the nearest node
-    for (const std::size_t c : cells_at(nearest.node)) {
+    for (const std::size_t c : cells_at(nearest)) {
       const std::vector<int>& cell = surface_.cells[c];
       const auto p = static_cast<int>(std::lround(std::sqrt(static_cast<double>(cell.size())))) - 1;
-      const auto& [i, j] = order_of(p)[static_cast<std::size_t>(std::ranges::find(cell, nearest.node) - cell.begin())];
+      const auto& [i, j] = order_of(p)[static_cast<std::size_t>(std::ranges::find(cell, nearest) - cell.begin())];
       const FromCell found = distance_from_cell(surface_, cell, x, static_cast<double>(i) / p, static_cast<double>(j) / p);
       least = std::min(least, found.distance);
       if (found.inside) return least;
@@ -127,46 +125,21 @@ class Cubes {
   }
 
  private:
-  static constexpr int cubes_per_cell = 3;  // number of cubes along the largest diameter of a cell
-  using Cube = std::array<std::int64_t, 3>;
-  struct Nearest {
-    int node = -1;
-    double distance = std::numeric_limits<double>::infinity();
-  };
-
-  /// Returns the nearest node in the cube of x and in its neighbours up to `n` cubes away; the node -1 if there is none.
-  Nearest nearest_within(const Vec3& x, std::int64_t n) const {
-    const Cube here = cube(x);
-    Nearest nearest;
-    for (std::int64_t i = -n; i <= n; ++i)
-      for (std::int64_t j = -n; j <= n; ++j)
-        for (std::int64_t k = -n; k <= n; ++k)
-          if (const auto found = nodes_.find(key({here[0] + i, here[1] + j, here[2] + k})); found != nodes_.end())
-            for (const int node : found->second)
-              if (const double off = (surface_.points.row(node).transpose() - x).norm(); off < nearest.distance) nearest = {node, off};
-    return nearest;
-  }
-
-  /// Returns one number for a cube. Different cubes may have the same number if they are 2^21 cubes apart; both are then searched.
-  static std::int64_t key(const Cube& cube) {
-    constexpr std::int64_t most = std::int64_t{1} << 21;
-    return ((cube[0] & (most - 1)) * most + (cube[1] & (most - 1))) * most + (cube[2] & (most - 1));
-  }
+  static constexpr double far = 1.2;  // largest distance of the nearest node, divided by `diameter_`
   const std::vector<std::size_t>& cells_at(int node) const { return cells_of_[static_cast<std::size_t>(node)]; }
-  Cube cube(const Vec3& x) const { return {std::llround(x[0] / size_), std::llround(x[1] / size_), std::llround(x[2] / size_)}; }
 
   const StoredSurface& surface_;
   std::vector<std::vector<std::size_t>> cells_of_;  // for each node, the cells that contain it
-  std::unordered_map<std::int64_t, std::vector<int>> nodes_;
-  double size_ = 0;  // edge length of the cubes
+  double diameter_ = 0;                             // largest distance of a node from the first node of its cell
+  std::optional<spline::PointSearch> nodes_;
 };
 
 }  // namespace
 
 std::vector<double> distances(const StoredSurface& fine, const StoredSurface& coarse) {
-  const Cubes cubes(coarse);
+  const Distances from_coarse(coarse);
   std::vector<double> found;
-  for (Eigen::Index k = 0; k < fine.points.rows(); ++k) found.push_back(cubes.distance(fine.points.row(k).transpose()));
+  for (Eigen::Index k = 0; k < fine.points.rows(); ++k) found.push_back(from_coarse(fine.points.row(k).transpose()));
   return found;
 }
 

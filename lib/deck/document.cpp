@@ -114,7 +114,7 @@ Document::Document(std::shared_ptr<const Teuchos::ParameterList> given, bool doc
   root_->given = given_.get();
 }
 
-Section Document::begin() { return Section(*root_, documenting_); }
+Section Document::begin() { return Section(std::make_shared<Section::State>(Section::State{root_.get(), documenting_, {}})); }
 
 void Document::refuse_wrong_values() const { require_none(mistakes(*root_)); }
 

@@ -11,6 +11,8 @@
 
 namespace tanktread::deck {
 
+struct Record;
+
 /// A merged deck. Fills options structs by calling their function `declare`, and records the keys that they declare.
 ///
 ///   Document deck = read({"deck.yaml", "overlay.yaml"}, {"Time/final time=3"});

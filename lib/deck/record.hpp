@@ -59,6 +59,14 @@ struct Record {
   std::string path_of(std::string_view key) const { return path.empty() ? std::string(key) : path + "/" + std::string(key); }
 };
 
+/// State of a Section: the record that it fills, whether the manual is being written (`documenting`), and the units of the deck (null if the deck
+/// defines none). In the manual, sections whose names the user chooses are declared once, as `<name>`.
+struct Section::State {
+  Record* record;
+  bool documenting;
+  std::shared_ptr<const Units> units = {};
+};
+
 /// Returns the mistakes in a section, followed by the mistakes in its inner sections. A mistake in a key that several sections inherit is reported
 /// once.
 std::vector<std::string> mistakes(const Record& section);

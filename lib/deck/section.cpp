@@ -159,12 +159,14 @@ Rule not_negative() { return {.text = "not negative", .low = 0}; }
 Rule at_least(double low) { return {.text = "at least " + number_text(low), .low = low}; }
 Rule between(double low, double high) { return {.text = "between " + number_text(low) + " and " + number_text(high), .low = low, .high = high}; }
 
+Section::Section(std::shared_ptr<State> state) : state_(std::move(state)) {}
+
 template <class Field>
 void Section::key(std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning) {
   using Value = typename Held<Field>::Value;
   const ValueType type = type_of<Value>(rule);
-  state(*record_, name, field, type, unit, meaning,
-        [&](const std::string& path, const auto& entry) { return value_of<Value>(checked(path, entry, type, unit, units_.get())); });
+  state(*state_->record, name, field, type, unit, meaning,
+        [&](const std::string& path, const auto& entry) { return value_of<Value>(checked(path, entry, type, unit, state_->units.get())); });
 }
 
 template void Section::key(std::string_view, double&, const Rule&, std::string_view, std::string_view);
@@ -179,7 +181,7 @@ template void Section::key(std::string_view, std::optional<Mat3>&, const Rule&, 
 template void Section::key(std::string_view, std::optional<std::vector<double>>&, const Rule&, std::string_view, std::string_view);
 
 void Section::key(std::string_view name, bool& field, std::string_view meaning) {
-  state(*record_, name, field, {ValueType::truth}, "", meaning, [](const std::string& path, const Teuchos::ParameterEntry& entry) {
+  state(*state_->record, name, field, {ValueType::truth}, "", meaning, [](const std::string& path, const Teuchos::ParameterEntry& entry) {
     const auto truth = as_truth(entry);
     if (!truth) refuse(path, "true or false", "", description(entry));
     return *truth;
@@ -188,7 +190,7 @@ void Section::key(std::string_view name, bool& field, std::string_view meaning) 
 
 template <class Field>
 void Section::key(std::string_view name, Field& field, const Choice& choice, std::string_view meaning) {
-  state(*record_, name, field, {ValueType::text, {}, 1, choice}, "", meaning,
+  state(*state_->record, name, field, {ValueType::text, {}, 1, choice}, "", meaning,
         [&](const std::string& path, const Teuchos::ParameterEntry& entry) {
           const auto text = as_text(entry);
           if (!text && choice.empty()) refuse(path, "text (in quotes)", "", description(entry));
@@ -203,7 +205,7 @@ template void Section::key(std::string_view, std::string&, const Choice&, std::s
 template void Section::key(std::string_view, std::optional<std::string>&, const Choice&, std::string_view);
 
 void Section::without_effect(const std::vector<std::string>& names, const std::string& because) {
-  Record& record = *record_;
+  Record& record = *state_->record;
   for (const Entry& entry : record.entries)
     if (std::ranges::count(names, entry.key) > 0 && entry.value != entry.fallback)
       record.idle.push_back(record.path_of(entry.key) + " has no effect " + because + ": remove the key.");
@@ -211,15 +213,15 @@ void Section::without_effect(const std::vector<std::string>& names, const std::s
 
 void Section::without_effect_except(const std::string& name, const std::string& because) {
   std::vector<std::string> others;
-  for (const Entry& entry : record_->entries)
+  for (const Entry& entry : state_->record->entries)
     if (entry.key != name) others.push_back(entry.key);
   without_effect(others, because);
 }
 
-std::vector<std::string> Section::idle_keys() const { return deck::idle_keys(*record_); }
+std::vector<std::string> Section::idle_keys() const { return deck::idle_keys(*state_->record); }
 
 Section Section::enter(std::string_view name, std::string_view meaning) {
-  Record& outer = *record_;
+  Record& outer = *state_->record;
   auto inner = std::make_unique<Record>();
   inner->name = name;
   inner->path = outer.path_of(name);
@@ -231,47 +233,49 @@ Section Section::enter(std::string_view name, std::string_view meaning) {
       outer.mistakes.push_back(inner->path + " must be a section of keys, but is " + description(*entry) + ".");
   }
   outer.sections.push_back(std::move(inner));
-  return Section(*outer.sections.back(), documenting_, units_);
+  return Section(std::make_shared<State>(State{outer.sections.back().get(), state_->documenting, state_->units}));
 }
 
 void Section::foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning) {
   Section inner = enter(name, meaning);
-  Record& record = *inner.record_;
+  Record& record = *inner.state_->record;
   auto merged = field ? std::make_shared<Teuchos::ParameterList>(*field) : std::make_shared<Teuchos::ParameterList>();
   if (record.given) overlay(*merged, *record.given);
   merged->setName(record.name);
   field = record.foreign = std::move(merged);
 }
 
-void Section::take(std::shared_ptr<const Units> units) { units_ = std::move(units); }
+void Section::take(std::shared_ptr<const Units> units) { state_->units = std::move(units); }
 
-void Section::mention(std::string_view name) { record_->mentioned.emplace_back(name); }
+void Section::mention(std::string_view name) { state_->record->mentioned.emplace_back(name); }
 
 void Section::each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use, bool alike) {
-  Record& record = *record_;
+  Record& record = *state_->record;
   record.alike = alike;
   if (alike) record.mentioned.emplace_back("defaults");
   std::vector<std::string> names;
   if (record.given)
     for (const auto& item : *record.given)
       if (!alike || item.first != "defaults") names.push_back(item.first);
-  if (documenting_) names = {"<name>"};
+  if (state_->documenting) names = {"<name>"};
   for (const std::string& name : names) {
     Section inner = enter(name, meaning);
-    Record& one = *inner.record_;
+    Record& one = *inner.state_->record;
     one.itself = one.given;
     if (alike && one.given) one.merged = with_shared(record, name, {}), one.given = one.merged.get();
     use(name, inner);
   }
 }
 
-bool Section::given(std::string_view name) const { return record_->given && record_->given->isParameter(std::string(name)); }
+bool Section::given(std::string_view name) const { return state_->record->given && state_->record->given->isParameter(std::string(name)); }
 
 void Section::leave_out(std::string_view name) {
-  Record& record = *record_;
+  Record& record = *state_->record;
   if (record.merged && !record.itself->isParameter(std::string(name))) record.merged->remove(std::string(name), false);
 }
 
-std::string Section::path(std::string_view name) const { return name.empty() ? record_->path : record_->path_of(name); }
+bool Section::documenting() const { return state_->documenting; }
+
+std::string Section::path(std::string_view name) const { return name.empty() ? state_->record->path : state_->record->path_of(name); }
 
 }  // namespace tanktread::deck

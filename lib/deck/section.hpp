@@ -10,7 +10,6 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "base/types.hpp"
@@ -19,7 +18,6 @@
 namespace tanktread::deck {
 
 class Units;
-struct Record;
 
 /// Rule for the values of a number: its wording ("positive", "between 0 and 1"), the bounds, which are also in the schema, and any other test.
 struct Rule {
@@ -127,20 +125,15 @@ class Section {
   bool given(std::string_view name) const;
   /// Removes a key that this section takes from `like` or `defaults` (see `each`). A key that the section sets itself stays.
   void leave_out(std::string_view name);
-  bool documenting() const { return documenting_; }    ///< returns whether the manual is being made; if so, every section must be declared
+  bool documenting() const;                            ///< returns whether the manual is being made; if so, every section must be declared
   std::string path(std::string_view name = {}) const;  ///< returns the path of a key, or of this section, for messages
 
-  /// Creates the section that fills `record`. `documenting`: true if the manual is being made; sections whose names the user chooses are then
-  /// declared once, as `<name>`. `units`: units of the deck; null if the deck defines none.
-  Section(Record& record, bool documenting, std::shared_ptr<const Units> units = {})
-      : record_(&record), documenting_(documenting), units_(std::move(units)) {}
+  struct State;
+  explicit Section(std::shared_ptr<State> state);
 
  private:
   Section enter(std::string_view name, std::string_view meaning);
-
-  Record* record_;
-  bool documenting_;
-  std::shared_ptr<const Units> units_;
+  std::shared_ptr<State> state_;
 };
 
 }  // namespace tanktread::deck

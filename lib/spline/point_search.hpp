@@ -2,6 +2,8 @@
 // Search for points in space by position.
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -25,6 +27,19 @@ class PointSearch {
     for (auto i = std::ranges::lower_bound(order_, std::pair(from, 0)); i != order_.end() && i->first <= from + 4 * tolerance_; ++i)
       if ((points_[i->second] - x).norm() <= tolerance_) return i->second;
     return -1;
+  }
+
+  /// Returns the index of the point nearest to x, or -1 if no point is closer than `within`.
+  int nearest(const Vec3& x, double within) const {
+    const double from = along(x);
+    int found = -1;
+    for (auto after = std::ranges::lower_bound(order_, std::pair(from, 0)), before = after; after != order_.end() || before != order_.begin();) {
+      const bool ahead = before == order_.begin() || (after != order_.end() && after->first - from <= from - std::prev(before)->first);
+      const auto& [coordinate, i] = ahead ? *after++ : *--before;
+      if (std::abs(coordinate - from) > within) break;  // the distance to all other points is larger
+      if (const double off = (points_[i] - x).norm(); off < within) found = i, within = off;
+    }
+    return found;
   }
 
  private:

@@ -90,6 +90,13 @@ def _list(values):
     return [float(f"{value:.7g}") if numpy.isfinite(value) else None for value in numpy.asarray(values, float)]
 
 
+def _rows(name, entry):
+    """Returns the rows of an entry of the summary, which is a mapping or a single value."""
+    if not isinstance(entry, dict):
+        entry = {} if entry is None else {name: entry}
+    return [[key, value] for key, value in entry.items()]
+
+
 def of_run(directory, field):
     run = run_of(directory)
     summary = run.summary or {}
@@ -109,7 +116,7 @@ def of_run(directory, field):
             for one in summary.get("expect") or []]),
         ("Accuracy", "table", requests and [["", *asked, "remark"], *requests]),
         ("Last values", "table", last and [["series", "value", "estimated error", "meaning"], *last]),
-        *((title, "table", [[key, value] for key, value in (summary.get(word) or {}).items()])
+        *((title, "table", _rows(word, summary.get(word)))
           for title, word in (("Errors", "estimated errors"), ("Plan", "plan"), ("Numbers of the scene", "numbers"),
                               ("Seconds by phase", "seconds"), ("Bytes of memory", "memory"), ("Counts", "counts"))),
         ("Deck", "text", run.deck_text)]

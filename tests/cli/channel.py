@@ -93,6 +93,11 @@ def gaps_that_the_wall_mesh_does_not_resolve_are_reported():
         run(deck(body % (radius, more, lists)), "--output", "told", "--overwrite", "--quiet")
         warned = [line for line in summary("told")["warnings"] if "narrower than 0.6 of the wall's elements" in line]
         check(len(warned) == told, f"radius {radius}, {more}: {summary('told')['warnings']}")
+    in_time = capsule[:capsule.index("  Steady")] + "  Time: {final time: 1.0e-3}\n  Output: {interval: 1.0e-3, between steps: land}\n"
+    run(deck(body % (0.8, "center: [0, 0, 0]", in_time)), "--output", "told", "--overwrite", "--quiet")
+    before = summary("told")["warnings"]
+    run("--resume", "told", "--quiet")
+    check(any("narrower than 0.6" in line for line in before) and summary("told")["warnings"] == before, before, summary("told")["warnings"])
 
 
 def results_do_not_depend_on_mirror_planes_and_ranks():

@@ -100,8 +100,10 @@ def the_requests_of_a_deck_bind_like_those_of_the_command_line():
             error = file["error/area" if row else "error/taylor_inertia"][row]
             check(one["passed"] and one["estimated error"] == error > 0, one, error)
         check(file["error/taylor_inertia"][-1] != error, "the error at the start is that at the end")
-    said = run("deck.yaml", "--set", "Expect/area/value=20", "--quiet", "--output", "missed", code=1).stderr
+    early = "Expect/early={series: inclination, value: 40, tolerance: 100, at: 0}"
+    said = run("deck.yaml", "--set", "Expect/area/value=20", "--set", early, "--quiet", "--output", "missed", code=1).stderr
     check(len(said.splitlines()) == 1 and "missed Expect/area" in said, said)
+    check("Expect/early: inclination is undefined at the time 0, because the two semi-axes" in said, said)
     said = run("deck.yaml", "--no-expect", "--set", "Expect/area/value=20", "--quiet", "--output", "reported").stderr
     check("Expect/area: area is" in said and "does not fail the run" in said, said)
 

@@ -3,6 +3,7 @@
 # Tests that a killed and resumed run is bitwise equal to an uninterrupted run.
 import pathlib
 import random
+import re
 import signal
 import time
 
@@ -214,6 +215,12 @@ def keys_that_series_depend_on_may_not_change():
         run("deck.yaml", *lattice, "--output", "short", "--overwrite", "--set", "Time/final time=0.1", "--set", "Output/interval=0.1", "--quiet")
         result = run("--resume", "short", "--set", "Time/final time=0.2", "--set", setting, *more, code=2)
         check(f"{setting.split('=')[0]} cannot change when a run continues" in result.stderr, result.stderr)
+    # Each new key of Output must be added here, and to `fixed` in may_change_on_resume() if checkpoints or files that grow with the run depend on it.
+    free, fixed = {"interval": 0.05, "between steps": "land", "wall-clock limit": 1000, "surface text": "true"}, {"power balance"}
+    keys = set(re.findall(r"^\| `([^`]+)` \|", run("--reference").stdout.split("\n## Output\n")[1].split("\n## ")[0], re.MULTILINE))
+    check(keys == fixed | set(free), keys)
+    for key, value in free.items():
+        run("--resume", "short", "--check", "--quiet", "--set", f"Output/{key}={value}")
 
 
 def a_directory_without_a_checkpoint_is_a_mistake():

@@ -1,9 +1,9 @@
 #pragma once
 // Checkpoints, from which a run is resumed.
 //
-// A checkpoint of another version of the program is either used in full or refused. An entry that every run has is read by `.at(name)`; if it is
-// missing, Results::resumed() throws UserError. An entry may be missing only if the run had no such data, for example no contacts. An entry that has
-// changed its meaning gets another name.
+// Checkpoints of other versions of the program: a version may resume only if it reads every entry that it needs. Entries are read by `.at(name)`; if
+// one is missing, Results::resumed() throws UserError. An entry may be missing only if its absence has one meaning: the run had no such data, for
+// example no contacts, or all versions without the entry used one value of it. An entry that has changed its meaning gets another name.
 
 #include <filesystem>
 #include <map>

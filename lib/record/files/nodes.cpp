@@ -16,29 +16,6 @@
 
 namespace tanktread::output {
 
-namespace {
-
-/// Returns, for each point, the index of one of the points of the same surface with the same position. This index is equal for all these points.
-/// `surface`: number of the surface of each point.
-std::vector<std::size_t> representatives(const std::vector<Vec3>& places, const std::vector<int>& surface) {
-  double size = 0;
-  std::map<int, std::vector<std::size_t>> of_surface;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    size = std::max(size, (places[k] - places.front()).norm());
-    of_surface[surface[k]].push_back(k);
-  }
-  std::vector<std::size_t> found(places.size());
-  for (const auto& [unused, points] : of_surface) {
-    std::vector<Vec3> here;
-    for (const std::size_t k : points) here.push_back(places[k]);
-    const spline::PointSearch search(here, 1e-9 * size);
-    for (std::size_t k = 0; k < points.size(); ++k) found[points[k]] = points[static_cast<std::size_t>(search.at(here[k]))];
-  }
-  return found;
-}
-
-}  // namespace
-
 std::vector<std::array<int, 2>> node_order(int p) {
   std::vector<std::array<int, 2>> nodes{{0, 0}, {p, 0}, {p, p}, {0, p}};
   for (int i = 1; i < p; ++i) nodes.push_back({i, 0});
@@ -61,28 +38,33 @@ std::vector<int> surfaces(const spline::Space& space) {
 
 LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net, const std::vector<int>& surface_of_element) {
   LagrangeMesh mesh;
-  std::vector<Vec3> places;
-  std::vector<int> surface;
-  std::vector<spline::Site> sites;
+  struct Place {
+    spline::Site site;
+    int surface;
+    Vec3 x;
+  };
+  std::vector<Place> places;
+  std::map<int, std::vector<Vec3>> of_surface;
+  double size = 0;
   mesh.offsets.push_back(0);
-  for (std::size_t e = 0; e < space.elements.size(); ++e) {
-    const int p = space.elements[e].degree;
-    const surface::ElementPoints points(space, net, static_cast<int>(e));
+  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
+    const int p = space.elements[e].degree, surface = surface_of_element.empty() ? 0 : surface_of_element[e];
+    const surface::ElementPoints points(space, net, e);
     for (const auto& [i, j] : node_order(p)) {
-      sites.push_back({static_cast<int>(e), double(i) / p, double(j) / p});
-      places.push_back(surface::position(points.patch(), sites.back().s, sites.back().t));
-      surface.push_back(surface_of_element.empty() ? 0 : surface_of_element[e]);
+      const spline::Site site{e, double(i) / p, double(j) / p};
+      places.push_back({site, surface, surface::position(points.patch(), site.s, site.t)});
+      of_surface[surface].push_back(places.back().x);
+      size = std::max(size, (places.back().x - places.front().x).norm());
     }
     mesh.offsets.push_back(static_cast<std::int64_t>(places.size()));
   }
-  const std::vector<std::size_t> same = representatives(places, surface);
-  std::vector<std::int64_t> number(places.size(), -1);
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    if (number[same[k]] < 0) {
-      number[same[k]] = static_cast<std::int64_t>(mesh.sites.size());
-      mesh.sites.push_back(sites[k]);
-    }
-    mesh.connectivity.push_back(number[same[k]]);
+  std::map<int, spline::PointSearch> search;
+  for (auto& [surface, points] : of_surface) search.emplace(surface, spline::PointSearch(std::move(points), 1e-9 * size));
+  std::map<std::pair<int, int>, std::int64_t> nodes;  // number of each node by its surface and its index in `search`
+  for (const Place& place : places) {
+    const auto [node, first] = nodes.emplace(std::pair(place.surface, search.at(place.surface).at(place.x)), std::ssize(mesh.sites));
+    if (first) mesh.sites.push_back(place.site);
+    mesh.connectivity.push_back(node->second);
   }
   return mesh;
 }

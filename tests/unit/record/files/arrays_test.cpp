@@ -1,5 +1,7 @@
 #include "record/files/file.hpp"
 
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include "record/files/hdf.hpp"
@@ -18,6 +20,12 @@ TEST(Arrays, AreReadWithShapeAndUnit) {
   EXPECT_EQ(hdf::read_attribute(file, "table", "unit"), "length");
   EXPECT_EQ(hdf::read_doubles(file, "number", shape), std::vector<double>{-0.5});
   EXPECT_TRUE(shape.empty());
+}
+
+TEST(Arrays, NeedAsManyValuesAsTheirShape) {
+  const Scratch scratch;
+  EXPECT_THROW(write_arrays(scratch / "duct.h5", {{"table", "1", "", {1, 2, 3}, {2, 3}}}), std::logic_error);
+  EXPECT_THROW(write_arrays(scratch / "duct.h5", {{"number", "1", "", {}, {}}}), std::logic_error);
 }
 
 }  // namespace
