@@ -45,7 +45,7 @@ TEST(Summary, IsReadByPythonAsItWasMeant) {
   summary.seconds = {{"far field: near: self", 1.25}};
   summary.memory = {{"all ranks", 3'000'000'000}};
   summary.final_in_si = {{"time", "0.0075 s"}};
-  summary.final_vectors = {{"drag", Vec3(1, -2, 0.5)}};
+  summary.final_vectors = {{"torque", Vec3(1, -2, 0.5)}};
   summary.errors = {{"mesh", "unknown"}};
   summary.modes = {{"1", "shape"}};
   summary.obstacles = {"the mesh is too coarse"};
@@ -57,7 +57,7 @@ import math, sys, yaml
 s = yaml.safe_load(open(sys.argv[1], encoding='utf-8'))
 assert list(s) == ['status', 'final', 'final in SI', 'expect', 'counts', 'seconds', 'memory', 'plan', 'numbers', 'estimated errors', 'modes',
                    'warnings', 'obstacles']
-assert s['final in SI'] == {'time': '0.0075 s'} and s['final']['drag'] == [1.0, -2.0, 0.5] and s['estimated errors'] == {'mesh': 'unknown'}
+assert s['final in SI'] == {'time': '0.0075 s'} and s['final']['torque'] == [1.0, -2.0, 0.5] and s['estimated errors'] == {'mesh': 'unknown'}
 assert s['modes'] == {'1': 'shape'} and s['obstacles'] == ['the mesh is too coarse']
 f = s['final']
 assert f['time'] == 7.5 and f['volume_error'] == 1e-15 and math.isnan(f['energy']) and f['drag'] == -math.inf
