@@ -85,7 +85,7 @@ void add_fluid(Lines& lines, const Scene& scene, const VelocityUnknowns& of_velo
     lines.emplace_back("period", formatted("%.6g along x1: one period of the wall, all images by the kernels of one period", wall.period));
   const surface::Symmetry of_wall = coupling::reflections(wall, coupling::positions(wall, wall.sites));
   const double bytes = coupling::WallFactors::bytes(of_wall, body.symmetry);
-  const bool iterates = coupling::WallSolver::applies_to(wall.kind) && coupling::WallSolver{scene.solvers.wall}.iterates(bytes, wall.period > 0);
+  const bool iterates = surface::properties(wall.kind).may_iterate && coupling::WallSolver{scene.solvers.wall}.iterates(bytes, wall.period > 0);
   const std::string parities = of_wall.order() > 1 ? " for each parity under " + of_wall.description() : "";
   const std::string how = iterates ? "found by GMRES and clusters in each velocity, neglected in the Jacobian of implicit steps"
                                    : formatted("factored once%s: %.1f MB on each of %d rank%s", parities.c_str(), 1e-6 * bytes, ranks,

@@ -74,7 +74,7 @@ void check_size(const ParticleScene& particle_scene) {
                 points(particle_scene), bytes);
   const surface::TubeOptions& tube = particle_scene.tube;
   if (!tube.present) return;
-  if (coupling::WallSolver::applies_to(tube.kind()) && coupling::WallSolver{particle_scene.solvers.wall}.may_iterate(tube.period > 0)) return;
+  if (surface::properties(tube.kind()).may_iterate && coupling::WallSolver{particle_scene.solvers.wall}.may_iterate(tube.period > 0)) return;
   check_bytes(tube.list() + "/azimuthal elements and " + tube.list() + "/axial elements",
               formatted("give at most %.0f control points", most_wall_points()), wall_points(particle_scene), doubles * coupling::Ranks().size());
 }

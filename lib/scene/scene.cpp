@@ -57,7 +57,7 @@ void list_idle_keys(Scene& scene) {
       "with the tractions on rigid bodies as unknowns");
   add(scene.only_solids && scene.output.power_balance, "Output/power balance", "in a scene of posts only");
   add(scene.only_solids && !scene.series.empty(), "Output/series", "in a scene of posts only");
-  add(scene.tube.present && !coupling::WallSolver::applies_to(scene.tube.kind()) && scene.solvers.wall == "iterative", "Solvers/wall `iterative`",
+  add(scene.tube.present && !surface::properties(scene.tube.kind()).may_iterate && scene.solvers.wall == "iterative", "Solvers/wall `iterative`",
       "on the wall of a straight tube, which is always factored");
   add(scene.solvers.rigid_bodies == coupling::BodyEquation::second_kind && !scene.in_system(), "Solvers/rigid bodies `second kind`",
       "on a rigid body alone, whose tractions are the unknowns");

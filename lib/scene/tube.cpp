@@ -87,7 +87,7 @@ void reject_with_tube(const ParticleScene& particle_scene, Rejections& to) {
   const stokes::FlowOptions& flow = particle_scene.flow;
   const coupling::SolverOptions& solvers = particle_scene.solvers;
   const bool tube = particle_scene.tube.present, all_blocks = !solvers.eliminates_walls();
-  const bool fixed = tube && surface::is_fixed(particle_scene.tube.kind());
+  const bool fixed = tube && surface::properties(particle_scene.tube.kind()).fixed;
   const Chosen confined = particle_scene.duct_choice(), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
   to.pair(!particle_scene.runs_in_time() && fixed && flow.held == "flow rate", particle_scene.sought(), "Flow/held `flow rate`",
           "a particle in a channel moves with the fluid if the flow rate is prescribed, and can be at rest only if the pressure drop is; "
@@ -237,7 +237,7 @@ TubeRow tube_row(coupling::Tube& tube, const stokes::AmbientFlow& flow, const Ne
 }
 
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
-  if (surface::is_fixed(wall.kind) || wall.period > 0) return;
+  if (surface::properties(wall.kind).fixed || wall.period > 0) return;
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
   // a tube radius R_T must remain between the particles and each end, because the disturbance decays over about R_T
   const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());

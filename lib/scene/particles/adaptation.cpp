@@ -251,7 +251,7 @@ std::vector<Warning> refine_isolated_body(const ParticleScene& particle_scene, B
     Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
     if (particle_scene.adaptation.limits_load()) load = force_density(body);
     // Moves the centroid of the particle to x1 = 0, because x1 of the wall of a straight tube is measured from the centroid.
-    if (body.wall && !surface::is_fixed(body.wall->kind)) x.col(0).array() -= surface::measures(body.space, x).centroid[0];
+    if (body.wall && !surface::properties(body.wall->kind).fixed) x.col(0).array() -= surface::measures(body.space, x).centroid[0];
     std::vector<Member> only(1);
     only[0].scene = particle_scene;
     only[0].body = std::make_unique<Body>(std::move(body));

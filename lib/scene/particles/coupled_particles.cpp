@@ -252,18 +252,13 @@ class CoupledParticles : public ParticleSystem {
     return force.dot(apart) / 3 * Mat3::Identity() - (force * apart.transpose() + apart * force.transpose()) / 2;
   }
 
-  /// Builds the coupled system and all other data for the current meshes. Keeps the wall of a straight tube. Builds
-  /// the tube of a channel again with the wall in SharedOptions::walls.
+  /// Builds the coupled system and all other data for the current meshes. Keeps the wall of a tube or channel (SharedOptions::walls).
   void set_up() {
     const std::unique_ptr<Body> before = std::exchange(stacked_, nullptr);
     arrange(members_);
     stacked_ = make_stacked_body(members_);
     if (stacked_ && scene_.tube.present) stacked_->wall = before ? before->wall : make_wall(scene_, *stacked_);
-    std::unique_ptr<coupling::Tube> around;
-    if (capsule_ && capsule_->tube() && capsule_->tube()->fits_other_mesh())
-      around = std::make_unique<coupling::Tube>(*capsule_->tube(), body().space);
-    else
-      around = make_tube(scene_, body(), phases_);
+    std::unique_ptr<coupling::Tube> around = make_tube(scene_, body(), phases_);
     power_.reset(), fields_.reset();
     if (!stacked_) members_.front().geometry.reset(), members_.front().membrane.reset();
     capsule_.reset();  // the last owner, so that the old system is deleted before the new one is built

@@ -12,20 +12,14 @@
 
 namespace tanktread::surface {
 
-bool is_fixed(DuctKind kind) {
+DuctProperties properties(DuctKind kind) {
   switch (kind) {
-    case DuctKind::straight_tube: return false;
-    case DuctKind::channel: return true;
+    case DuctKind::straight_tube:
+      return {.section = "Tube", .fixed = false, .parallel_flow = true, .uses_means = false, .may_iterate = false, .corrects_walls = false};
+    case DuctKind::channel:
+      return {.section = "Channel", .fixed = true, .parallel_flow = false, .uses_means = true, .may_iterate = true, .corrects_walls = true};
   }
   throw std::logic_error("unknown DuctKind");
-}
-
-std::string TubeOptions::list() const {
-  switch (kind()) {
-    case DuctKind::straight_tube: return "Tube";
-    case DuctKind::channel: return "Channel";
-  }
-  throw std::logic_error("this DuctKind has no section");
 }
 
 void TubeOptions::declare(deck::Section& list) {

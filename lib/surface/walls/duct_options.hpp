@@ -18,8 +18,19 @@ enum class DuctKind {
   channel,        ///< duct with one inlet and one outlet whose shape may vary along a centre line; its wall is fixed in the laboratory frame
 };
 
-/// Returns whether the wall is fixed in the laboratory frame. Otherwise it moves along x1 with the particles.
-bool is_fixed(DuctKind kind);
+/// Properties of a kind of duct.
+struct DuctProperties {
+  const char* section;  ///< name of the section of the deck
+  bool fixed;           ///< whether the wall is fixed in the laboratory frame; otherwise it moves along x1 with the particles
+  /// whether the flow of the empty duct is parallel to x1. If so, v_inf and f_inf (2.7) are evaluated at the quadrature nodes of the particle.
+  /// Otherwise v_inf is interpolated from the collocation points, because its values at the nodes would require integrals over the wall, and the
+  /// contribution of v to dp follows from the condition of zero flow rate (2.14)
+  bool parallel_flow;
+  bool uses_means;      ///< whether the collocation equations of the wall use means (2.39) of the velocity
+  bool may_iterate;     ///< whether Solvers/wall applies to the wall; otherwise the wall is always factored
+  bool corrects_walls;  ///< whether the residual velocity on the wall contributes to the correction of forces (2.42)
+};
+DuctProperties properties(DuctKind kind);  ///< returns the properties of this kind
 
 /// Options `Channel/*` of the deck that have no counterpart in the section Tube. A channel has the cross-section of a tube, scaled by factors that
 /// vary along a centre line. The centre line starts along x1 and may bend.
@@ -86,7 +97,7 @@ struct TubeOptions {
   /// except `length`, `periodic length`, `images`, `axial elements` and `grading`
   std::optional<ChannelOptions> channel;
   DuctKind kind() const { return channel ? DuctKind::channel : DuctKind::straight_tube; }
-  std::string list() const;  ///< returns the name of the section of the deck
+  std::string list() const { return properties(kind()).section; }  ///< returns the name of the section of the deck
 
   void declare(deck::Section& section);
 

@@ -157,7 +157,7 @@ void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std:
 /// residual velocity, computed from Solution::residual. In a channel the residual on the wall is included (2.42).
 Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z, const Eigen::VectorXd& residual) {
   Eigen::VectorXd work = z.transpose() * residual;
-  if (!walls_.tube || !walls_.tube->corrects_walls() || !all_rigid()) return work;
+  if (!walls_.tube || !walls_.tube->properties().corrects_walls || !all_rigid()) return work;
   const Tube::WallResidual on_wall = walls_.tube->wall_residual(load(y));
   for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(on_wall, walls_.tube->respond(load(as_net(z.col(k)))));
   return work;

@@ -27,10 +27,6 @@ Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particl
   particle_ = std::make_unique<ParticleData>(particle, parameters, *wall_, phases_);
 }
 
-Tube::Tube(const Tube& tube, const spline::Space& particle)
-    : flow_(tube.flow_), phases_(tube.phases_), wall_(tube.wall_), inner_radius_(tube.inner_radius_),
-      particle_(std::make_unique<ParticleData>(particle, tube.particle_->parameters, *wall_, phases_)), flow_weights_(tube.flow_weights_) {}
-
 Tube::~Tube() = default;
 
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
@@ -43,22 +39,6 @@ stokes::Evaluations Tube::kernel_evaluations() const {
   stokes::Evaluations all = particle_->sources.evaluations();
   if (!particle_->parameters.walls) all += wall_->evaluations();
   return between_ ? all + between_->layer.evaluations() : all;
-}
-
-bool Tube::corrects_walls() const {
-  switch (wall().kind) {
-    case surface::DuctKind::straight_tube: return false;
-    case surface::DuctKind::channel: return true;
-  }
-  throw std::logic_error("unknown DuctKind");
-}
-
-bool Tube::fits_other_mesh() const {
-  switch (wall().kind) {
-    case surface::DuctKind::straight_tube: return true;
-    case surface::DuctKind::channel: return false;
-  }
-  throw std::logic_error("unknown DuctKind");
 }
 
 double Tube::frame_origin(const Net& x) const { return fixed() ? 0 : particle_->geometry.measures(x).centroid[0]; }
@@ -81,7 +61,7 @@ double Tube::pressure_of(const Net& f, const Net& v) {
 /// net flow rate. `on_wall`: velocity of this disturbance at the wall; if null, it is computed when needed.
 double Tube::pressure_of_velocity(const Net& v, const Net* on_wall) {
   if (v.size() == 0 || !particle_->sources.has_double()) return 0;
-  if (has_parallel_flow(wall().kind)) return dot(particle_->weights_of_velocity, v);
+  if (properties().parallel_flow) return dot(particle_->weights_of_velocity, v);
   if (!on_wall) {
     const Net caused = particle_on_wall({}, v);
     return pressure_of_velocity(v, &caused);
@@ -92,7 +72,7 @@ double Tube::pressure_of_velocity(const Net& v, const Net* on_wall) {
 }
 
 double Tube::ambient_correction(const BetweenSites& between, const Net& at_places, const Net& f) const {
-  if (has_parallel_flow(wall().kind)) return 0;
+  if (properties().parallel_flow) return 0;
   return -dot(between.weights * (at_places - between.values * particle_->interpolated_ambient), f) / flow_->flow_rate();
 }
 
@@ -189,7 +169,7 @@ void Tube::velocity_at(const Eigen::SparseMatrix<double>& points, const Net& x, 
 void Tube::freeze() {
   const auto clock = phases_.time("assembly");
   if (wall_->iterates()) return;
-  const bool by_flow = !has_parallel_flow(wall().kind) && particle_->sources.has_double();
+  const bool by_flow = !properties().parallel_flow && particle_->sources.has_double();
   particle_->freeze(*wall_, by_flow ? Net(flow_weights().of_velocity / flow_weights().of_pressure) : Net());
   if (!by_flow) return;
   const Net& through_inlet = particle_->flow_of_strength(*wall_);

@@ -74,11 +74,11 @@ struct TubeParameters {
 ///   c                         integral over the inlet (2.13)    v_inf per unit pressure drop of a period
 ///   images of the particle    none                              in the kernels of one period
 ///
-/// If an enumerator is added to DuctKind, the compiler names the switches that omit it. A new kind of duct also needs decisions in places that are
-/// not switches:
+/// If an enumerator is added to DuctKind, the compiler names the switches that omit it; surface::properties() is one of them. A new kind of duct
+/// also needs decisions in places that are not switches:
 ///
-///   frame of the wall      uses of fixed() and surface::is_fixed(), because a wall that is not fixed moves along x1 with the centroid
-///   flow v_inf             uses of has_parallel_flow(); pressure_correction(), pressure_driven_velocity()
+///   frame of the wall      uses of fixed() and DuctProperties::fixed, because a wall that is not fixed moves along x1 with the centroid
+///   flow v_inf             uses of DuctProperties::parallel_flow; pressure_correction(), pressure_driven_velocity()
 ///   wall                   Wall::is_for(), flow_of_forces() and flow_of_double_layer()
 ///   one pressure drop      respond_open(), frozen_response(), flow_rate(), flow_rate_reduction(), work(); BlockSystem (its unknown);
 ///                          PowerBalance::flow_power(); the pressure correction of RigidTractions; FreeBodyInTube::pressure_drop()
@@ -94,8 +94,6 @@ class Tube {
   /// Constructs the tube for a channel. Its wall is the wall of `flow`.
   Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
-  /// Constructs a tube for another mesh of the particle. The new tube shares the wall of `tube`.
-  Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
   /// Returns the particles as sources of flow. Their unstressed net, and their contrasts if they are not 0, must be set before set_shape().
@@ -194,10 +192,8 @@ class Tube {
   double frame_origin(const Net& x) const;
 
   /// Returns whether the wall is fixed in the laboratory frame (a channel), so that results depend on the position along the channel.
-  bool fixed() const { return surface::is_fixed(wall().kind); }
-
-  bool corrects_walls() const;   ///< whether wall_residual() contributes to the correction of forces (2.42)
-  bool fits_other_mesh() const;  ///< whether the tube can be kept (third constructor of a tube) if the particle's mesh changes
+  bool fixed() const { return properties().fixed; }
+  surface::DuctProperties properties() const { return surface::properties(wall().kind); }
 
   /// Returns whether the points `rows` of x are inside the duct; in a channel, also between its ends.
   bool inside(const Net& x, std::span<const int> rows) const;

@@ -1,7 +1,6 @@
 #include "system/solids/ducts/tube_particle.hpp"
 
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 namespace tanktread::coupling {
@@ -38,14 +37,6 @@ Tube::ParticleData::ParticleData(const spline::Space& particle, const TubeParame
   ranks.measure(phases);
 }
 
-bool has_parallel_flow(surface::DuctKind kind) {
-  switch (kind) {
-    case surface::DuctKind::straight_tube: return true;
-    case surface::DuctKind::channel: return false;
-  }
-  throw std::logic_error("unknown DuctKind");
-}
-
 void Tube::ParticleData::set_shape(const Net& x, double x1, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
   origin = x1;
   shape = x;
@@ -64,7 +55,7 @@ void Tube::ParticleData::set_shape(const Net& x, double x1, const stokes::DuctFl
   wall_on_sites.reset();
   if (sources.has_double()) wall_on_sites = wall.layer().near(sites(), own);
   if (!periodic) inlet = wall.inlet().integral(sites()) / parameters.viscosity;
-  weigh_pressure(flow, has_parallel_flow(wall.surface().kind));
+  weigh_pressure(flow, surface::properties(wall.surface().kind).parallel_flow);
   if (periodic) inlet = ambient / pressure_drop;
 }
 

@@ -80,11 +80,6 @@ struct Tube::ParticleData {
   Net flow_of_strength_;
 };
 
-/// Returns whether the flow of the empty duct is parallel to x1. If so, v_inf and f_inf (2.7) are evaluated at the quadrature nodes of the particle.
-/// Otherwise v_inf is interpolated from the collocation points, because its values at the nodes would require integrals over the wall, and the
-/// contribution of v to dp follows from the condition of zero flow rate (2.14).
-bool has_parallel_flow(surface::DuctKind kind);
-
 /// Points of the wall between its collocation points, at which wall_residual() evaluates the velocity, and the single layer for these points.
 struct Tube::BetweenSitesOfWall {
   BetweenSitesOfWall(const surface::TubeWall& wall, const std::optional<stokes::PeriodicCell>& cell, const BetweenSites& between,

@@ -24,14 +24,6 @@ std::optional<stokes::PeriodicCell> lattice(const surface::TubeWall& wall) {
 
 }  // namespace
 
-bool WallSolver::applies_to(surface::DuctKind kind) {
-  switch (kind) {
-    case surface::DuctKind::straight_tube: return false;
-    case surface::DuctKind::channel: return true;
-  }
-  throw std::logic_error("unknown DuctKind");
-}
-
 Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases,
            const surface::Symmetry& symmetry, const WallSolver& solver)
     : surface_(wall),

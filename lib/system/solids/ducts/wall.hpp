@@ -34,9 +34,6 @@ struct WallSolver {
 
   bool operator==(const WallSolver&) const = default;
 
-  /// Returns whether these options apply to the wall. Otherwise the wall is always factored.
-  static bool applies_to(surface::DuctKind kind);
-
   /// Return whether the linear system is solved iteratively: may_iterate(), for some size of the system; iterates(), if its LU factors take `bytes`.
   /// The operator of a periodic wall is always factored.
   bool may_iterate(bool periodic) const { return !periodic && method != "factored"; }

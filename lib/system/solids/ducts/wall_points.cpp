@@ -1,7 +1,6 @@
 #include "system/solids/ducts/wall_points.hpp"
 
 #include <map>
-#include <stdexcept>
 
 #include "surface/geometry.hpp"
 
@@ -11,15 +10,6 @@ namespace {
 constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by the error at the midpoints of elements, if
                                         // the harmonics of the error decrease with the wave number k like k^-5 (k^-4 from spline interpolation, k^-1
                                         // from the single layer)
-
-/// Returns whether the collocation equations use means (2.39) of the velocity.
-bool uses_means(surface::DuctKind kind) {
-  switch (kind) {
-    case surface::DuctKind::straight_tube: return false;
-    case surface::DuctKind::channel: return true;
-  }
-  throw std::logic_error("unknown DuctKind");
-}
 
 }  // namespace
 
@@ -34,7 +24,7 @@ WallPoints::WallPoints(const surface::TubeWall& wall, const surface::Symmetry& s
   own_ = ranks_.divide_in_order(symmetry);
   if (phases) ranks_.measure(*phases);
   own_targets_ = own_;
-  if (uses_means(wall.kind)) {
+  if (surface::properties(wall.kind).uses_means) {
     // On a periodic wall, site.element is an element of the traction density, not of the geometry.
     const auto first = static_cast<int>(sites_.rows());
     for (const auto& at : wall.sites) {
@@ -52,7 +42,7 @@ WallPoints::WallPoints(const surface::TubeWall& wall, const surface::Symmetry& s
 
 stokes::Sites WallPoints::target_sites(const surface::TubeWall& wall) const {
   stokes::Sites sites = wall.sites;
-  if (uses_means(wall.kind))
+  if (surface::properties(wall.kind).uses_means)
     for (const spline::Site& middle : wall.middles) sites.push_back({middle});
   return sites;
 }
