@@ -14,7 +14,7 @@
 #include "scene/copies.hpp"
 #include "scene/registry.hpp"
 #include "surface/options.hpp"
-#include "system/interface_options.hpp"
+#include "system/options.hpp"
 
 namespace tanktread {
 

@@ -34,7 +34,7 @@
 #include "scene/wall_options.hpp"
 #include "system/solvers/options.hpp"
 #include "system/symmetry.hpp"
-#include "system/volume_options.hpp"
+#include "system/options.hpp"
 #include "deck/expectation.hpp"
 #include "motion/options.hpp"
 #include "motion/continuation.hpp"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "system/frozen/corotation.hpp"
 #include "system/symmetry.hpp"
 
 namespace tanktread::coupling {

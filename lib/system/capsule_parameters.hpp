@@ -13,7 +13,7 @@
 #include "system/particle.hpp"
 #include "system/solids/plates/solid_response.hpp"
 #include "system/solvers/options.hpp"
-#include "system/volume_options.hpp"
+#include "system/options.hpp"
 
 namespace tanktread::coupling {
 

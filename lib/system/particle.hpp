@@ -11,7 +11,7 @@
 #include "membrane/load.hpp"
 #include "spline/space.hpp"
 #include "stokes/layer.hpp"
-#include "system/interface_options.hpp"
+#include "system/options.hpp"
 #include "system/rigid_motion.hpp"
 #include "system/solvers/krylov.hpp"
 

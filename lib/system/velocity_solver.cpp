@@ -10,6 +10,49 @@
 
 namespace tanktread::coupling {
 
+namespace {
+
+/// Returns the parameters with the space and the block of rows of every particle filled in, and with the trivial symmetry if none is set.
+CapsuleParameters completed(CapsuleParameters parameters, const spline::Space& space) {
+  if (parameters.particles.size() == 1) parameters.particles.front().space = &space;
+  set_blocks(parameters.particles);
+  if (parameters.symmetry.fundamental().empty()) parameters.symmetry = surface::Symmetry(space.n_points);
+  return parameters;
+}
+
+/// Returns the motion of control points along interfaces; null if no control points slide.
+std::unique_ptr<InterfaceMotion> interface_motion(const spline::Space& space, const CapsuleParameters& parameters, const Layout& layout,
+                                                  const Targets& targets, const Membranes& membranes) {
+  if (std::ranges::none_of(parameters.particles, &Particle::slides)) return {};
+  return std::make_unique<InterfaceMotion>(space, membranes.unstressed(), parameters, layout, targets, membranes.mass());
+}
+
+}  // namespace
+
+VelocitySolver::VelocitySolver(const spline::Space& space, const Net& unstressed, const Net& resting, const stokes::AmbientFlow& flow,
+                               const CapsuleParameters& parameters, Phases& phases, std::unique_ptr<Tube> tube)
+    : space_(space), resting_(resting), flow_(flow), parameters_(completed(parameters, space)), phases_(phases),
+      layout_(space, parameters_.symmetry, phases),
+      targets_(space, unstressed, parameters_, layout_),
+      membranes_(space, unstressed, parameters_, layout_, phases),
+      volumes_(space, resting, particles(), layout_, phases),
+      layers_(space, unstressed, parameters_, layout_, targets_, phases),
+      tube_(std::move(tube)),
+      solids_(parameters_.solids ? std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_) : nullptr),
+      walls_{tube_.get(), solids_.get()},
+      bodies_{RigidParticles(particles(), resting, parameters_.viscosity, parameters_.quadrature), {}, {}},
+      interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
+      krylov_(parameters_.solvers.of(parameters_.solvers.velocity)) {
+  assert(!tube_ || !targets_.projection());  // Tube computes its response only at collocation sites, not at the sites of a projection
+  walls_.set_particles(membranes_.unstressed(), particles());
+  if (std::ranges::any_of(particles(), &Particle::by_traction))
+    bodies_.tractions = std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, walls_, layout_.points(),
+                                                         layout_.ranks());
+  if (parameters_.cell || tube_) deform_cell(0);
+}
+
+VelocitySolver::~VelocitySolver() = default;
+
 bool VelocitySolver::set_time(double time, double start) {
   const bool other_flow = flow_.set_time(time, start), other_cell = parameters_.cell && deform_cell(time);
   return other_flow || other_cell;
@@ -19,6 +62,26 @@ bool VelocitySolver::set_forces(Net Forces::* of, Net work) {
   if (same(work, forces_.*of)) return false;
   forces_.*of = std::move(work);
   return true;
+}
+
+/// Solves (4.2) at a shape, with each particle replaced by its image in the cell of a lattice, and converts the velocities of the images to
+/// velocities of the particles. `guess`: see solve(). `error`: see SolvedShape.
+SolvedShape VelocitySolver::solve(const Net& shape, const Net& guess, double error) {
+  if (!shape.allFinite()) return {.error = error, .velocity = not_a_number(shape)};
+  SolvedShape found{.error = error};
+  Net x = shape, v = guess;
+  const auto [shifts, origin] = move_into_cell(x, &v);
+  bodies_.rigid.move_into_cell(shifts);
+  bodies_.rigid.fit_to(x);
+  walls_.set_shape(x, targets_, origin);
+  v = solve_in_cell(x, v, found);
+  for (std::size_t p = 0; p < shifts.size(); ++p)
+    for (Net* net : {&v, &found.fluid})
+      if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += shifts[p].velocity.transpose();
+  bodies_.rigid.move_out_of_cell(shifts);
+  found.velocity = symmetric(v);
+  if (!bodies_.rigid.empty()) found.rigid = bodies_.rigid;
+  return found;
 }
 
 WorkOfLoads VelocitySolver::work_of_loads(const Net& x) {
@@ -161,6 +224,65 @@ void VelocitySolver::forget_recycled() const {
 stokes::Evaluations VelocitySolver::kernel_evaluations() const {
   const RigidTractions* const bodies = bodies_.tractions.get();
   return layers_.evaluations() + (bodies ? bodies->kernel_evaluations() : walls_.evaluations());  // bodies->kernel_evaluations() includes the walls
+}
+
+/// Sets the cell as deformed by the flow until `time` (2.51). Returns whether the cell has changed. The cell of a duct is constant.
+bool VelocitySolver::deform_cell(double time) {
+  if (tube_) {
+    cell_ = tube_->cell();
+    return false;
+  }
+  // A cell with walls or posts is not deformed.
+  const Mat3 deformation = walls_.any() ? Mat3(Mat3::Identity()) : flow_.deformation(time);
+  const stokes::PeriodicCell now(deformation * parameters_.cell->vectors(), parameters_.cell->n());
+  if (cell_ && *cell_ == now) return false;
+  cell_ = now;
+  layers_.repeat(now);
+  if (bodies_.tractions) bodies_.tractions->repeat(now);
+  return true;
+}
+
+VelocitySolver::CellMove VelocitySolver::move_into_cell(Net& x, Net* v) const {
+  CellMove move;
+  if (!cell_) return move;
+  const Vec3 middle = cell_origin(x);
+  if (tube_ && !tube_->fixed()) move.origin = middle[0];
+  for (const Particle& particle : particles()) {
+    auto rows = particle.block.rows(x);
+    CellShift& shift = move.shifts.emplace_back(cell_->shift(rows.colwise().mean().transpose() - middle));
+    if (!tube_) shift.velocity = flow_.cell_gradient() * shift.position;
+    rows.rowwise() -= shift.position.transpose();
+    if (v && v->size() > 0) particle.block.rows(*v).rowwise() -= shift.velocity.transpose();
+  }
+  return move;
+}
+
+void VelocitySolver::place(Net& x, Net* v) {
+  const std::optional<double> origin = move_into_cell(x, v).origin;
+  // Fits a copy of the bodies to x, which changes x as in solve(). If solve() has set the walls to this shape, set_shape() then has nothing to do.
+  if (!bodies_.rigid.empty()) RigidParticles(bodies_.rigid).fit_to(x);
+  walls_.set_shape(x, targets_, origin);
+}
+
+/// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is on the x1 axis, at the mean x1 of all control
+/// points, even if the particles are far apart.
+Vec3 VelocitySolver::cell_origin(const Net& x) const {
+  if (!tube_) return Vec3::Zero();
+  if (tube_->fixed()) return (tube_->wall().start + tube_->wall().end) / 2 * Vec3::UnitX();
+  return x.col(0).mean() * Vec3::UnitX();
+}
+
+/// Adds to u, a velocity at the targets, the velocity that plates and posts (2.47), or a tube whose wall traction is eliminated (2.5), cause in
+/// response to the load f and the velocity v of the particles. The walls must be set to the shape. If `with_empty`, also adds the velocity that the
+/// solids cause without particles. Returns the response of the tube.
+Tube::Response VelocitySolver::add_walls(const Net& f, const Net& v, bool with_empty, Net& u) {
+  if (!walls_.any()) return {};
+  const auto clock = phases_.time("wall");
+  FluidWalls eliminated = walls_;
+  if (!eliminates_walls()) eliminated.tube = nullptr;
+  FluidWalls::Response response = eliminated.respond(f, v, with_empty);
+  eliminated.add_velocity(response, targets_, u);
+  return response.tube;
 }
 
 }  // namespace tanktread::coupling

@@ -25,8 +25,7 @@ class RigidTractions;
 struct BlockSystem;
 
 /// Solves for the velocity v(x) of all particles at a shape x, the stacked control nets. solve() is the entry point; solve_second_kind() lists its
-/// stages. The functions are in velocity_solver.cpp (stages), velocity_solver_systems.cpp (linear systems), velocity_solver_cell.cpp (lattices,
-/// tubes, plates, posts) and velocity_solver_setup.cpp (construction).
+/// stages. The functions are in velocity_solver.cpp, and those of linear systems in velocity_solver_systems.cpp.
 ///
 /// Basic equation, without a wall (2.4), (4.2):
 ///
@@ -179,14 +178,14 @@ class VelocitySolver {
   bool keeps_multipliers() const { return parameters_.constrained() && parameters_.solvers.keeps_multipliers(!eliminates_walls()); }
   bool has_velocity_system() const { return !is_explicit() || !eliminates_walls() || keeps_multipliers(); }
   // In the functions below, x is a shape whose particles are in the cell (place), if there is a lattice.
-  // Stages (velocity_solver.cpp).
+  // Stages.
   Net solve_in_cell(const Net& x, const Net& guess, SolvedShape& found);
   Net solve_second_kind(const Net& x, const Net& guess, VolumeProjection& volume, SolvedShape& found);
   Net solve_first_kind(const Net& x, VolumeProjection& volume, SolvedShape& found);
   bool in_fluid(const Net& x) const;
   void push_bodies(const Net& x);
   Net explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer);
-  // Cells of lattices, tubes, plates and posts (velocity_solver_cell.cpp).
+  // Cells of lattices, tubes, plates and posts.
   bool deform_cell(double time);
   Vec3 cell_origin(const Net& x) const;
   Tube::Response add_walls(const Net& f, const Net& v, bool with_empty, Net& u);

@@ -2,14 +2,42 @@
 // Single and double layer of all particles in the Jacobian, kept from an earlier shape (frozen).
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "membrane/mass.hpp"
 #include "system/targets/particle_layers.hpp"
-#include "system/frozen/corotation.hpp"
 #include "system/frozen/frozen_operator.hpp"
 #include "system/frozen/nodal_operator.hpp"
 
 namespace tanktread::coupling {
+
+/// Approximates a layer operator A at a shape x, given A at an earlier shape x0, if x is x0 rotated and slightly deformed. With the rotation Q_p that
+/// best maps the control points of particle p from x0 to x (least squares; Kabsch 1976),
+///
+///   (A f)_p ~ Q_p sum_q A_pq Q_q^T f_q                                                                                            (4.29)
+///
+/// This is exact if all particles rotate together. If a membrane tank-treads, its control points are convected while the shape is steady, and the
+/// operator changes only by this rotation.
+class Corotation {
+ public:
+  Corotation() = default;
+
+  /// Computes, for each particle, the rotation that maps its rows of `from` best to its rows of `to`. Both are control nets of shape (N, 3).
+  Corotation(std::span<const Particle> particles, const Net& from, const Net& to);
+
+  Net back(const Net& f) const;    ///< returns Q^T f
+  Net forth(const Net& f) const;  ///< returns Q f
+
+  /// Returns the displacement `to` - `from` minus the best-fitting rigid motion of each particle.
+  static Net deformation(std::span<const Particle> particles, const Net& from, const Net& to);
+
+ private:
+  Net rotated(Net f, bool back) const;
+
+  std::vector<spline::Block> blocks_;
+  std::vector<Mat3> rotations_;
+};
 
 /// The single layer A and the double layer D of (4.2) at the collocation sites, assembled at one shape and used at later shapes with the rotations
 /// (4.29) of the particles. A is a NodalOperator or a FrozenOperator, as selected by the option `frozen_operator`; D is a FrozenOperator. Images on a

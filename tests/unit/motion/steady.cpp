@@ -7,7 +7,6 @@
 
 #include "base/errors.hpp"
 #include "explicit_motion.hpp"
-#include "motion/fixed_point_error.hpp"
 #include "motion/steady.hpp"
 
 namespace tanktread::motion {

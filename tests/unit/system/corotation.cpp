@@ -1,6 +1,6 @@
 // Tests that frozen layer operators rotate with the particle for which they were assembled.
 
-#include "system/frozen/corotation.hpp"
+#include "system/frozen/frozen_layers.hpp"
 
 #include <cmath>
 #include <vector>

@@ -1,10 +1,15 @@
-// Checks of the response of a tube by the conditions (2.14).
+// Checks of the response of a tube by the conditions (2.14), the flow rate and the residual velocity on the wall that it causes, and gaps to the wall.
 
 #include <algorithm>
+#include <limits>
 #include <span>
+#include <stdexcept>
 
 #include "base/indices.hpp"
+#include "surface/clearance.hpp"
+#include "surface/closest_points.hpp"
 #include "system/solids/ducts/tube_particle.hpp"
+#include "system/targets/collocation.hpp"
 
 namespace tanktread::coupling {
 
@@ -73,6 +78,113 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
   u -= part / mu;
   particle_->sources.add_velocity(f, v, at, all, u);
   return u.rowwise().norm().maxCoeff();
+}
+
+const Tube::FlowWeights& Tube::flow_weights() {
+  if (flow_weights_) return *flow_weights_;
+  FlowWeights& found = flow_weights_.emplace();
+  found.of_traction = wall_->flow_weights();
+  found.force = wall_->force_weights();
+  if (!wall_->iterates()) found.of_velocity = wall_->solve_transposed(found.of_traction);
+  found.own = cell() ? viscosity() * flow_->flow_rate() / empty_pressure_drop() : wall_->inlet().own_flow();
+  found.of_pressure = (found.own - dot(found.of_traction, wall_->traction_per_pressure_drop())) / viscosity();
+  return found;
+}
+
+/// Returns the flow rate of the disturbance through the inlet. By reciprocity, a force f at y causes the flow rate f.c(y)/mu, with c of (2.13).
+/// Therefore no quadrature over the inlet is needed.
+double Tube::flow_rate_of(const Net& f, const Net& v, const Response& response) {
+  ParticleData& particle = *particle_;
+  const FlowWeights& weights = flow_weights();
+  double flow = (response.pressure_drop * weights.own - dot(weights.of_traction, response.wall_traction)) / viscosity();
+  if (f.size() > 0) {
+    stokes::Layer& layer = particle.sources.single_layer;
+    std::vector<double> value[3];
+    layer.values(f, value);
+    const auto& node = layer.nodes();
+    for (std::size_t k = 0; k < value[0].size(); ++k) {
+      const Net at = (Net(1, 3) << node[0][k], node[1][k], node[2][k]).finished();
+      flow -= layer.weights()[k] * wall_->flow_of_forces(at).row(0).dot(Vec3(value[0][k], value[1][k], value[2][k])) / viscosity();
+    }
+  }
+  if (v.size() > 0 && particle.sources.has_double()) flow += dot(particle.flow_of_strength(*wall_), particle.sources.strength(v));
+  return flow;
+}
+
+namespace {
+
+constexpr double sharpness = 1e-2, coarsest = 1e-8;  // sharpness: factor by which wall_residual() multiplies the tolerance of integrals over the
+                                                     // wall, because pressures are large. coarsest: upper limit of this product
+
+quadrature::Options for_wall_residual(quadrature::Options options) {
+  options.tolerance = std::clamp(sharpness * options.tolerance, 1e-12, coarsest);
+  return options;
+}
+
+}  // namespace
+
+Tube::BetweenSitesOfWall::BetweenSitesOfWall(const surface::TubeWall& wall, const std::optional<stokes::PeriodicCell>& cell,
+                                             const BetweenSites& between, const quadrature::Options& options)
+    : at(between.values * wall.net),
+      weights(between.weights),
+      layer(stokes::Layer::Kernel::single_layer, wall.space, between.sites, for_wall_residual(options)) {
+  if (cell) layer.repeat(*cell);
+  layer.set_shape(wall.net);
+}
+
+Tube::WallResidual Tube::wall_residual(const Net& f) {
+  const Response response = respond(f);
+  const surface::TubeWall& wall = wall_->surface();
+  if (!between_)
+    between_ = std::make_unique<BetweenSitesOfWall>(wall, cell(), between_sites(wall.space, wall.net), particle_->parameters.quadrature);
+  const Net &at = between_->at, by_pressure = response.pressure_drop * pressure_driven_velocity(at);
+  const Net u = wall_->points().ranks().divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& velocity) {
+    Net of_wall(at.rows(), 3);
+    between_->layer.apply(wall_->on_space(response.wall_traction), own, of_wall);
+    for (const int i : own) velocity.row(i) = (by_pressure.row(i) - of_wall.row(i)) / viscosity();
+    particle_->sources.add_velocity(f, {}, at, own, velocity);
+  });
+  return {wall_->from_space(Net(between_->weights * u)), flow_rate_of(f, {}, response)};
+}
+
+double Tube::work(const WallResidual& residual, const Response& of) const {
+  return dot(of.wall_traction, residual.velocity) - of.pressure_drop * residual.flow;
+}
+
+bool Tube::inside(const Net& x, std::span<const int> rows) const {
+  const surface::TubeWall& wall = wall_->surface();
+  return std::ranges::all_of(rows, [&](int i) {
+    const Vec3 place = x.row(i).transpose();
+    switch (wall.kind) {
+      case surface::DuctKind::straight_tube:
+        return (place.tail<2>() - wall.outline.centroid()).norm() < inner_radius_ || wall.outline.inside(place.tail<2>());
+      case surface::DuctKind::channel: return wall.channel->inside(place);
+    }
+    throw std::logic_error("unknown DuctKind");
+  });
+}
+
+double Tube::gap() const {
+  switch (wall().kind) {
+    case surface::DuctKind::straight_tube: return gap_to_straight_wall();
+    case surface::DuctKind::channel: return gap_to_channel_wall();
+  }
+  throw std::logic_error("unknown DuctKind");
+}
+
+/// Returns the gap to the wall of a straight tube, from the clearance between the particle and the outline of the cross-section.
+double Tube::gap_to_straight_wall() const {
+  return surface::clearance(surface::Patches(particle_->geometry.bezier(), particle_->shape), wall().outline).gap;
+}
+
+/// Returns the gap to the wall of a channel, from the closest points of the two surfaces. Of elements that are images of each other, searches one.
+double Tube::gap_to_channel_wall() const {
+  const auto points = [&](int e) -> std::span<const int> { return particle_->space.elements[static_cast<std::size_t>(e)].points; };
+  const std::vector<int> elements =
+      surface::fundamental_elements(particle_->parameters.symmetry, static_cast<int>(particle_->space.elements.size()), points).element;
+  const double radius = wall().radius(), nearest = surface::gap_to_wall(particle_->geometry.bezier(), particle_->shape, elements, wall_->boxes(),
+                                                                        wall().period, 1e-5 * radius, radius);
+  return inside(particle_->sites(), indices(particle_->sites().rows())) ? nearest : -nearest;
 }
 
 }  // namespace tanktread::coupling

@@ -1,5 +1,5 @@
 #pragma once
-// Options of the motion of control points along an interface.
+// Options of the conservation of volume, and of the motion of control points along an interface.
 
 #include <optional>
 #include <string>
@@ -8,6 +8,19 @@
 #include "deck/forward.hpp"
 
 namespace tanktread::coupling {
+
+/// Volume constraint. `flux`: zero net flux in every evaluation (2.8). `exact`: in addition, the volume is restored after every step. `none`: no
+/// constraint.
+enum class VolumeConservation { exact, flux, none };
+
+inline const std::vector<std::string> volume_constraints{"exact", "flux", "none"};  ///< words for VolumeConservation in decks
+
+/// Options `Volume/*` of the deck: how the volume of the particle is conserved.
+struct VolumeOptions {
+  VolumeConservation constraint = VolumeConservation::exact;
+
+  void declare(deck::Section& section);
+};
 
 /// Motion of the control points along an interface. `material`: with the fluid. `normal`: with the fluid in the normal direction, and
 /// tangentially with the rigid motion W of the shape (4.14). `relaxed`: in addition tangentially so that elements keep their shape.
