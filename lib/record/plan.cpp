@@ -173,7 +173,7 @@ std::string solvers_line(const Scene& scene, const VelocityUnknowns& unknowns) {
 
 /// Returns the line of the plan that names the blocks of unknowns of a velocity (BlockSystem), and those that are eliminated.
 std::string blocks_line(const Scene& scene, const VelocityUnknowns& unknowns) {
-  const bool constrained = unknowns.deforms && scene.volume.constraint != coupling::VolumeConservation::none;
+  const bool constrained = unknowns.deforms && scene.volume.constrained();
   std::string unknown, eliminated;
   const auto add = [](bool present, std::string& list, const std::string& block) {
     if (present) list += (list.empty() ? "" : ", ") + block;

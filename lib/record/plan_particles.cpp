@@ -91,7 +91,7 @@ VelocityUnknowns velocity_unknowns(const Scene& scene, const std::vector<Particl
   }
   found.tractions = found.bodies && scene.by_tractions();
   found.walls = scene.tube.present && !scene.solvers.eliminates_walls() && !found.tractions;
-  const bool constrained = scene.volume.constraint != coupling::VolumeConservation::none;
+  const bool constrained = scene.volume.constrained();
   found.multipliers = found.deforms && !found.tractions && constrained && scene.solvers.keeps_multipliers(found.walls);
   const bool other = found.tractions ? scene.tube.present || scene.domain.present : found.bodies || found.walls || found.multipliers;
   found.iterates = layers || other;

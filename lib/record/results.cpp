@@ -79,12 +79,11 @@ output::Saved newest_checkpoint(const std::filesystem::path& directory, const co
   const bool chooses = ranks.rank() == 0;
   std::optional<output::Saved> saved;
   coupling::together(chooses, [&] { saved = output::newest_checkpoint(directory); });
-  std::int64_t step = saved ? saved->file.step : -1;
-  ranks.first({&step, 1});
+  const auto step = static_cast<int>(coupling::of_first(saved ? static_cast<double>(saved->file.step) : -1.));
   if (step < 0) throw UserError("--resume " + directory.string() + ": there is no checkpoint in this directory");
   coupling::together(!chooses, [&] {
-    const std::filesystem::path path = directory / output::snapshot_name(static_cast<int>(step));
-    saved = {{path, static_cast<int>(step)}, output::read_checkpoint(path), {}};
+    const std::filesystem::path path = directory / output::snapshot_name(step);
+    saved = {{path, step}, output::read_checkpoint(path), {}};
   });
   return *saved;
 }

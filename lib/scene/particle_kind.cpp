@@ -154,7 +154,7 @@ void ParticleKind::reject(const ParticleScene& particle_scene, Rejections& to) c
   const bool drop = membrane.fluid_interface(), strong = particle_scene.load_is_strong(), rigid = particle.rigid();
   const bool desingularised = particle_scene.quadrature.rule == quadrature::LayerRule::desingularised;
   const bool degenerate = !surface.has_normal_at_poles();
-  const bool constrained = particle_scene.volume.constraint != coupling::VolumeConservation::none;
+  const bool constrained = particle_scene.volume.constrained();
   const std::string plain = "Surface/poles `plain`";
   const Chosen law("Membrane/law `" + membrane.law + "`", "Membrane/law of an elastic membrane");
   to.pair(adaptation.enabled && particle.shape.imported, "Adaptation/enabled", "Particle/shape `file`",

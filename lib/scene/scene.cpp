@@ -50,7 +50,7 @@ void list_idle_keys(Scene& scene) {
   add(scene.flow.gravity && std::ranges::none_of(scene.particles, has_weight), "Flow/gravity", "without Particle/density difference");
   const bool all_rigid = std::ranges::all_of(scene.particles, [](const ParticleKind& one) { return one.particle.rigid(); });
   add(scene.volume_given && all_rigid && scene.named(), "Volume", "on rigid bodies");
-  const bool tractions = scene.by_tractions(), unconstrained = scene.volume.constraint == coupling::VolumeConservation::none;
+  const bool tractions = scene.by_tractions(), unconstrained = !scene.volume.constrained();
   add(scene.solvers.volume != "auto" && (all_rigid || tractions || unconstrained), "Solvers/volume",
       all_rigid ? "on rigid bodies" : unconstrained ? "with Volume/constraint `none`" : "with the tractions on rigid bodies as unknowns");
   add(scene.solvers.tube != "schur" && scene.tube.present && tractions && scene.in_system(), "Solvers/tube",

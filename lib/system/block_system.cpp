@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
-#include <span>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -12,11 +11,6 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Returns the particles whose volume constraint has a multiplier among the unknowns.
-std::span<const spline::Block> with_multiplier(const BlockSystem& s) {
-  return s.multipliers ? std::span(s.volume.blocks) : std::span<const spline::Block>();
-}
-
 /// Numbers of rows of the blocks in the order of the unknowns, in which the multipliers are last. `wall`: -1 if the wall is no unknown.
 struct Sizes {
   Eigen::Index particles, wall, multipliers;
@@ -24,7 +18,7 @@ struct Sizes {
   Sizes(const BlockSystem& system, Eigen::Index n_particles)
       : particles(n_particles),
         wall(system.tube ? static_cast<Eigen::Index>(system.tube->wall().sites.size()) : -1),
-        multipliers(std::ssize(with_multiplier(system))) {}
+        multipliers(system.multipliers ? std::ssize(system.volume.blocks) : 0) {}
   Eigen::Index all() const { return 3 * particles + (wall < 0 ? 0 : 3 * wall + 1) + multipliers; }
 };
 
@@ -34,27 +28,17 @@ template <class Number>
 struct Parts {
   using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;
   Rows particles, wall_traction;
-  Number *pressure_drop, *multipliers;
+  Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Eigen::VectorXd, Eigen::VectorXd>> multipliers;
+  Number* pressure_drop;
 
   Parts(const Sizes& sizes, Number* numbers)
       : particles(numbers, sizes.particles, 3),
         wall_traction(numbers + 3 * sizes.particles, std::max<Eigen::Index>(sizes.wall, 0), 3),
-        pressure_drop(numbers + 3 * sizes.particles + wall_traction.size()),
-        multipliers(numbers + sizes.all() - sizes.multipliers) {}
+        multipliers(numbers + sizes.all() - sizes.multipliers, sizes.multipliers),
+        pressure_drop(numbers + 3 * sizes.particles + wall_traction.size()) {}
 };
 using In = Parts<const double>;
 using Out = Parts<double>;
-
-/// Returns b.v / (b.n) of one particle (2.8).
-double flux_of(const BlockSystem& s, const spline::Block& block, const Net& v) {
-  const auto product = [&](const Net& field) { return dot(block.rows(s.volume.gradient), block.rows(field)); };
-  return product(v) / product(s.volume.direction);
-}
-
-/// Adds `factor` times the normal field n = M0^-1 b on one particle to v.
-void add_normal(const BlockSystem& s, const spline::Block& block, double factor, Eigen::Map<Net>& v) {
-  v.middleRows(block.first_point, block.n_points) += factor * block.rows(s.volume.direction);
-}
 
 /// Computes the product of the block matrix (2.5) to (2.8) with x.
 void product(const BlockSystem& s, const In& x, Out r) {
@@ -72,21 +56,20 @@ void product(const BlockSystem& s, const In& x, Out r) {
     r.wall_traction = tube.wall_on_wall(traction) - drop * tube.inlet_on_wall() - tube.particle_on_wall(load, y);
     *r.pressure_drop = *x.pressure_drop - s.unit * tube.pressure_of(load, y);
   }
-  if (!s.multipliers) s.volume.apply(rows);
+  if (s.multipliers) s.volume.subtract(-x.multipliers, rows), r.multipliers = s.volume.multipliers(y);
+  else s.volume.apply(rows);
   r.particles = rows;
-  for (std::size_t k = 0; const spline::Block& block : with_multiplier(s)) {
-    add_normal(s, block, x.multipliers[k], r.particles);
-    r.multipliers[k++] = flux_of(s, block, y);
-  }
 }
 
 /// Applies the preconditioner, see BlockSystem::linear_system.
 void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
   if (s.of_particles) s.of_particles(r.particles.data(), x.particles.data());
   else x.particles = r.particles;
-  for (std::size_t k = 0; const spline::Block& block : with_multiplier(s)) {
-    x.multipliers[k] = flux_of(s, block, x.particles) - r.multipliers[k];
-    add_normal(s, block, -x.multipliers[k++], x.particles);
+  if (s.multipliers) {
+    Net y = x.particles;
+    x.multipliers = s.volume.multipliers(y) - r.multipliers;
+    s.volume.subtract(x.multipliers, y);
+    x.particles = y;
   }
   if (!s.tube) return;
   *x.pressure_drop = *r.pressure_drop;

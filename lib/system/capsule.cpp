@@ -59,12 +59,10 @@ bool Capsule::defect_spares_system() const {
   return !solver_.is_explicit() && solver_.unknowns_are_velocities() && solver_.eliminates_walls();
 }
 
-void Capsule::freeze(const Net& shape) {
-  Net x = shape;
+void Capsule::freeze(const Net& x) {
   const auto clock = phases_.time("assembly");
-  solver_.place(x);
   ++counts().assemblies;
-  frozen_.assemble(shape, x);
+  frozen_.assemble(x, solver_.place(x));
   if (tube()) tube()->freeze();
 }
 
@@ -116,7 +114,7 @@ void Capsule::restore_constraints(Net& x) {
   solver_.rigid().fit_to(x);
   if (parameters().volume.constraint != VolumeConservation::exact) return;
   const auto clock = phases_.time("volume");
-  solver_.volumes().restore(x, [&](const Net& b) { return jacobian_.inflation(symmetric(solver_.membranes().solved(b))); });
+  solver_.volumes().restore(x, [&](const Net& b) { return jacobian_.inflation(solver_.membranes().solved(b)); });
 }
 
 /// Returns velocity fields, with the symmetry of the scene, that do not change the shape: rotations of the meshes of drops and of membranes (4.22).

@@ -11,7 +11,7 @@ namespace tanktread::coupling {
 namespace {
 
 /// Returns whether the particle's membrane nearly conserves its area: its area modulus exceeds its shear modulus by more than the factor `times`.
-bool keeps_area(const Particle& one) {
+bool resists_area(const Particle& one) {
   constexpr double times = 50;
   return !one.rigid && membrane::area_modulus(one.material.law) > times * membrane::modulus(one.material.law);
 }
@@ -49,9 +49,9 @@ void CapsuleJacobian::linearise(const Net& x, const Net& energy_gradient, const 
   frozen_.turn_to(x);
   if (area_) area_->set_shape(x);
   if (flow_at_sites_) gradients_ = gradients_at(targets_.at_sites() * x);
-  if (!interface_ && !parameters_.constrained()) return;
+  if (!interface_ && !parameters_.volume.constrained()) return;
   const Net gradient = volumes_.gradient(x);
-  if (parameters_.constrained()) projection_ = volumes_.projection(gradient, parameters_.symmetry.completed(membranes_.solved(gradient)));
+  if (parameters_.volume.constrained()) projection_ = volumes_.projection(gradient, membranes_.solved(gradient));
   if (!interface_) return;
   interface_->linearise(x, gradient, slip);
   pressures_.clear(), x_ = x;
@@ -82,7 +82,7 @@ Net CapsuleJacobian::without_flux(Net rate) const {
 Net CapsuleJacobian::inflation(const Net& c) {
   constexpr double rough = 0.1;  // relative residual
   if (latest_shift_ == 0 || interface_ || c.rows() != projection_.gradient.rows()) return c;
-  if (std::ranges::none_of(parameters_.particles, keeps_area)) return c;
+  if (std::ranges::none_of(parameters_.particles, resists_area)) return c;
   const Net along = solve(latest_shift_, c, rough, {});
   return along.allFinite() ? along : c;
 }

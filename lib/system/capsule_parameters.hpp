@@ -52,7 +52,6 @@ struct CapsuleParameters {
   std::optional<SolidScene> solids;          ///< plates and posts in the cell
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; Symmetry() if there is none
 
-  bool constrained() const { return volume.constraint != VolumeConservation::none; }  ///< true if velocities conserve the volumes (2.8)
   bool any_rigid() const { return std::ranges::any_of(particles, [](const Particle& one) { return one.rigid.has_value(); }); }
 };
 

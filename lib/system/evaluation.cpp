@@ -72,16 +72,14 @@ void Evaluation::find_unknowns() {
 
 const Tube::Response& Evaluation::response() {
   if (!known_.response) find_unknowns();
-  Net inside = x_;
-  system_->solver().place(inside);
+  system_->solver().place(x_);
   if (!known_.response) known_.response = system_->tube()->respond(known_.load, known_.unknowns);
   return *known_.response;
 }
 
 Evaluation::SolidFlow Evaluation::solid_flow() {
   find_unknowns();
-  Net inside = x_;
-  system_->solver().place(inside);
+  system_->solver().place(x_);
   SolidResponse& solids = *system_->solids();
   SolidFlow found{.flow = {}, .caused = solids.respond(known_.load, known_.unknowns)};
   found.flow = found.caused + solids.empty();
@@ -134,8 +132,7 @@ Mat3 Evaluation::moment_by_traction(std::size_t p) {
   if (!solved_ && near_) return near_->moment_by_traction(p);
   require_solution();
   system_->evaluate(x_, known_.velocity, known_.error);  // solves again if another shape was solved last
-  Net inside = x_;
-  system_->solver().place(inside);
+  system_->solver().place(x_);
   return system_->solver().moment_by_traction(p);
 }
 

@@ -19,6 +19,8 @@ inline const std::vector<std::string> volume_constraints{"exact", "flux", "none"
 struct VolumeOptions {
   VolumeConservation constraint = VolumeConservation::exact;
 
+  bool constrained() const { return constraint != VolumeConservation::none; }  ///< true if velocities conserve the volumes (2.8)
+
   void declare(deck::Section& section);
 };
 

@@ -107,7 +107,7 @@ void VelocitySolver::push_bodies(const Net& x) {
 
 Net VelocitySolver::membrane_load(const Net& x, WorkOfLoads& known, VolumeProjection* volume) {
   Net* direction = nullptr;
-  if (volume && parameters_.constrained()) {
+  if (volume && parameters_.volume.constrained()) {
     const Net gradient = volumes_.gradient(x);
     *volume = volumes_.projection(gradient, gradient);
     direction = &volume->direction;
@@ -197,8 +197,8 @@ bool VelocitySolver::in_fluid(const Net& x) const {
 
 Net VelocitySolver::defect(const Net& shape, const Net& given) {
   assert(unknowns_are_velocities() && eliminates_walls());
-  Net x = shape, u = given;
-  place(x, &u);
+  Net u = given;
+  const Net x = place(shape, &u);
   if (!in_fluid(x)) return not_a_number(x);
   VolumeProjection volume;
   Net projected = u;
@@ -257,11 +257,12 @@ VelocitySolver::CellMove VelocitySolver::move_into_cell(Net& x, Net* v) const {
   return move;
 }
 
-void VelocitySolver::place(Net& x, Net* v) {
+Net VelocitySolver::place(Net x, Net* v) {
   const std::optional<double> origin = move_into_cell(x, v).origin;
   // Fits a copy of the bodies to x, which changes x as in solve(). If solve() has set the walls to this shape, set_shape() then has nothing to do.
   if (!bodies_.rigid.empty()) RigidParticles(bodies_.rigid).fit_to(x);
   walls_.set_shape(x, targets_, origin);
+  return x;
 }
 
 /// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is on the x1 axis, at the mean x1 of all control

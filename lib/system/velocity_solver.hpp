@@ -139,8 +139,8 @@ class VelocitySolver {
   /// given, to the velocity of the image. Without a lattice, does nothing. The cell is centred on the origin; in a channel, on the middle of the
   /// channel; and in a straight tube, whose wall moves with the particles, on the mean of the particles.
   CellMove move_into_cell(Net& x, Net* v = nullptr) const;
-  /// Moves x and v into the cell, as move_into_cell() does, and sets the walls to the shape x in the cell.
-  void place(Net& x, Net* v = nullptr);
+  /// Moves x and v into the cell, as move_into_cell() does, and sets the walls to the shape x in the cell, which it returns.
+  Net place(Net x, Net* v = nullptr);
 
   /// Returns the rigid bodies. Their motions belong to the shape solved last. Their positions were set by the latest call of solve() or
   /// Capsule::restore_constraints().
@@ -175,7 +175,7 @@ class VelocitySolver {
     std::unique_ptr<RigidTractions> tractions;
     std::optional<OneBodyInverses> isolated;
   };
-  bool keeps_multipliers() const { return parameters_.constrained() && parameters_.solvers.keeps_multipliers(!eliminates_walls()); }
+  bool keeps_multipliers() const { return parameters_.volume.constrained() && parameters_.solvers.keeps_multipliers(!eliminates_walls()); }
   bool has_velocity_system() const { return !is_explicit() || !eliminates_walls() || keeps_multipliers(); }
   // In the functions below, x is a shape whose particles are in the cell (place), if there is a lattice.
   // Stages.

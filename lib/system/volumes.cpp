@@ -2,17 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 namespace tanktread::coupling {
 
-void VolumeProjection::apply(Net& v) const {
-  const Net &b = gradient, &c = direction;
-  for (const spline::Block& block : blocks) {
-    const auto rows = [&block](const Net& net) { return block.rows(net).array(); };
-    block.rows(v) -= (rows(b) * rows(v)).sum() / (rows(b) * rows(c)).sum() * block.rows(c);
+Eigen::VectorXd VolumeProjection::multipliers(const Net& v) const {
+  Eigen::VectorXd all(std::ssize(blocks));
+  for (Eigen::Index k = 0; const spline::Block& block : blocks) {
+    const auto product = [&](const Net& net) { return (block.rows(gradient).array() * block.rows(net).array()).sum(); };
+    all[k++] = product(v) / product(direction);
   }
+  return all;
+}
+
+void VolumeProjection::subtract(const Eigen::VectorXd& multipliers, Net& v) const {
+  for (Eigen::Index k = 0; const spline::Block& block : blocks) block.rows(v) -= multipliers[k++] * block.rows(direction);
 }
 
 Volumes::Volumes(const spline::Space& space, const Net& initial, const std::vector<Particle>& particles, const Layout& layout, Phases& phases)

@@ -17,7 +17,9 @@ struct VolumeProjection {
   std::vector<spline::Block> blocks;  ///< rows of the deformable particles
 
   bool active() const { return gradient.size() > 0; }
-  void apply(Net& v) const;  ///< replaces the velocity v by P v, which changes no volume
+  Eigen::VectorXd multipliers(const Net& v) const;                     ///< returns b.v / (b.c) of each deformable particle
+  void subtract(const Eigen::VectorXd& multipliers, Net& v) const;     ///< subtracts from v, on each deformable particle, its multiplier times c
+  void apply(Net& v) const { subtract(multipliers(v), v); }            ///< replaces the velocity v by P v, which changes no volume
 };
 
 /// The volumes V of all particles and their prescribed volumes V0. Rigid bodies are excluded from all corrections. Calls with a shape are collective.

@@ -13,17 +13,11 @@
 #include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Tpetra_Core.hpp>
-#include <Tpetra_Import.hpp>
-#include <Tpetra_Map.hpp>
-#include <Tpetra_MultiVector.hpp>
 
 #include "surface/partition.hpp"
 #include "system/parallel/agreement.hpp"
 
 namespace tanktread::coupling {
-
-using Map = Tpetra::Map<>;
-using MultiVector = Tpetra::MultiVector<>;
 
 namespace {
 
@@ -84,8 +78,6 @@ struct Ranks::Impl {
   Teuchos::RCP<const Teuchos::Comm<int>> comm = communicator();
   std::vector<int> rows;
   surface::Symmetry symmetry;
-  Teuchos::RCP<Tpetra::Import<>> import;
-  Teuchos::RCP<MultiVector> own, all;
   Phases* phases = nullptr;
 
   std::unique_ptr<Phases::Scope> time() const { return phases ? std::make_unique<Phases::Scope>(*phases, "exchange") : nullptr; }
@@ -100,16 +92,6 @@ void Ranks::measure(Phases& phases) { impl_->phases = &phases; }
 void Ranks::set_owned_rows(const std::vector<int>& rows, surface::Symmetry symmetry) {
   impl_->rows = rows;
   impl_->symmetry = std::move(symmetry);
-  if (size() == 1) return;
-  const std::vector<int>& all = impl_->symmetry.fundamental();
-  std::vector<Map::global_ordinal_type> ids;
-  for (const int row : rows) ids.push_back(std::ranges::lower_bound(all, row) - all.begin());
-  const auto n = static_cast<Tpetra::global_size_t>(all.size());
-  const auto source = Teuchos::rcp(new Map(n, ids.data(), static_cast<int>(ids.size()), 0, impl_->comm));
-  const auto target = Teuchos::rcp(new Map(n, 0, impl_->comm, Tpetra::LocallyReplicated));
-  impl_->import = Teuchos::rcp(new Tpetra::Import<>(source, target));
-  impl_->own = Teuchos::rcp(new MultiVector(source, 3));
-  impl_->all = Teuchos::rcp(new MultiVector(target, 3));
 }
 
 std::vector<int> Ranks::divide_points(const spline::Space& space, const surface::Symmetry& symmetry) {
@@ -126,21 +108,12 @@ std::vector<int> Ranks::divide_in_order(const surface::Symmetry& symmetry) {
 }
 
 void Ranks::replicate(Net& net) const {
-  const auto clock = impl_->time();
-  if (size() > 1) {
-    assert(!impl_->import.is_null());
-    for (int c = 0; c < 3; ++c) {
-      const auto column = impl_->own->getDataNonConst(static_cast<size_t>(c));
-      for (size_t i = 0; i < impl_->rows.size(); ++i) column[static_cast<Teuchos::Ordinal>(i)] = net(impl_->rows[i], c);
-    }
-    impl_->all->doImport(*impl_->own, *impl_->import, Tpetra::INSERT);
-    const std::vector<int>& all = impl_->symmetry.fundamental();
-    for (int c = 0; c < 3; ++c) {
-      const auto column = impl_->all->getData(static_cast<size_t>(c));
-      for (size_t i = 0; i < all.size(); ++i) net(all[i], c) = column[static_cast<Teuchos::Ordinal>(i)];
-    }
-  }
-  impl_->symmetry.complete(net);
+  if (size() == 1) return impl_->symmetry.complete(net);
+  const Net own = net(impl_->rows, Eigen::all);
+  net(impl_->symmetry.fundamental(), Eigen::all).setZero();
+  net(impl_->rows, Eigen::all) = own;
+  Net* const only[] = {&net};
+  add(only);
 }
 
 void Ranks::add(std::span<Net* const> nets) const {
@@ -196,14 +169,7 @@ std::vector<int> Ranks::share(int n) const {
 
 bool Ranks::any(bool mine) const {
   const auto clock = impl_->time();
-  int local = mine, together = 0;
-  Teuchos::reduceAll(*impl_->comm, Teuchos::REDUCE_MAX, local, Teuchos::outArg(together));
-  return together != 0;
-}
-
-void Ranks::first(std::span<std::int64_t> numbers) const {
-  const auto clock = impl_->time();
-  Teuchos::broadcast(*impl_->comm, 0, static_cast<int>(numbers.size_bytes()), reinterpret_cast<char*>(numbers.data()));
+  return largest(mine) > 0;
 }
 
 }  // namespace tanktread::coupling

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <chrono>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -31,7 +30,7 @@ class Session {
 };
 
 /// The ranks of the run. Control nets are replicated, and the work is divided by their rows. A rank computes the rows of its rank-owned control
-/// points, and `replicate` distributes them to all ranks by a Tpetra import. Only treecode sums (TreeSum) are divided in another way: every rank
+/// points, and `replicate` distributes them to all ranks. Only treecode sums (TreeSum) are divided in another way: every rank
 /// computes some terms of each row, and the results are summed over the ranks (see Layer::share). Treecode sums on different numbers of ranks
 /// therefore differ by round-off.
 ///
@@ -125,9 +124,6 @@ class Ranks {
 
   /// Returns true if `mine` (for example a stop signal) is true on any rank. Collective.
   bool any(bool mine) const;
-
-  /// Replaces the numbers on every rank by the numbers of rank 0, for example a position in a file. Collective.
-  void first(std::span<std::int64_t> numbers) const;
 
   /// Returns the seconds since `start` by the clock of rank 0. Collective.
   double seconds_since(std::chrono::steady_clock::time_point start) const {
