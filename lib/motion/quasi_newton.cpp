@@ -61,7 +61,7 @@ Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& s
   const bool small = error <= 1 || options.fixed_step;
   if (small) dynamics.restore_constraints(last.y);
   if (options.fixed_step && !last.y.allFinite())
-    throw RunFailure("the volume was not restored after the implicit step of fixed length: set a smaller Time/fixed step");
+    throw RunFailure("the constraints were not restored after the implicit step of fixed length: set a smaller Time/fixed step");
   return {small && last.y.allFinite(), step_factor(error, small ? memory.error : 0, power)};
 }
 

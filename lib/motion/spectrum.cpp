@@ -46,18 +46,6 @@ void SpectrumOptions::declare(deck::Section& section) {
   if (method == "dense") section.without_effect({"shift", "block"}, "with Spectrum/method `dense`");
 }
 
-const char* name(ModeKind kind) {
-  switch (kind) {
-    case ModeKind::shape: return "shape";
-    case ModeKind::translation: return "translation";
-    case ModeKind::rotation: return "rotation";
-    case ModeKind::labels: return "labels";
-    case ModeKind::volume: return "volume";
-    case ModeKind::mass: return "mass";
-  }
-  throw std::logic_error("this kind of mode has no name");
-}
-
 void add_columns(const std::complex<double>& rate, const std::string& number, Columns& to) {
   constexpr const char* fewer = "fewer modes than Spectrum/number are found";
   to.add(rate.real(), {"rate_" + number, "1/time",

@@ -37,7 +37,8 @@ struct SpectrumOptions {
 /// Kind of a mode: a change of shape; a neutral mode that translates, rotates or only relabels the surface; or a mode due to a conserved volume or
 /// mass.
 enum class ModeKind { shape, translation, rotation, labels, volume, mass };
-const char* name(ModeKind kind);
+inline const std::vector<std::string> mode_kinds{"shape", "translation", "rotation", "labels", "volume", "mass"};  ///< words for ModeKind
+inline const std::string& name(ModeKind kind) { return mode_kinds.at(static_cast<std::size_t>(kind)); }
 
 /// Gradient, with respect to the state, of a quantity that the motion conserves. `kind`: kind of the mode of rate 0 that the conservation causes.
 struct Conserved {

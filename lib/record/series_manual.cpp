@@ -1,11 +1,14 @@
 #include "record/series_manual.hpp"
 
 #include <map>
+#include <ranges>
 #include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "deck/words.hpp"
+#include "motion/spectrum.hpp"
 #include "record/duct_arrays.hpp"
 #include "record/numbers.hpp"
 #include "scene/series/series.hpp"
@@ -58,6 +61,15 @@ const std::string status_words = "why the run ended: " + in_code(output::run_sta
                                  in_code(output::run_status::past) + " (Time/end when past), " + in_code(output::run_status::by_signal) + ", " +
                                  in_code(output::run_status::by_clock) + ", or " + in_code(output::run_status::failed) + " and the reason";
 
+/// Returns the description of the kinds of eigenmodes.
+std::string mode_words() {
+  std::vector<std::string> others;
+  for (const std::string& kind : motion::mode_kinds | std::views::drop(1)) others.push_back(in_code(kind.c_str()));
+  return "kind of each eigenmode of the last spectrum: " + in_code(motion::mode_kinds.front().c_str()) + " changes the shape, " +
+         deck::joined(others, " and ") + " do not";
+}
+const std::string kinds_of_modes = mode_words();
+
 const Entry entries[] = {
     {"status", "", "all", status_words.c_str()},
     {"final", "", "all", "last value of every series; for a prescribed body also the vectors `drag` and `torque`"},
@@ -77,8 +89,7 @@ const Entry entries[] = {
     {"memory", "bytes", "all", "largest memory in use: `largest of a rank` is the maximum over the MPI ranks, `all ranks` the sum"},
     {"plan", "", "all", "methods and parameters that the run chose, one line each"},
     {"numbers", "", "all", "derived and dimensionless quantities of the scene, listed below"},
-    {"modes", "", "capsule, drop",
-     "kind of each eigenmode of the last spectrum: `shape` changes the shape, `translation`, `rotation` and `volume` do not"},
+    {"modes", "", "capsule, drop", kinds_of_modes.c_str()},
     {"warnings", "", "all", "limits of the method that the run came close to, one sentence each"},
     {"obstacles", "", "runs whose error cannot be estimated", "reasons for this, such as wrinkles that the mesh does not represent"},
 };

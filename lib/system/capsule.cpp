@@ -70,7 +70,7 @@ void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++counts().tangents;
   const auto e = evaluate_on_demand(x, {}, 0);
-  jacobian_.linearise(x, slides() ? e->work() : Net(), e->load_sums(), e->slip());
+  jacobian_.linearise(x, slides() ? e->virtual_work() : Net(), e->load_sums(), e->slip());
   if (!solver_.is_explicit() && has_frozen()) solver_.use_inverse([this](const Net& rhs) { return jacobian_.inverse_product(rhs); });
 }
 

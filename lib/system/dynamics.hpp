@@ -15,7 +15,7 @@ inline Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, 
 
 /// The system dx/dt = v(x) (4.2) of the control net x. Nets are replicated on all ranks, and every call is collective. If the motion depends on time,
 /// all calls refer to the time passed to set_time() last. By default the Jacobian is 0, as for motions that are not stiff.
-/// CoupledMotion and motion::GuardedDynamics wrap another motion and must forward every function.
+/// CoupledMotion and motion::GuardedDynamics wrap another motion and must forward every function (checked by tests/style/structure.py).
 class Dynamics {
  public:
   virtual ~Dynamics() = default;

@@ -39,17 +39,19 @@ const Net& Evaluation::solved_fluid_velocity() {
   return fluid_velocity();
 }
 
-const WorkOfLoads& Evaluation::loads() {
-  if (known_.loads.work.size() == 0) known_.loads = system_->solver().work_of_loads(x_);
-  return known_.loads;
+const WorkOfLoads& Evaluation::work_of_loads() {
+  if (known_.virtual_work.work.size() == 0) known_.virtual_work = system_->solver().work_of_loads(x_);
+  return known_.virtual_work;
 }
 
-const std::vector<Net>& Evaluation::load_sums() { return system_->solver().membranes().loads().n_sums() > 0 ? loads().sums : known_.loads.sums; }
+const std::vector<Net>& Evaluation::load_sums() {
+  return system_->solver().membranes().loads().n_sums() > 0 ? work_of_loads().sums : known_.virtual_work.sums;
+}
 
 const Net& Evaluation::load() {
   VelocitySolver& solver = system_->solver();
   if (solver.load_depends_on_unknowns()) require_solution();
-  else if (known_.load.size() == 0) known_.load = solver.membrane_load(x_, known_.loads);
+  else if (known_.load.size() == 0) known_.load = solver.membrane_load(x_, known_.virtual_work);
   return known_.load;
 }
 
@@ -66,7 +68,7 @@ void Evaluation::find_unknowns() {
   if (given_.size() == 0 || !system_->solver().unknowns_are_velocities()) require_solution();
   if (solved_) return;
   known_.unknowns = given_;
-  known_.load = system_->solver().membrane_load(x_, known_.loads);
+  known_.load = system_->solver().membrane_load(x_, known_.virtual_work);
   if (system_->solver().viscous()) known_.load += system_->solver().membranes().load(x_, viscous_work());
 }
 
@@ -113,7 +115,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
   if (particle.rigid) {
     moment = particle.by_traction ? moment_by_traction(p) : rigid().load_moment(p);
   } else {
-    Net of_particle = own(work());
+    Net of_particle = own(virtual_work());
     if (system.solver().viscous()) of_particle += own(viscous_work());
     moment = of_particle.transpose() * own(x_);  // first moment int df x dGamma of the load, with x = sum N_A x_A
     if (!particle.loads.empty() || system.solver().has_forces())  // refers the moment to the centroid, because the load has a net force

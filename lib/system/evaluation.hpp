@@ -27,8 +27,7 @@ class Evaluation {
   const Net& x() const { return x_; }                    ///< shape, (N, 3)
   const Net& velocity();                                 ///< velocity of the control points, length/time
   const Net& fluid_velocity();                           ///< velocity of the fluids on the surface; equals `velocity` unless control points slide
-  const WorkOfLoads& loads();                            ///< virtual work of the loads, and the surface integrals on which they depend
-  const Net& work() { return loads().work; }             ///< WorkOfLoads::work
+  const Net& virtual_work() { return work_of_loads().work; }  ///< WorkOfLoads::work
   const std::vector<Net>& load_sums();                   ///< WorkOfLoads::sums; empty, without computing the work, if no load has any
   const Slip& slip() const { return known_.slip; }       ///< slip along the meshes of interfaces; empty if the system is not solved at x
 
@@ -70,6 +69,7 @@ class Evaluation {
  private:
   void require_solution();  // solves the linear system, unless it is solved already with any allowed error
   void find_unknowns();
+  const WorkOfLoads& work_of_loads();  // virtual work of the loads, and the surface integrals on which they depend
   const Net& solved_fluid_velocity();  // fluid velocity from a solve at this shape, never from `near_`
   const Net& viscous_work();
   Mat3 moment_by_traction(std::size_t p);  // first moment of the load on a body whose unknown is its traction

@@ -28,7 +28,7 @@ struct SolvedShape {
   /// On a lattice, a solve stores the velocities of the particles' images in the cell, unlike in `velocity` and `fluid`. Evaluation::find_unknowns
   /// stores the velocities of the particles themselves. Only walls use these, and with walls the velocities of particles and images are equal
   Net unknowns;
-  WorkOfLoads loads;
+  WorkOfLoads virtual_work;
   Net load;                                ///< see Evaluation::load
   std::optional<Tube::Response> response;  ///< response of the tube; not set if a velocity system was solved, because the solution changes it
   std::optional<RigidParticles> rigid;     ///< rigid bodies with their motion, if there are any

@@ -105,8 +105,9 @@ void VelocitySolver::push_bodies(const Net& x) {
   bodies_.rigid.push(push);
 }
 
-Net VelocitySolver::membrane_load(const Net& x, WorkOfLoads& known, VolumeProjection* volume) {
-  Net* direction = nullptr;
+/// Returns membrane_load(x, known). Sets `volume`, unless it is null, to the volume projection at x; leaves it inactive if the volumes are free.
+Net VelocitySolver::load_and_projection(const Net& x, WorkOfLoads& known, VolumeProjection* volume) {
+  Net* direction = nullptr;  // field c of the projection: b = dV/dx, until M0^-1 is applied to it together with the load
   if (volume && parameters_.volume.constrained()) {
     const Net gradient = volumes_.gradient(x);
     *volume = volumes_.projection(gradient, gradient);
@@ -143,7 +144,7 @@ Net VelocitySolver::solve_in_cell(const Net& x, const Net& guess, SolvedShape& f
 /// loads, unknowns and the response of a tube in `found`.
 Net VelocitySolver::solve_second_kind(const Net& x, const Net& guess, VolumeProjection& volume, SolvedShape& found) {
   RigidParticles& rigid = bodies_.rigid;
-  Net f = membrane_load(x, found.loads, &volume);
+  Net f = load_and_projection(x, found.virtual_work, &volume);
   rigid.add_load(f);
   found.load = f;
   Net v = explicit_velocity(x, f, {}, &found.response);
@@ -163,7 +164,7 @@ Net VelocitySolver::solve_second_kind(const Net& x, const Net& guess, VolumeProj
 /// Computes the fluid velocity of (4.2) as solve_second_kind() does, but with the tractions on rigid bodies as unknowns (2.40). Sets `volume`,
 /// and loads, unknowns and the response of a tube in `found`.
 Net VelocitySolver::solve_first_kind(const Net& x, VolumeProjection& volume, SolvedShape& found) {
-  found.load = bodies_.tractions->all_rigid() ? Net(Net::Zero(x.rows(), 3)) : membrane_load(x, found.loads, &volume);
+  found.load = bodies_.tractions->all_rigid() ? Net(Net::Zero(x.rows(), 3)) : load_and_projection(x, found.virtual_work, &volume);
   Net v = explicit_velocity(x, found.load, {}, nullptr);
   volume.apply(v);
   found.unknowns = solve_tractions(x, volume, symmetric(v), found);
@@ -172,7 +173,8 @@ Net VelocitySolver::solve_first_kind(const Net& x, VolumeProjection& volume, Sol
 
 /// Returns v_inf - (1/mu) R^-1 A f of (4.2), with the ambient velocity v_inf, the collocation matrix R and the single layer A. Adds the velocity that
 /// walls cause (add_walls) in response to the load f and, if given, to the velocity of the particles. Stores the response of a tube in `answer`, if
-/// given, unless a linear system for the velocity follows, because the solution changes the response.
+/// given, unless a linear system for the velocity follows, because the solution changes the response. The response then belongs to the final load,
+/// because without a linear system no load depends on the unknowns.
 Net VelocitySolver::explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer) {
   Net u = layers_.apply_single(x, f);
   if (flow_at_targets()) {
@@ -203,7 +205,7 @@ Net VelocitySolver::defect(const Net& shape, const Net& given) {
   VolumeProjection volume;
   Net projected = u;
   WorkOfLoads work;
-  Net f = membrane_load(x, work, &volume);
+  Net f = load_and_projection(x, work, &volume);
   volume.apply(projected);
   if (viscous()) f += membranes_.viscous_load(x, projected);
   Net residual = explicit_velocity(x, f, layers_.has_double() ? projected : Net(), nullptr) - projected;

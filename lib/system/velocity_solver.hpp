@@ -33,7 +33,8 @@ struct BlockSystem;
 ///
 /// R is the collocation matrix, M0 the mass matrix, v_inf the ambient velocity, E the energy of the membranes and V the volume of a particle. A and D
 /// are the single and the double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface, with the viscosity
-/// ratio lambda. Each particle has its own condition b.v = 0, and P is the product of the projections of all particles.
+/// ratio lambda. Each particle has its own condition b.v = 0, and P is the product of the projections of all particles. This requires that c is zero
+/// on all other particles, which holds for the volumes (VolumeProjection).
 ///
 /// Solution: if lambda = 1, then D = 0, and the velocity needs no assembly and no linear solve. Otherwise Belos solves P B P v = P rhs, where rhs is
 /// the right-hand side of the equation above. P removes the mode for which B becomes singular as lambda -> 0. BlockSystem describes this system, and
@@ -104,9 +105,8 @@ class VelocitySolver {
   WorkOfLoads work_of_loads(const Net& x);
 
   /// Returns the load of the membranes at x. `known`: virtual work of the loads at x, computed here if it has no rows. On a lattice, particles may be
-  /// moved into the cell, which changes no load. If `volume` is given, it is set to the volume projection at x, and remains inactive if the volumes
-  /// are free.
-  Net membrane_load(const Net& x, WorkOfLoads& known, VolumeProjection* volume = nullptr);
+  /// moved into the cell, which changes no load.
+  Net membrane_load(const Net& x, WorkOfLoads& known) { return load_and_projection(x, known, nullptr); }
 
   /// Returns the first moment int df_i r_j dGamma of the load df on particle p, a rigid body whose unknown is its traction, at the shape that was
   /// solved last. r is the position relative to the centre of the body.
@@ -182,6 +182,7 @@ class VelocitySolver {
   Net solve_in_cell(const Net& x, const Net& guess, SolvedShape& found);
   Net solve_second_kind(const Net& x, const Net& guess, VolumeProjection& volume, SolvedShape& found);
   Net solve_first_kind(const Net& x, VolumeProjection& volume, SolvedShape& found);
+  Net load_and_projection(const Net& x, WorkOfLoads& known, VolumeProjection* volume);
   bool in_fluid(const Net& x) const;
   void push_bodies(const Net& x);
   Net explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer);

@@ -10,7 +10,9 @@
 
 namespace tanktread::coupling {
 
-/// The projection P = 1 - c b^T/(b.c) of (2.8), applied to each deformable particle, at one shape. Without rows, P = 1.
+/// The projection P = 1 - c b^T/(b.c) of (2.8), applied to each deformable particle, at one shape. Without rows, P = 1. The field c of a particle is
+/// zero on all other particles. For a constraint whose multiplier causes a flow, c would have rows on all particles. The multipliers of all particles
+/// would then be the solution of one linear system.
 struct VolumeProjection {
   Net gradient;                       ///< b = dV/dx: the rows of each particle contain the gradient of the volume of this particle
   Net direction;                      ///< c, for example M0^-1 b: field along which velocities are corrected

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Checks limits of size in app and lib: .cpp files per folder, lines per file and function, data members per class.
-Checks that includes have no cycle, and that only files that exchange unknowns, sum or record make collective calls.
+Checks that includes have no cycle, that only files that exchange unknowns, sum or record make collective calls, and that
+wrappers of Dynamics override all its functions.
 structure_exceptions.txt lists exceptions; their values may only decrease.
 
 Usage: structure.py <source directory> [--shrink]     --shrink reduces the values of exceptions to the current sizes
@@ -153,6 +154,14 @@ def cycles(source, files):
         yield from visit(path)
 
 
+def unforwarded(source):
+    """Yields each virtual function of Dynamics that one of its wrappers does not override."""
+    functions = re.findall(r"virtual [\w:<>&*, ]*?\b(\w+)\(", masked((source / "lib/system/dynamics.hpp").read_text()))
+    for wrapper in ("lib/system/coupled_motion.hpp", "lib/motion/guarded.hpp"):
+        overridden = set(re.findall(r"(\w+)\([^;{}]*\)(?: const)? override", masked((source / wrapper).read_text())))
+        yield from (f"{wrapper}: does not forward Dynamics::{name}" for name in functions if name not in overridden)
+
+
 def main():
     source, list_of = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(__file__).with_name("structure_exceptions.txt")
     files = sorted(path for folder in ("app", "lib") for path in (source / folder).rglob("*") if path.suffix in (".cpp", ".hpp"))
@@ -166,7 +175,7 @@ def main():
         kept = {key: min(value, values.get(key, 0)) for key, value in exceptions.items() if values.get(key, 0) > LIMITS[key[0]]}
         list_of.write_text("\n".join([*head, *(f"{limit} {what} {value}" for (limit, what), value in sorted(kept.items()))]) + "\n")
         exceptions = kept
-    errors = [f"a cycle of includes: {cycle}" for cycle in cycles(source, files)]
+    errors = [f"a cycle of includes: {cycle}" for cycle in cycles(source, files)] + list(unforwarded(source))
     for limit, what in sorted(values.keys() | exceptions.keys()):
         value, exception = values.get((limit, what), 0), exceptions.get((limit, what))
         if value > max(LIMITS[limit], exception or 0):

@@ -130,7 +130,7 @@ class CoupledParticles : public ParticleSystem {
     const std::unique_ptr<SurfaceFields> fields = std::move(fields_);  // outlives its capsule, see SurfaceFields::transferred
     rebuild(own.x);
     capsule_->restore_constraints(own.x);
-    if (!own.x.allFinite()) throw RunFailure("the volume cannot be restored on the new mesh");
+    if (!own.x.allFinite()) throw RunFailure("the constraints cannot be restored on the new mesh");
     apply_contacts();
     std::vector<const Body*> bodies(members_.size(), nullptr);
     for (const auto& [p, body] : replaced_) bodies[p] = body.get();

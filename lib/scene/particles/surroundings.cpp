@@ -12,7 +12,7 @@ Vec3 force_on_fluid(const std::vector<Member>& members, coupling::Evaluation& he
   for (std::size_t p = 0; p < members.size(); ++p) {
     const ParticleScene& one = members[p].scene;
     if (one.particle.rigid()) force += here.rigid().force(p);
-    else if (touching || !one.net_force().empty() || !one.loads.empty()) force -= members[p].own(here.work()).colwise().sum().transpose();
+    else if (touching || !one.net_force().empty() || !one.loads.empty()) force -= members[p].own(here.virtual_work()).colwise().sum().transpose();
   }
   return force;
 }

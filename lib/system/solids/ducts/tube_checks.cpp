@@ -1,4 +1,4 @@
-// Checks of the response of a tube by the conditions (2.14), the flow rate and the residual velocity on the wall that it causes, and gaps to the wall.
+// Checks of the response of a tube by the conditions (2.14), flow rate and residual velocity that it causes (2.42), and distance to the wall.
 
 #include <algorithm>
 #include <limits>
