@@ -25,6 +25,7 @@
 #include "scene/tube.hpp"
 #include "system/parallel/agreement.hpp"
 #include "system/solids/shared_walls.hpp"
+#include "system/solvers/krylov.hpp"
 
 namespace tanktread {
 
@@ -240,7 +241,7 @@ class Run : AnyRun {
     output::Checkpoint checkpoint;
     particles_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, snapshot);
-    particles_->forget_recycled();
+    coupling::Krylov::forget_recycled();
   }
 
   /// Evaluates and returns the snapshot that is due, at the end of the last step or at a time within the step.

@@ -154,9 +154,4 @@ bool Capsule::evaluated_about(const Net& x, double distance) const {
   return norm(moved) <= distance;
 }
 
-void Capsule::forget_recycled() const {
-  solver_.forget_recycled();
-  jacobian_.forget_recycled();
-}
-
 }  // namespace tanktread::coupling

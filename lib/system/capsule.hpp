@@ -94,7 +94,6 @@ class Capsule : public Dynamics {
   const Phases& layer_phases() const { return solver_.layers().single_layer().phases(); }  ///< run time of the parts of the single layer
 
   stokes::Evaluations kernel_evaluations() const { return solver_.kernel_evaluations() + frozen_.evaluations(); }
-  void forget_recycled() const;  ///< discards the data of earlier solves that the preconditioner `recycled` keeps
   const OperationCounts& counts() const { return solver_.counts(); }
   OperationCounts& counts() { return solver_.counts(); }
 

@@ -202,8 +202,4 @@ void CapsuleJacobian::improve_start(Net& y, const Net& before, double shift) {
   y = parameters_.symmetry.completed(std::move(y));
 }
 
-void CapsuleJacobian::forget_recycled() const {
-  for (const Krylov* solver : {&step_solver_, &inner_solver_}) solver->forget();
-}
-
 }  // namespace tanktread::coupling

@@ -65,7 +65,6 @@ class CapsuleJacobian {
   /// Changes the initial guess y of a stage so that membranes that nearly conserve area have the same local area as in the shape `before` the stage.
   void improve_start(Net& y, const Net& before, double shift);
 
-  void forget_recycled() const;  ///< discards the data of earlier solves that the preconditioner `recycled` keeps
 
  private:
   std::vector<Mat3> gradients_at(const Net& x) const;

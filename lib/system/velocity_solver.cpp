@@ -217,12 +217,6 @@ Net VelocitySolver::defect(const Net& shape, const Net& given) {
   return symmetric(residual - (u - projected));
 }
 
-void VelocitySolver::forget_recycled() const {
-  krylov_.forget();
-  walls_.forget_recycled();
-  if (bodies_.tractions) bodies_.tractions->forget_recycled();
-}
-
 stokes::Evaluations VelocitySolver::kernel_evaluations() const {
   const RigidTractions* const bodies = bodies_.tractions.get();
   return layers_.evaluations() + (bodies ? bodies->kernel_evaluations() : walls_.evaluations());  // bodies->kernel_evaluations() includes the walls

@@ -163,7 +163,6 @@ class VelocitySolver {
 
   Net symmetric(Net field) const { return parameters_.symmetry.completed(std::move(field)); }
   stokes::Evaluations kernel_evaluations() const;  ///< number for all layers at the targets, the walls and the tractions on bodies
-  void forget_recycled() const;                    ///< discards the data of earlier solves that the preconditioner `recycled` keeps
   OperationCounts& counts() { return counts_; }
   const OperationCounts& counts() const { return counts_; }
 

@@ -70,7 +70,6 @@ class CoupledParticles : public ParticleSystem {
   }
 
   void store(output::Checkpoint& checkpoint) const override { tanktread::store(members_, checkpoint); }
-  void forget_recycled() override { capsule_->forget_recycled(); }
 
   bool enforce_gaps(motion::State& state, double step) override {
     if (!scene_.contact.limiter) return true;

@@ -41,7 +41,6 @@ class Free : public ParticleSystem {
     checkpoint.arrays[stored_rest] = body_.rest;
     if (const Eigen::VectorXd start = free_->unknowns(); start.size() > 0) checkpoint.arrays["start unknowns"] = start;
   }
-  void forget_recycled() override { tractions_.forget_recycled(); }
   bool adapt(motion::State&, RunTotals&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
   stokes::Evaluations kernel_evaluations() const override { return tractions_.kernel_evaluations(); }

@@ -49,9 +49,6 @@ class ParticleSystem {
   /// (State::x). Operations before this call are no longer counted. Does nothing for a free rigid body, whose mesh never changes.
   virtual void move_to(const output::Checkpoint& /*mesh*/, const Net& /*x*/) {}
   virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
-  /// Discards data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
-  /// therefore discards them after each checkpoint.
-  virtual void forget_recycled() {}
   /// Moves particles apart after a step of this size if their gap is below the limit and the deck requests `Contact/limiter`. Returns false if that
   /// fails.
   virtual bool enforce_gaps(motion::State&, double /*step*/) { return true; }

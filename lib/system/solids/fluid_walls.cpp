@@ -41,10 +41,6 @@ void FluidWalls::add_velocity_at(const Eigen::SparseMatrix<double>& values, cons
   if (solids) solids->velocity_at(values * x, own, response.solids, part), u(own, Eigen::all) += part(own, Eigen::all);
 }
 
-void FluidWalls::forget_recycled() const {
-  if (tube) tube->forget_recycled();
-}
-
 stokes::Evaluations FluidWalls::evaluations() const {
   stokes::Evaluations sum;
   if (tube) sum += tube->kernel_evaluations();

@@ -48,7 +48,6 @@ struct FluidWalls {
   /// the particles. Collective if Tube::velocity_at() is.
   void add_velocity_at(const Eigen::SparseMatrix<double>& values, const Net& x, const Response& response, std::span<const int> own, Net& u) const;
 
-  void forget_recycled() const;             ///< discards data of earlier solves that iterative solvers of the boundaries keep
   /// Returns the number of kernel evaluations: by the layers of the particles at points of the boundaries and, unless TubeParameters::walls is set,
   /// by the wall of the tube.
   stokes::Evaluations evaluations() const;

@@ -54,18 +54,10 @@ LinearSystem ChosenPreconditioner::join(const LinearSystem& system) {
     system.product(in, out);
     recycled_.record(Eigen::Map<const Eigen::VectorXd>(in, n), Eigen::Map<Eigen::VectorXd>(out, n));
   };
-  if (kind_ == "neumann")
-    result.precondition = [this, &system, n](const double* in, double* out) {
-      const double s = recycled_.scale();
-      system.product(in, out);
-      Eigen::Map<Eigen::VectorXd>(out, n) = s * (2 * Eigen::Map<const Eigen::VectorXd>(in, n) - s * Eigen::Map<Eigen::VectorXd>(out, n));
-    };
-  else if (kind_ == "recycled")
-    result.precondition = [this, &system, n](const double* in, double* out) {
-      recycled_.apply(Eigen::Map<const Eigen::VectorXd>(in, n), system.precondition, {out, n});
-    };
-  else
-    throw std::logic_error("no preconditioner is called " + kind_);
+  if (kind_ != "recycled") throw std::logic_error("no preconditioner is called " + kind_);
+  result.precondition = [this, &system, n](const double* in, double* out) {
+    recycled_.apply(Eigen::Map<const Eigen::VectorXd>(in, n), system.precondition, {out, n});
+  };
   return result;
 }
 

@@ -25,8 +25,6 @@ class RecycledProducts {
   /// Computes out = Z Y^T in + P (in - Y Y^T in) (2.24). The columns of Z and Y are the stored z and y = A z; P is the preconditioner `other`.
   void apply(const Eigen::VectorXd& in, const Apply& other, Eigen::Map<Eigen::VectorXd> out) const;
 
-  double scale() const { return scale_; }
-
  private:
   struct Product {
     Eigen::VectorXd z, y;

@@ -100,6 +100,7 @@ BelosFactory belos_factory(const IterativeOptions& options) {
 struct Krylov::Impl {
   BelosFactory belos;
   ChosenPreconditioner chosen;
+  long generation = 0;  // value of generation_ at the latest solve
   Blocks blocks;
   Teuchos::RCP<const Space> space;
   Teuchos::RCP<FunctionOperator> product, preconditioner;
@@ -145,9 +146,8 @@ bool Krylov::flexible() const { return impl_->belos.flexible; }
 
 bool Krylov::uses_own_preconditioner() const { return impl_->chosen.keeps_own(); }
 
-void Krylov::forget() const { impl_->chosen.forget(); }
-
 SolveReport Krylov::solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const {
+  if (std::exchange(impl_->generation, generation_) != generation_) impl_->chosen.forget();
   impl_->prepare(impl_->chosen.join(system));
   const Teuchos::RCP<ThyraVector>&unknowns = impl_->unknowns, &right = impl_->right;
   set(unknowns, x);

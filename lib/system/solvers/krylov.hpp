@@ -66,12 +66,15 @@ class Krylov {
 
   bool flexible() const;                 ///< whether the solver admits preconditioners that are not linear
   bool uses_own_preconditioner() const;  ///< whether the solver uses the preconditioner that a LinearSystem contains
-  /// Discards the products that a preconditioner of the type `recycled` has stored in earlier solves. Checkpoints do not contain these products.
-  void forget() const;
+
+  /// Discards the products that preconditioners of the type `recycled` have stored in earlier solves, in all objects of this class. A run calls this
+  /// function after each checkpoint, because checkpoints do not contain these products.
+  static void forget_recycled() { ++generation_; }
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  inline static long generation_ = 0;  // number of calls of forget_recycled()
 };
 
 }  // namespace tanktread::coupling

@@ -14,13 +14,12 @@ void IterativeOptions::declare(deck::Section& section) {
   section.foreign("Belos", belos,
                   "parameters that are passed unchanged to the iterative solver in Belos (a package of Trilinos) of the linear system "
                   "of this section, instead of Solvers/Belos");
-  section.key("preconditioner", preconditioner, deck::Choice{"own", "none", "neumann", "recycled"},
+  section.key("preconditioner", preconditioner, deck::Choice{"own", "none", "recycled"},
               "preconditioner of the iterative solver for the linear system of this section; change it if solves take many iterations. "
               "`own`: the one built into the program, if it has one for this system (for several rigid bodies: the inverse of the system "
               "of each body alone, and of each pair of bodies with a thin film between them; in a tube: see Solvers/tube). `none`: no "
-              "preconditioner. `neumann`: 2I - A, where A is the matrix of the system multiplied by a number that makes it close to the "
-              "identity I; takes one more product with A per application. `recycled`: exact for directions whose products with A are known "
-              "from earlier solves, and `own` for the remainder");
+              "preconditioner. `recycled`: exact for directions whose products with the matrix are known from earlier solves, and `own` for "
+              "the remainder");
 }
 
 IterativeOptions SolverOptions::of(IterativeOptions system) const {

@@ -15,7 +15,7 @@ struct IterativeOptions {
   std::optional<std::string> solver{};            ///< Belos' name of the solver; if not set, SolverOptions::krylov
   std::shared_ptr<Teuchos::ParameterList> belos{};  ///< parameter list of the Belos solver, passed unchanged. If neither this list nor `solver` is
                                                     ///< set, the parameter list of SolverOptions is used
-  std::string preconditioner = "own";             ///< own, none, neumann, recycled
+  std::string preconditioner = "own";             ///< own, none, recycled
   std::string path = "Solvers";                   ///< path of these options in the deck
   int restart = 100;  ///< restart length of GMRES, if the solver's parameter list does not set it; each solve allocates this number of vectors
 

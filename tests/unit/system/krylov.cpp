@@ -150,7 +150,7 @@ TEST(Krylov, EveryPreconditionerLeadsToTheSolution) {
   const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
   for (const char* name : {"GMRES", "BICGSTAB", "TFQMR"}) {
     std::map<std::string, int> iterations;
-    for (const char* preconditioner : {"own", "none", "neumann", "recycled"}) {
+    for (const char* preconditioner : {"own", "none", "recycled"}) {
       const Krylov krylov(IterativeOptions{name, nullptr, preconditioner});
       for (int repeated = 0; repeated < 2; ++repeated) {
         Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
@@ -161,7 +161,6 @@ TEST(Krylov, EveryPreconditionerLeadsToTheSolution) {
       }
     }
     EXPECT_EQ(iterations["own"], iterations["none"]) << name;
-    EXPECT_LT(iterations["neumann"], iterations["none"]) << name;
     EXPECT_LE(iterations["recycled"], 1) << name;  // the solution is a linear combination of recorded products
   }
 }

@@ -281,9 +281,4 @@ int RigidTractions::converged_iterations() const {
   return sum;
 }
 
-void RigidTractions::forget_recycled() const {
-  krylov_.forget();
-  walls_.forget_recycled();
-}
-
 }  // namespace tanktread::coupling

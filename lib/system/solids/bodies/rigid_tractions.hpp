@@ -128,7 +128,6 @@ class RigidTractions {
   /// Solves the given linear system for a traction. `unknowns`: initial guess, replaced by the solution. Returns the number of iterations. If the
   /// solve does not converge, throws RunFailure and leaves `unknowns` unchanged. Collective.
   int solve_iteratively(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
-  void forget_recycled() const;  ///< discards the data of earlier solves that the iterative solvers of this equation and of the tube's wall keep
   Tube* tube() const { return walls_.tube; }
   stokes::Evaluations kernel_evaluations() const;  ///< number for the layers of the bodies, the residual and the walls
 

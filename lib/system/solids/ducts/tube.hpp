@@ -199,7 +199,6 @@ class Tube {
   bool inside(const Net& x, std::span<const int> rows) const;
 
   const surface::TubeWall& wall() const;
-  void forget_recycled() const { wall_->forget_recycled(); }  ///< discards data of earlier solves that the wall's iterative solver keeps
   const stokes::DuctFlow& flow() const { return *flow_; }
   /// Returns the number of kernel evaluations, including the assembly of the wall unless TubeParameters::walls counts it.
   stokes::Evaluations kernel_evaluations() const;

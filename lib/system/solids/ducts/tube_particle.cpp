@@ -80,8 +80,8 @@ const Net& Tube::ParticleData::flow_of_strength(const Wall& wall) {
   return flow_of_strength_;
 }
 
-/// Computes the weights with which the control values of the load f and of the velocity v enter the pressure drop (2.7). `parallel`: result of
-/// has_parallel_flow(). If it is true, the flow rate of the disturbance is 0 for every load. Otherwise only the weights of f are computed.
+/// Computes the weights with which the control values of the load f and of the velocity v enter the pressure drop (2.7). `parallel`: see
+/// DuctProperties::parallel_flow. If it is true, the flow rate of the disturbance is 0 for every load. Otherwise only the weights of f are computed.
 void Tube::ParticleData::weigh_pressure(const stokes::DuctFlow& flow, bool parallel) {
   ambient = ambient_of(flow);
   Layer& layer = sources.single_layer;

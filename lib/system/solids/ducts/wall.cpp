@@ -146,10 +146,6 @@ Net Wall::solve(const Net& rhs) const {
   return iterates() ? iterated(rhs) : factors_.solve(symmetry_.completed(rhs));
 }
 
-void Wall::forget_recycled() const {
-  if (krylov_) krylov_->forget();
-}
-
 Net Wall::iterated(const Net& rhs) const {
   const Eigen::VectorXd b = fundamental(rhs);
   const auto through = [&](const std::function<void(const Net&, Net&)>& map) {

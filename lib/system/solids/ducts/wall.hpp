@@ -90,7 +90,6 @@ class Wall {
   /// u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dGamma f_B. In a periodic wall, A includes the condition int f.n dGamma = 0.
   Net apply(const Net& f) const;
   Net solve(const Net& rhs) const;  ///< returns A^-1 rhs
-  void forget_recycled() const;     ///< discards the data that the preconditioner keeps from earlier solves
 
   /// Returns w = A^-T `weights`. For any right-hand side rhs, the inner product of w and rhs equals the inner product of `weights` and solve(rhs).
   /// Available only if the operator is factored.
