@@ -72,13 +72,6 @@ std::vector<Mat3> CapsuleJacobian::gradients_at(const Net& x) const {
   return all;
 }
 
-/// Applies the volume projection P (2.8) of the last linearisation to a rate of change. Without P, the rate would include volume changes, which
-/// incompressible fluids do not allow, and the response of the membrane to these changes would dominate.
-Net CapsuleJacobian::without_flux(Net rate) const {
-  projection_.apply(rate);
-  return rate;
-}
-
 Net CapsuleJacobian::inflation(const Net& c) {
   constexpr double rough = 0.1;  // relative residual
   if (latest_shift_ == 0 || interface_ || c.rows() != projection_.gradient.rows()) return c;
@@ -113,7 +106,7 @@ Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Ne
   if (!has_velocity && !displaced) return v;
   Net moving, work_change;
   if (has_velocity) {
-    moving = without_flux(v);
+    moving = projection_.applied(v);
     clear_rigid(parameters_.particles, moving);
     if (membranes_.viscous()) work_change = membranes_.viscous_work_change(moving);
   }
@@ -134,7 +127,7 @@ Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Ne
   Net change = targets_.collocated(std::move(u));
   if (displaced && !flow_at_sites_) change += shift * dx * flow_.gradient(Vec3::Zero()).transpose();
   clear_rigid(parameters_.particles, change);
-  change = without_flux(std::move(change));
+  projection_.apply(change);
   return v.size() > 0 ? Net(v - change) : Net(-change);
 }
 

@@ -72,7 +72,6 @@ class CapsuleJacobian {
   Net without_pressure(Net work, const Net& db) const;
   Net fluid_velocity(const Net& rhs, double tolerance);
   Net fluid_velocity_change(const Net& dx, const Net& added_work);
-  Net without_flux(Net rate) const;
   double tolerance_factor() const;
 
   const CapsuleParameters& parameters_;

@@ -142,10 +142,7 @@ Net VelocitySolver::solve_tractions(const Net& x, const VolumeProjection& volume
   const auto clock = phases_.time("tractions");
   layers_.assemble(x, viscous(), false);
   // The functions contain copies of x and volume, because RigidTractions keeps them for moment().
-  const auto projected = [volume](Net y) {
-    volume.apply(y);
-    return y;
-  };
+  const auto projected = [volume](Net y) { return volume.applied(std::move(y)); };
   const auto product = [this, x, projected](const Net& given, const Net& caused) {
     const Net y = projected(given);
     return projected(particle_rows(x, y, dependent_load(x, y), caused));

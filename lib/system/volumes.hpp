@@ -22,6 +22,7 @@ struct VolumeProjection {
   Eigen::VectorXd multipliers(const Net& v) const;                     ///< returns b.v / (b.c) of each deformable particle
   void subtract(const Eigen::VectorXd& multipliers, Net& v) const;     ///< subtracts from v, on each deformable particle, its multiplier times c
   void apply(Net& v) const { subtract(multipliers(v), v); }            ///< replaces the velocity v by P v, which changes no volume
+  Net applied(Net v) const { apply(v); return v; }                     ///< returns P v
 };
 
 /// The volumes V of all particles and their prescribed volumes V0. Rigid bodies are excluded from all corrections. Calls with a shape are collective.

@@ -219,7 +219,6 @@ class Tube {
   double viscosity() const;
   double flow_rate_of(const Net& f, const Net& v, const Response& response);
   double cap_velocity(const Net& f, const Net& v, const Response& response);
-  double gap_to_straight_wall() const;
   double gap_to_channel_wall() const;
   double empty_pressure_drop() const;
   Net pressure_driven_velocity(const Net& at) const;

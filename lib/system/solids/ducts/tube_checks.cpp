@@ -166,15 +166,11 @@ bool Tube::inside(const Net& x, std::span<const int> rows) const {
 
 double Tube::gap() const {
   switch (wall().kind) {
-    case surface::DuctKind::straight_tube: return gap_to_straight_wall();
+    case surface::DuctKind::straight_tube:
+      return surface::clearance(surface::Patches(particle_->geometry.bezier(), particle_->shape), wall().outline).gap;
     case surface::DuctKind::channel: return gap_to_channel_wall();
   }
   throw std::logic_error("unknown DuctKind");
-}
-
-/// Returns the gap to the wall of a straight tube, from the clearance between the particle and the outline of the cross-section.
-double Tube::gap_to_straight_wall() const {
-  return surface::clearance(surface::Patches(particle_->geometry.bezier(), particle_->shape), wall().outline).gap;
 }
 
 /// Returns the gap to the wall of a channel, from the closest points of the two surfaces. Of elements that are images of each other, searches one.
