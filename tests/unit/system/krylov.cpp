@@ -165,6 +165,27 @@ TEST(Krylov, EveryPreconditionerLeadsToTheSolution) {
   }
 }
 
+// A run that is resumed from a checkpoint does not know the products of earlier solves. An uninterrupted run must therefore discard them, too.
+TEST(Krylov, DiscardsRecycledProducts) {
+  const int n = 60;
+  const Eigen::MatrixXd a = nonsymmetric(n);
+  const Apply apply = [&](const double* in, double* out) {
+    Eigen::Map<Eigen::VectorXd>(out, n) = a * Eigen::Map<const Eigen::VectorXd>(in, n);
+  };
+  const Krylov krylov(IterativeOptions{"GMRES", nullptr, "recycled"});
+  const auto solved = [&] {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
+    const int iterations = krylov.solve({{{"unknowns", n}}, apply, {}}, Eigen::VectorXd::LinSpaced(n, -1, 2), x, 1e-6).iterations;
+    return std::pair(iterations, x);
+  };
+  const auto [iterations, x] = solved();
+  EXPECT_LT(solved().first, iterations);
+  Krylov::forget_recycled();
+  const auto [again, y] = solved();
+  EXPECT_EQ(again, iterations);
+  EXPECT_EQ(y, x);  // equal to the last bit
+}
+
 TEST(Krylov, ValuesThatAreNotFiniteCountAsNotConverged) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Apply broken = [&](const double* in, double* out) { std::fill(out, out + 5, nan * in[0]); };
