@@ -113,10 +113,9 @@ double Tube::flow_rate_of(const Net& f, const Net& v, const Response& response) 
 
 namespace {
 
-constexpr double sharpness = 1e-2, coarsest = 1e-8;  // sharpness: factor by which wall_residual() multiplies the tolerance of integrals over the
-                                                     // wall, because pressures are large. coarsest: upper limit of this product
-
 quadrature::Options for_wall_residual(quadrature::Options options) {
+  constexpr double sharpness = 1e-2, coarsest = 1e-8;  // sharpness: factor by which wall_residual() multiplies the tolerance of integrals over the
+                                                       // wall, because pressures are large. coarsest: upper limit of this product
   options.tolerance = std::clamp(sharpness * options.tolerance, 1e-12, coarsest);
   return options;
 }
