@@ -16,6 +16,7 @@
 #include "system/targets/collocation.hpp"
 #include "system/solids/bodies/bounded_free_body.hpp"
 #include "system/solids/ducts/tube.hpp"
+#include "system/solids/shared_walls.hpp"
 
 namespace tanktread::coupling {
 namespace tube_test {
@@ -32,6 +33,7 @@ struct Fixture {
   surface::ParticleShape shape;
   Net x, f, v;
   std::shared_ptr<const stokes::DuctFlow> flow;
+  TubeParameters parameters;
   std::unique_ptr<Tube> tube;
 
   explicit Fixture(double ratio) {
@@ -47,9 +49,9 @@ struct Fixture {
     options.radius = 1;
     options.azimuthal_elements = 12, options.axial_elements = 10;
     flow = std::make_shared<stokes::DuctFlow>(options, viscosity, 1.3);
-    TubeParameters parameters;
     parameters.viscosity = viscosity;
     parameters.quadrature.tolerance = 1e-6;
+    parameters.walls = std::make_shared<SharedWalls>();
     tube = std::make_unique<Tube>(surface::tube_wall(flow->outline(), options, 2 * pi), *flow, space, parameters, phases);
     tube->particles().set_reference(x), tube->particles().set_contrasts(1 - ratio);
     tube->set_shape(x);
@@ -125,7 +127,8 @@ TEST(Tube, SupportsAnotherMeshOfTheParticle) {
   const spline::TMesh finer = spline::cube(4);
   const spline::Space space = spline::space(finer, spline::ExtraordinaryRule::g1);
   const Net x = surface::resting_shape(space, finer, s.shape);
-  Tube other(*s.tube, space);
+  Tube other(s.tube->wall(), *s.flow, space, s.parameters, s.phases);
+  EXPECT_EQ(&other.wall(), &s.tube->wall());  // the tubes share the assembled wall
   other.particles().set_reference(x), other.particles().set_contrasts(1 - 5);
   other.set_shape(x);
   const auto work = [](Tube& tube, const Net& net) {  // for a constant load and a rigid velocity; independent of the mesh
