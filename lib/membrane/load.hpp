@@ -47,7 +47,9 @@ class Load {
  public:
   virtual ~Load() = default;
 
-  virtual std::size_t n_sums() const { return 0; }  ///< number of further nets that the caller completes, in addition to `work`
+  /// Returns the number of further nets that the caller completes, in addition to `work`. In symmetric scenes, the caller completes each row as a
+  /// vector, by reflection. A scalar per control point, such as int N_A dGamma, must instead be computed from all elements in the global phase.
+  virtual std::size_t n_sums() const { return 0; }
 
   /// Adds the contributions of these elements to dE/dx (`work`), and to the nets `sums`, which add_global_work() receives summed over all elements.
   /// Each net has the shape (N, 3).
@@ -63,6 +65,7 @@ class Load {
   /// Stores the data at the shape x that add_tangent() and add_global_tangent() need. Implicit schemes call it once per tangent.
   virtual void linearise(const Net& /*x*/, std::span<const int> /*elements*/, std::span<const Net> /*sums*/) {}
   /// Adds the product (d2E/dx2) dx to `change`, for the elements given to linearise(). Terms that are not stiff may be left out.
+  /// The matrix of an external force need not be symmetric.
   virtual void add_tangent(const Net& /*dx*/, Net& /*change*/) const {}
   virtual void add_global_tangent(const Net& /*dx*/, Net& /*change*/) const {}
 
@@ -72,7 +75,8 @@ class Load {
 
   /// Returns the dimensionless conditions that a rigid motion U + W x r must satisfy so that the load moves with the particle. The search for steady
   /// shapes permits all motions that satisfy them. A load that depends only on the shape has no condition. If the load is a force of fixed direction
-  /// f, the condition is W x f = 0.
+  /// f, the condition is W x f = 0. A load with a condition on a translation U depends on the position of the particle: it is refused on a lattice
+  /// whose periods do not meet the condition, and with `Particle/drift` `held`.
   virtual RigidConditions rigid_conditions() const { return RigidConditions::Identity(6, 6); }
 
   /// Returns whether the load changes if material points slide along the surface at constant shape.

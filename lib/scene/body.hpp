@@ -27,7 +27,8 @@ struct Member;
 ///   - If the mesh adapts, a new body replaces the old one. It is a copy with another `mesh`, `space` and `plain`, with the nets `rest`, `initial`
 ///     and `unstressed` transferred to them (for a rigid particle, fitted again), and with a larger `refit_error`.
 ///   - If the coupled system is built again, `symmetry` is set again.
-///   - If a run resumes, `volume` is read from its checkpoint. If the mesh adapts, mesh, nets and `refit_error` are read, too.
+///   - If a run resumes, `volume` is read from its checkpoint. If the mesh adapts, mesh, nets and `refit_error` are read, too, and `initial` is the
+///     resting shape.
 ///
 /// A body that represents all particles (make_stacked_body) is built together with the coupled system.
 struct Body {

@@ -127,7 +127,7 @@ int count(const CopiesOptions& how, const surface::ParticleShape& shape, const s
   } else if (how.number) {
     number = *how.number;
   } else {
-    const std::optional<double> of_one = shape.kept_volume();
+    const std::optional<double> of_one = shape.exact_volume();
     if (!of_one)
       throw UserError(list + "/volume fraction cannot be used with Particle/initial shape/volume `own` and a shape from a file or run, because the "
                              "volume of a copy is not known when copies are counted: give `number`.");
@@ -195,7 +195,8 @@ void CopiesOptions::declare(deck::Section& section) {
   section.key(
       "number", number, deck::at_least(1), "1",
       "number of copies of the particle at random positions in `box` or `ball`. If neither is given, the copies fill the cell of a Domain "
-      "that is periodic in three directions, may cross its faces, and are distributed as hard spheres in thermal equilibrium");
+      "that is periodic in three directions, may cross its faces, and are distributed as hard spheres in thermal equilibrium. "
+      "All copies have the orientation of the particle");
   section.key("volume fraction", volume_fraction, deck::between(0, 0.6), "1",
               "volume fraction of the copies of the particle in `box`, `ball` or the periodic cell, from which their number follows. At "
               "random positions, spheres reach a volume fraction of about 0.3 in `box` or `ball` and about 0.55 in the cell");

@@ -7,6 +7,7 @@
 
 #include "base/errors.hpp"
 #include "scene/exact_body.hpp"
+#include "scene/particles/drift.hpp"
 #include "scene/tube.hpp"
 
 namespace tanktread {
@@ -124,15 +125,21 @@ std::unique_ptr<Body> make_stacked_body(const std::vector<Member>& members) {
 
 namespace {
 
-/// Throws UserError if a load changes when its particle is displaced by a period of the lattice.
-void check_periods(const ParticleScene& particle_scene, const coupling::LoadList& loads) {
-  const auto cell = particle_scene.domain.cell();
-  const auto changes = [&](const auto& load) {
-    return (load->rigid_conditions().template leftCols<3>() * cell->vectors().leftCols(cell->n())).norm() > 1e-9 * cell->vectors().norm();
+/// Throws UserError if a load depends on the position of its particle although the particle is displaced: by periods of the lattice, or back to its
+/// initial position (`Particle/drift` `held`).
+void check_position(const ParticleScene& particle_scene, const coupling::LoadList& loads) {
+  const auto refuse_if_changed = [&](const Eigen::Matrix3Xd& displacements, const char* by, const char* why) {
+    const auto changes = [&](const auto& load) {
+      return (load->rigid_conditions().template leftCols<3>() * displacements).norm() > 1e-9 * displacements.norm();
+    };
+    if (std::ranges::any_of(loads, changes))
+      throw UserError("The loads" + (particle_scene.name.empty() ? "" : " of Particles/" + particle_scene.name) + " and " + by +
+                      " contradict each other: a load that depends on the position of the particle " + why + ".");
   };
-  if (cell && std::ranges::any_of(loads, changes))
-    throw UserError("Membrane/loads" + (particle_scene.name.empty() ? "" : " of Particles/" + particle_scene.name) +
-                    " and Domain contradict each other: a load that depends on the position of the particle is not the same in all cells.");
+  if (const auto cell = particle_scene.domain.cell())
+    refuse_if_changed(cell->vectors().leftCols(cell->n()), "Domain", "is not the same in all cells");
+  if (holds_centre(particle_scene))
+    refuse_if_changed(Mat3::Identity(), "Particle/drift `held`", "would never reach its balance, because the position is restored after each step");
 }
 
 /// Returns the data of one member for the coupled system.
@@ -144,7 +151,7 @@ coupling::Particle particle(const Member& member) {
   particle.viscosity_ratio = particle_scene.particle.viscosity_ratio;
   particle.material = material(particle_scene, body);
   particle.loads = member.loads.all();
-  check_periods(particle_scene, particle.loads);
+  check_position(particle_scene, particle.loads);
   particle.radius = body.radius;
   if (particle_scene.particle.rigid()) particle.rigid = drive_of(particle_scene, body);
   particle.by_traction = particle_scene.particle.rigid() && particle_scene.solvers.rigid_bodies == coupling::BodyEquation::first_kind;

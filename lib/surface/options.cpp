@@ -221,7 +221,7 @@ double ParticleShape::equivalent_radius() const {
   return std::cbrt(semi_axes.value().prod());
 }
 
-std::optional<double> ParticleShape::kept_volume() const {
+std::optional<double> ParticleShape::exact_volume() const {
   const double resting = 4 * std::numbers::pi / 3 * std::pow(equivalent_radius(), 3);
   if (!initial || initial->volume != "own") return resting;
   const auto map = initial->affine(rotation());

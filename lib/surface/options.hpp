@@ -117,14 +117,16 @@ struct ParticleShape : RestingShape {
   /// Reads `imported` if the shape is `file`. Throws UserError if the file does not contain a closed surface.
   void read();
 
-  /// Returns whether the size of the particle is known: its keys are set, or the file with the shape has been read.
+  /// Returns whether the size of the particle is known: its keys are set, or the file with the shape has been read. The sizes below are used before
+  /// check(). For keys with which they have no meaning, the result must therefore be false.
   bool sized() const;
 
   /// Returns the particle radius R_C, the radius of the sphere of equal volume.
   double equivalent_radius() const;
 
-  /// Returns the volume that the particle keeps during a run. Returns nothing if it is the volume of an initial shape from a file or run.
-  std::optional<double> kept_volume() const;
+  /// Returns the exact volume of the shape whose volume the particle keeps during a run. (The run keeps the volume of this shape on its mesh,
+  /// Body::volume.) Returns nothing if it is the volume of an initial shape from a file or run.
+  std::optional<double> exact_volume() const;
 
   /// Returns the radius of a sphere around the centre that contains the resting shape. If the initial shape is a linear map of the resting shape, the
   /// sphere contains the initial shape instead.

@@ -150,7 +150,9 @@ double Capsule::norm(const Net& displacement) const {
 bool Capsule::evaluated_about(const Net& x, double distance) const {
   if (!latest_) return false;
   Net moved = x - latest_->x();
-  if (tube() && !tube()->fixed()) moved.col(0).array() -= moved.col(0).mean();
+  const auto depends_on_x1 = [](const auto& load) { return !load->rigid_conditions().col(0).isZero(0); };
+  const auto notices = [&](const Particle& one) { return std::ranges::any_of(one.loads, depends_on_x1); };
+  if (tube() && !tube()->fixed() && std::ranges::none_of(particles(), notices)) moved.col(0).array() -= moved.col(0).mean();
   return norm(moved) <= distance;
 }
 

@@ -64,7 +64,8 @@ class Capsule : public Dynamics {
   /// Returns the change of the velocity at the shape of `at` due to additional forces with the virtual work `work`. Linear in `work`.
   Net response(Evaluation& at, const Net& work);
 
-  /// Returns whether the shape evaluated last is within `distance` of x (in `norm`), apart from a translation along a straight tube.
+  /// Returns whether the shape evaluated last is within `distance` of x (in `norm`), apart from a translation along a straight tube that
+  /// changes no load.
   bool evaluated_about(const Net& x, double distance) const;
 
   /// Returns the rigid bodies among the particles, at their positions in x.

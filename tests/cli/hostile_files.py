@@ -13,7 +13,7 @@ import yaml
 from harness import SOURCE, check, deck, main, package, run
 
 sys.path.append(str(SOURCE / "postproc"))
-from tanktread import figures
+from tanktread import Run, figures
 
 DECK = """
 Tanktread:
@@ -109,6 +109,11 @@ def missing_or_nan_series():
     _refused("read", "nan")
     _refused("report", "nan")
     _refused("read", "bare", "-s", "taylor_inertia")
+
+    def late(file):
+        file["series/volume"][:1] = numpy.nan
+
+    Run(_damaged("late", late))  # an earlier version, which did not record the volume, began the run
     _damaged("no_row", lambda file: [(file["series"].__delitem__(name), file["series"].create_dataset(name, data=[]).attrs.update(unit="1", description=""))
                                      for name in list(file["series"])])
     _refused("figure", "deformation", "no_row")

@@ -66,9 +66,9 @@ def another_project_links_the_library_and_adds_parts():
     check(abs(float(_done("build/sphere")) - 1) < 1e-4, "volume of a sphere")
     for name, *part in PARTS:
         _adds_a_part(pathlib.Path("build", name).resolve(), name, *part)
-    lattice = subprocess.run([pathlib.Path("build/load"), "load.yaml", "--set", "Domain/side lengths=[8, 8, 8]", "--output", "refused", "--quiet"],
-                             capture_output=True, text=True)
-    check(lattice.returncode == 2 and "not the same in all cells" in lattice.stderr, "a trap in every cell would repeat", lattice.stderr)
+    for setting, why in ("Domain/side lengths=[8, 8, 8]", "not the same in all cells"), ("Particle/drift=held", "never reach its balance"):
+        trap = subprocess.run([pathlib.Path("build/load"), "load.yaml", "--set", setting, "--output", "refused", "--quiet"], capture_output=True, text=True)
+        check(trap.returncode == 2 and why in trap.stderr, setting, trap.stderr)
 
 
 def _deck(flow, membrane, time, more=""):

@@ -118,6 +118,8 @@ def particles_have_names_and_series_whether_one_or_several():
     one, two, tube = _run("one", CAPSULE), _run("two", PAIR), _run("tube", TUBE)
     check(one.particles == ["particle"] == tube.particles and two.particles == ["upper", "lower"], one.particles, two.particles)
     check(one.of("particle", "volume") is one.series["volume"] and two.of("lower", "volume") is two.series["lower/volume"], "a series")
+    for word in {name.partition("/")[2] for name in two.series if "/" in name}:
+        check(tanktread.results.OF_PARTICLE.fullmatch(word), f"OF_PARTICLE lacks {word}")
     last = two.snapshots()[-1]
     for name in two.particles:
         nodes = numpy.unique(numpy.concatenate([last.cells[k] for k in last.cells_of(name)]))

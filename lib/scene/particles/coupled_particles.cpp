@@ -4,6 +4,7 @@
 #include <iterator>
 #include <memory>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -217,7 +218,12 @@ class CoupledParticles : public ParticleSystem {
   /// rebuilds the system.
   /// Returns true if a mesh was read. `y`: state x of shape and surface fields on these meshes.
   bool restore_mesh(const output::Checkpoint& checkpoint, const Net& y) {
-    const bool another_mesh = restore(checkpoint, members_);
+    bool another_mesh = false;
+    try {
+      another_mesh = restore(checkpoint, members_);
+    } catch (const std::out_of_range&) {  // a number or an array is missing
+      require_fit(false);
+    }
     require_fit(y.rows() >= n_points());
     const Net x = y.topRows(n_points());
     const bool another_symmetry = !stacked_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();

@@ -47,7 +47,8 @@ Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const cou
 
 /// Returns the film width at each element (of Body::nested()) of particle p at x. The width is infinite if the film is so wide that every element of
 /// the current mesh resolves it (AdaptationOptions::film_resolution). `cell`: cell of the lattice; films between the particle and periodic images of
-/// particles and of the wall are included. `wall`: wall of the tube around the particle, or null; x is given in the coordinates of the wall.
+/// particles and of the wall are included, posts are not. `wall`: wall of the tube around the particle, or null; x is given in the coordinates of the
+/// wall.
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
                           const surface::TubeWall* wall = nullptr);
 

@@ -27,7 +27,8 @@ struct Resumed {
   output::Checkpoint checkpoint;  ///< checkpoint with `state`, `totals` and the data that ParticleSystem::store() added
 };
 
-/// Shape of the particles at one time, and a function that samples their fields at the nodes of a snapshot on the calling rank.
+/// Shape of the particles at one time, and a function that samples their fields at the nodes of a snapshot on the calling rank. The function uses the
+/// system of the particles. It must be called before the system changes its shape, time or mesh.
 struct SurfaceSnapshot {
   Net surface;  ///< control net of the surfaces
   std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;

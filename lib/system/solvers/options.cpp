@@ -74,11 +74,10 @@ void SolverOptions::declare(deck::Section& section) {
   section.key(
       "rigid bodies", rigid_bodies, deck::Choice{"auto", "second kind", "first kind"},
       "boundary integral equation for rigid bodies. `second kind`: double-layer equation (2.23), solved iteratively, for many bodies. `first "
-      "kind`: dense system for the tractions (2.40), whose matrix is factored for every configuration; far more accurate if gaps are small. "
-      "`auto`: `first kind` in time-dependent runs in three cases: two to four rigid bodies with at most 1500 control points together at the "
-      "start, all with Adaptation/enabled or with Quadrature/tolerance at most 1e-7; or one rigid body of at most 2000 control points as the "
-      "only particle in a Tube or Channel, with Solvers/tube `schur`; or such a body with Particle/motion `prescribed` between walls or posts "
-      "in a Domain. Otherwise `second kind`");
+      "kind`: dense system for the tractions (2.40), factored for every configuration; far more accurate if gaps are small. `auto`: `first "
+      "kind` in time-dependent runs for two to four rigid bodies with at most 1500 control points together at the start, all with "
+      "Adaptation/enabled or with Quadrature/tolerance at most 1e-7; for one rigid body of at most 2000 control points as the only particle, "
+      "in a Tube or Channel with Solvers/tube `schur`, or between walls or posts in a Domain if its motion is prescribed. Otherwise `second kind`");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
               "projection of velocities onto the splines of the surface. `collocation`: one site per control point, error O(h^4) with the "
               "element length h. `least squares`: best fit at four sites per element, error O(h^6), four times the kernel evaluations; not "

@@ -164,6 +164,7 @@ TEST(Shapes, OfEachWordHaveTheirVolumeAndFillTheirCircumscribedSphere) {
     // cell and 1.2e-6 of an ellipsoid. The tolerances are three times the largest of them.
     const double exact = 4 * std::numbers::pi / 3 * std::pow(shape.equivalent_radius(), 3);
     EXPECT_NEAR(volume(cube.space, net) / exact, 1, 2e-8) << word;
+    EXPECT_NEAR(volume(cube.space, fitted_again(cube.space, net, shape)) / exact, 1, 2e-8) << word;
     const double filled = largest_distance(cube, net, shape.center) / shape.circumscribed_radius();
     EXPECT_LT(filled, 1 + 4e-5) << word;
     // The radius for a file is the largest distance of a control point, which is 5.6e-3 larger than that of the surface.
@@ -202,6 +203,7 @@ TEST(Shapes, OfACopyAreThoseOfTheOriginalMovedIfTheyAreLinearImages) {
     if (word == "cylinder") continue;  // a post, which has no resting shape on a closed mesh
     const ParticleShape one = example(word, cube), other = of_another_size(one, cube);
     EXPECT_TRUE(one.same_rest(one) && !one.same_rest(other)) << word;
+    EXPECT_NE(one.equivalent_radius(), other.equivalent_radius()) << word;  // of_another_size() knows the keys of the size
     const double error = (placed_again(net(one), one, other) - net(other)).cwiseAbs().maxCoeff();
     if (is_linear_image(one, other))
       EXPECT_LT(error, 1e-13) << word;
