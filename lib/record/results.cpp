@@ -218,6 +218,7 @@ void Results::record(Columns& row) {
 void Results::write_files() {
   if (rows_written_ != record_->rows()) {
     const auto begun = Clock::now();
+    rows_written_ = 0;
     record_->write(durable());
     const Clock::time_point now = Clock::now();
     due_ = now + std::max(50 * (now - begun), std::min<Clock::duration>(now - process_start_, std::chrono::seconds(1)));

@@ -149,7 +149,7 @@ class Results {
   std::filesystem::path directory_;
   std::optional<output::Occupation> occupation_;
   std::optional<output::RunRecord> record_;
-  std::size_t rows_written_ = 0;  // rows that this process has written to `run.h5`
+  std::size_t rows_written_ = 0;  // rows that this process has written to `run.h5`; 0 while it writes them, so that a failed write is repeated
   std::optional<output::SnapshotSeries> snapshots_;
   std::optional<output::Nodes> nodes_;  // nodes of the snapshots
   std::vector<std::pair<int, std::string>> unwritten_snapshots_;  // snapshots that are not written yet: step number and contents of the file

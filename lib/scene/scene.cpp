@@ -297,7 +297,7 @@ bool may_change_on_resume(const std::string& path) {
   // Particles/<name>/Interface/motion is treated like Interface/motion; the name begins after the 10 characters of `Particles/`.
   const std::string_view key = std::string_view(path).substr(path.starts_with("Particles/") ? path.find('/', 10) + 1 : 0);
   const auto is_in = [key](std::string_view section) { return key.starts_with(section); };
-  // Keys of the sections in `free` on which checkpoints depend, or files that grow with the run.
+  // Keys of the sections in `free` on which checkpoints, or files that grow with the run, depend.
   constexpr std::string_view fixed[] = {"Contact/limiter", "Interface/fields/", "Interface/surfactant/", "Output/power balance", "Output/series/"};
   constexpr std::string_view free[] = {
       "Accuracy/", "Adaptation/", "Contact/", "Continuation/", "Expect/", "Interface/", "Output/", "Periodic/", "Quadrature/", "Solvers/",

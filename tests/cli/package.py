@@ -45,6 +45,16 @@ Tanktread:
   Time: { final time: 0.1 }
   Output: { interval: 0.05 }
 """
+MIXED = """
+Tanktread:
+  Flow: { type: simple shear }
+  Particles:
+    defaults: { Surface: { elements per side: 3 } }
+    drop: { Membrane: { law: surface tension, capillary number: 0.1 }, Interface: { surfactant: { elasticity number: 0.3, diffusivity: 0.1 } } }
+    ball: { motion: free, radius: 0.5, center: [2.5, 0.0, 0.0] }
+  Quadrature: { tolerance: 0.01 }
+  Time: { scheme: bs3, fixed step: 0.01, final time: 0.01 }
+"""
 TUBE = """
 Tanktread:
   Flow: { type: duct }
@@ -118,7 +128,7 @@ def particles_have_names_and_series_whether_one_or_several():
     one, two, tube = _run("one", CAPSULE), _run("two", PAIR), _run("tube", TUBE)
     check(one.particles == ["particle"] == tube.particles and two.particles == ["upper", "lower"], one.particles, two.particles)
     check(one.of("particle", "volume") is one.series["volume"] and two.of("lower", "volume") is two.series["lower/volume"], "a series")
-    for word in {name.partition("/")[2] for name in two.series if "/" in name}:
+    for word in {name.partition("/")[2] for found in (two, _run("mixed", MIXED)) for name in found.series if "/" in name}:
         check(tanktread.results.OF_PARTICLE.fullmatch(word), f"OF_PARTICLE lacks {word}")
     last = two.snapshots()[-1]
     for name in two.particles:

@@ -14,6 +14,7 @@
 #include "system/coupled_motion.hpp"
 #include "tests/evolution.hpp"
 #include "tests/membrane_totals.hpp"
+#include "tests/shape_measures.hpp"
 
 namespace tanktread {
 namespace surfactant_test {
@@ -162,7 +163,7 @@ double slope(double ca, double diffusivity, const std::vector<std::string>& equa
   const double mass = drop.surfactant.mass(drop.motion.coefficients(state.x, 0));
   while (state.time < 60 * ca) scheme->advance(drop.motion, state, 60 * ca);
   EXPECT_NEAR(drop.surfactant.mass(drop.motion.coefficients(state.x, 0)) / mass, 1, 1e-13);  // round-off of a few hundred steps
-  return drop.scene.capsule->geometry().deformation(drop.motion.shape(state.x)).taylor_inertia / ca;
+  return surface::deformation(drop.scene.capsule->geometry(), drop.motion.shape(state.x)).taylor_inertia / ca;
 }
 
 class SurfactantInExtension : public testing::TestWithParam<double> {};
