@@ -111,8 +111,8 @@ Vec3 sphere_of_red_cell(const Vec3& x) {
 
 /// Returns the linear map to the shape, relative to its centre, from the unit sphere or (for a red cell) from the red cell of unit radius.
 Mat3 map_of(const ParticleShape& shape) {
-  if (shape.shape == "file") return shape.rotation();
-  return shape.rotation() * (shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value())).asDiagonal();
+  const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value_or(1));
+  return shape.rotation() * semi_axes.asDiagonal();
 }
 
 }  // namespace
