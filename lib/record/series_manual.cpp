@@ -103,11 +103,14 @@ struct Kind {
 
 std::vector<Kind> kinds() {
   Scene deforming, free, free_in_tube, prescribed, several, returning;
-  for (Scene* scene : {&deforming, &free, &free_in_tube, &prescribed, &returning}) scene->particles.resize(1);
+  for (Scene* scene : {&deforming, &free, &free_in_tube, &prescribed, &returning, &several}) {
+    scene->particles.resize(scene == &several ? 2 : 1);
+    for (ParticleKind& kind : scene->particles) kind.surface.elements_per_side = 6;  // Scene::by_tractions asks for the number of points
+  }
   free.particles.front().particle.motion = free_in_tube.particles.front().particle.motion = Motion::free;
   prescribed.particles.front().particle.motion = Motion::prescribed;
   free_in_tube.tube.present = true;
-  several.particles.resize(2), several.particles.front().name = "one", returning.periodic.present = true;
+  several.particles.front().name = "one", returning.periodic.present = true;
   ParticleScene among_others = free.first();
   among_others.name = "one";
   Columns capsule = run_columns(deforming, true), spectrum, branch, folds, periodic;
