@@ -29,7 +29,7 @@ constexpr std::array<Example, 6> examples{{
      "Time: {final time: 6.0, steady tolerance: 2.0e-4}, Output: {interval: 0.5}"},
     {"red-cell", "A red cell in simple shear; lengths in micrometres, times in seconds, forces in piconewtons.",
      "Flow: {type: simple shear, shear rate: 40.0, viscosity: 0.022}, Particle: {shape: red cell, radius: 3.91, viscosity ratio: 0.27}, "
-     "Membrane: {law: Skalak, shear modulus: 5.0, area dilatation: 10.0, bending modulus: 0.2}, "
+     "Membrane: {law: Skalak, shear modulus: 5.0, area dilatation: 10.0, bending modulus: 0.2, bending reference: flat}, "
      "Surface: {elements per side: 8}, Time: {final time: 0.1}, Output: {interval: 0.01}"},
     {"rigid", "A free rigid spheroid in simple shear.",
      "Flow: {type: simple shear}, Particle: {shape: spheroid, semi-axes: [1.0, 1.0, 2.0], motion: free}, Surface: {elements per side: 6}, "
