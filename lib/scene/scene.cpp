@@ -147,7 +147,7 @@ void Scene::declare(deck::Section& root) {
   root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);
-  idle_keys = root.idle_keys();
+  idle_keys = root.idle_keys(), unusual_values = root.unusual_values();
   if (root.documenting()) return;
   complete_derived(*this);
   walls = std::make_shared<coupling::SharedWalls>();
