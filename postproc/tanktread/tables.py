@@ -35,8 +35,8 @@ UNUSED = {"", "id", "index", "no", "nr", "error"}  # names of columns that are l
 
 @dataclasses.dataclass
 class Table:
-    """`columns`: names (`column 1` … if the file has none). `units`: texts as the file states them, "1" if
-    dimensionless, None if it states none. `values`: (rows, columns). `lines`: the line of each row."""
+    """`columns`: names, as wanted or as the file states them (`column 1` … if it has none). `units`: texts as the file
+    states them, "1" if dimensionless, None if it states none. `values`: (rows, columns). `lines`: line of each row."""
     columns: list
     units: list
     values: numpy.ndarray
@@ -136,20 +136,20 @@ def _header(head, notes, separator, count, keys):
 
 
 def _order(names, wanted, counts, others):
-    """Returns the indices of the wanted columns among the columns `names`; None if the names do not decide them."""
+    """Returns {wanted name: index} in the wanted order; None if the names of all columns, `names`, do not decide it."""
     keys = list(map(_key, names))
     picked = {name: keys.index(_key(name)) for name in wanted if _key(name) in keys}
     free = [k for k, key in enumerate(keys) if k not in picked.values() and key not in UNUSED]
     missing = [name for name in wanted[:min(counts)] if name not in picked]
-    if missing and "value" in wanted and len(free) == len(missing):  # by elimination
-        picked, free, missing = picked | dict(zip(missing, free)), [], []
+    if missing == ["value"] and len(free) == 1:
+        picked["value"], free, missing = free[0], [], []
     if "error" in picked:  # the first one after the value
         after = keys[picked.get("value", -1) + 1:]
         picked["error"] = len(keys) - len(after) + after.index("error") if "error" in after else picked["error"]
     twice = [name for name in picked if name != "error" and keys.count(_key(name)) > 1]
     if missing or twice or len(picked) not in counts or free and not others:
         return None
-    return [picked[name] for name in wanted if name in picked]
+    return {name: picked[name] for name in wanted if name in picked}
 
 
 def _check(rows, separator, nan):
@@ -212,13 +212,15 @@ def _table(head, rows, notes, separator, wanted, counts, others):
     header = _header(head, [note for note in notes if note[0] < rows[0][0]], separator, count, set(map(_key, wanted)))
     if header:
         line, names, units = header
-        order = _order(names, wanted, counts, others) if wanted else order
-        if order is None:
-            raise _Wrong(line, "the names of the columns are " + ", ".join(name or '""' for name in names))
+        if wanted:
+            picked = _order(names, wanted, counts, others)
+            if picked is None:
+                raise _Wrong(line, "the names of the columns are " + ", ".join(name or '""' for name in names))
+            names, order = zip(*picked.items())
     else:
         _check_unnamed(rows, separator, counts)
-        names, units = wanted or [f"column {k + 1}" for k in order], [None] * count
-    return Table([names[k] for k in order], [units[k] for k in order],
+        names, units = wanted[:count] or [f"column {k + 1}" for k in order], [None] * count
+    return Table(list(names), [units[k] for k in order],
                  numpy.array([[_number(row[k]) for k in order] for _, row in rows]), [line for line, _ in rows])
 
 
