@@ -208,6 +208,13 @@ void Section::key(std::string_view name, bool& field, std::string_view meaning) 
   });
 }
 
+void Section::key(std::string_view name, std::optional<TableFile>& field, std::string_view meaning) {
+  std::optional<std::string> path;
+  if (field) path = field->path;
+  key(name, path, Choice{}, meaning);
+  if (path) field = {*path, state_->units};
+}
+
 template <class Field>
 void Section::key(std::string_view name, Field& field, const Choice& choice, std::string_view meaning) {
   state(*state_->record, name, field, {ValueType::text, {}, 1, choice}, "", meaning,

@@ -14,6 +14,7 @@
 
 #include "base/types.hpp"
 #include "deck/forward.hpp"
+#include "deck/table.hpp"
 
 namespace tanktread::deck {
 
@@ -82,6 +83,9 @@ class Section {
   }
 
   void key(std::string_view name, bool& field, std::string_view meaning);
+
+  /// Declares a key whose value is the path of a table.
+  void key(std::string_view name, std::optional<TableFile>& field, std::string_view meaning);
 
   /// States that the keys `names`, which are declared before, have no effect `because` of another choice ("with Time/scheme `bs3`"). A key to which
   /// the deck gives another value than the default is then listed by idle_keys().

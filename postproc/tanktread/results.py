@@ -168,6 +168,13 @@ class Run:
         """Returns the axis label of a series: its name and, unless it is dimensionless, its unit."""
         return name + self.unit(self.units[name])
 
+    def column(self, name):
+        """Returns the heading of a series in a table: its name and, unless it is dimensionless, its unit in ASCII, such
+        as "velocity_x1 (um/s)"."""
+        unit = self.unit(self.units[name]).removeprefix(", ").replace("µ", "u")
+        unit = re.sub("[⁰¹²³⁴]", lambda power: f"^{'⁰¹²³⁴'.index(power[0])}", unit)
+        return f"{name} ({unit})" if unit else name
+
     @property
     def rate(self):
         """The rate of the flow (1/time), by which times are multiplied to be dimensionless, and its name; (1, None) if

@@ -2,7 +2,7 @@
 
 import numpy
 
-from ..files import table
+from .. import tables
 from ..interpolation import interpolated
 from ..mistakes import expect, log
 from . import silhouette
@@ -66,9 +66,9 @@ class Datum:
         self.name, self.at = name, optional(number, given, "at", name)
         self.error = optional(positive, given, "error", name)
 
-    def columns(self, path):
-        """Returns the first two columns (n, 2) of a table. Sets `error` to its third column if no error is stated."""
-        rows = table(path)
+    def columns(self, path, *names):
+        """Returns two columns (n, 2) of a table. Sets `error` to its column of errors if no error is stated."""
+        rows = tables.read(path, (*names, "error"), (2, 3)).values
         if self.error is None and rows.shape[1] > 2:
             self.error = rows[:, 2]
             expect((self.error > 0).all() and numpy.isfinite(self.error).all(), f"{self.name}: the third column of the "
@@ -91,7 +91,9 @@ class OutlineData(Datum):
         expect(isinstance(plane, list) and len(plane) == 2 and plane[0] != plane[1]
                and all(one in ("x1", "x2", "x3") for one in plane), f"{name}: the plane is two of x1, x2, x3")
         self.axis = 6 - sum(int(one[1]) for one in plane) - 1
-        self.points = self.columns(folder / str(given["outline"]))[:, numpy.argsort(plane)]
+        path = folder / str(given["outline"])
+        of_picture = {"x", "y"} <= set(map(str.lower, tables.read(path).columns))  # the names of the picture's axes
+        self.points = self.columns(path, *(("x", "y") if of_picture else plane))[:, numpy.argsort(plane)]
         if numpy.ndim(self.error):
             self.error = float(numpy.sqrt((self.error**2).mean()))
         steps = numpy.linalg.norm(self.points - numpy.roll(self.points, 1, axis=0), axis=1)
@@ -144,7 +146,7 @@ class SeriesData(Datum):
         expect(not self.places or given["origin"] == "free" and "curve" in given,
                f"{name}: `origin: free` is of a curve, and there is no other origin")
         if "curve" in given:
-            self.times, self.values = self.columns(folder / str(given["curve"])).T
+            self.times, self.values = self.columns(folder / str(given["curve"]), "time", "value").T
             self.span = float(numpy.ptp(self.times)) or 1.0  # unit of the time shift in the fit
         else:
             self.times, self.values = self.at, numpy.array([number(given["value"], f"{name}: value")])
