@@ -5,7 +5,7 @@ import pathlib
 
 import numpy
 
-from ..files import table
+from .. import tables
 from ..interpolation import averages_between
 from ..mistakes import expect, log
 from ..results import time_label
@@ -51,7 +51,8 @@ def encounter(runs, path, gap, deformation, *, pair: tuple[str, str] | None = No
         log.info(f"{run.name}: smallest gap {smallest[least]:.5f} R_C at dx = {dx[least]:.3f}, "
                  f"largest dz {dz.max():.5f}")
     if curve:
-        path.plot(*table(curve).T[:2], style.MARKS[0], color=style.FAINT, markersize=3.5, label="literature")
+        known = tables.read(curve, ("dx", "value")).values.T
+        path.plot(*known, style.MARKS[0], color=style.FAINT, markersize=3.5, label="literature")
     style.finish(path, ylabel="dz / R$_C$")
     gap.set(ylabel="smallest gap / R$_C$", ylim=(0, None))
     deformation.set(xlabel="dx / R$_C$", ylabel="D")
@@ -88,7 +89,8 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
         log.info(f"{run.name}: gap from {film[0]:.6g} to {film[-1]:.6g} R_C; "
                  f"velocity away from the wall {away[-1]:.5g}, along it {along[-1]:.5g}")
     if curve:
-        gap.plot(*table(curve).T[:2], style.MARKS[0], color=style.INK, markersize=3, label="reference")
+        known = tables.read(curve, ("time", "value")).values.T
+        gap.plot(*known, style.MARKS[0], color=style.INK, markersize=3, label="reference")
     speed.axhline(0, color=style.FAINT, linewidth=0.8)
     low, high = gap.get_ylim()
     style.finish(gap, yscale="log" if high > 3 * low > 0 else "linear", xlabel=time_label(runs), ylabel="gap / R$_C$")

@@ -18,11 +18,11 @@ and `next`:
         experiment only. Values in `set` may have units if
         the deck has the section Units. start, from, to, known and the results are numbers in the deck's units
     datum: {outline: points.csv, error: 0.5, scale: 0.01}
-        a file of points on the outline as seen along x2, with the columns x1, x3 in the unit of the picture. The flow
-        goes to the right. error: standard error of a point in this unit (or a third column, as tanktread-outline
-        writes it). scale: length in the deck's unit per unit of the picture. Optional: `plane: [x1, x3]` (coordinates
-        of the two columns); `scale error` (relative error of the scale, or free); `at` (time of the snapshot, default:
-        the last); `open: true` (the outline need not close)
+        a table of points on the outline as seen along x2, with the columns x1, x3 (or x, y: the axes of the picture) in
+        the unit of the picture. The flow goes to the right. error: standard error of a point in this unit (or a third
+        column, as tanktread-outline writes it). scale: length in the deck's unit per unit of the picture. Optional:
+        `plane: [x1, x3]` (coordinates of the two columns); `scale error` (relative error of the scale, or free); `at`
+        (time of the snapshot, default: the last); `open: true` (the outline need not close)
     datum: {series: velocity_x1, value: 1.2, error: 0.01}
         a value at the end of a series. Optional: `at` (another time)
     datum: {series: taylor_inertia, curve: relaxation.csv}

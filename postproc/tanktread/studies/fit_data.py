@@ -67,14 +67,11 @@ class Datum:
     def __init__(self, given, name):
         self.name, self.at, self.error, self.cases = name, given.get("at"), given.get("error"), [{}]
 
-    def table(self, path, chosen=None):
-        """Returns the table of two columns in a file, the second of which may have any name. Sets `error` to the column
-        of standard errors, if there is one and no error is stated. `chosen`: names or numbers, from 1, of two or three
-        columns."""
-        found = tables.read(path)
+    def table(self, path, names, chosen=None):
+        """Returns the table of two columns, `names`, in a file. Sets `error` to its column of standard errors if no
+        error is stated. `chosen`: names or numbers, from 1, of two or three columns, which then count instead."""
         try:
-            if not chosen:
-                found = tables.read(path, (found.columns[0], "value", "error"), (2, 3))
+            found = tables.read(path) if chosen else tables.read(path, (*names, "error"), (2, 3))
         except Mistake as mistake:
             raise Mistake(f"{self.name}: {mistake}; `columns` chooses columns by name or number") from None
         known = found.columns
@@ -120,13 +117,11 @@ class OutlineData(Datum):
                f"{name} has no scale: the deck's length for a unit of its picture (1 if they are the same)")
         super().__init__(given, name)
         self.scale, self.scale_error = given["scale"], given.get("scale error", 0)
-        found = self.table(folder / given["outline"], given.get("columns"))
-        named = found.columns if set(found.columns) < {"x1", "x2", "x3"} else None
-        plane = given.get("plane", named or ["x1", "x3"])
+        plane, path = given.get("plane", ["x1", "x3"]), folder / given["outline"]
         expect(len(set(plane)) == len(plane) == 2, f"{name}: the plane is two of x1, x2, x3")
-        expect(plane == (named or plane), f"{name}: the plane is {', '.join(plane)}, but the columns of "
-               f"{given['outline']} are {', '.join(found.columns)}")
         self.axis = 6 - sum(int(one[1]) for one in plane) - 1
+        of_picture = {"x", "y"} <= set(map(str.lower, tables.read(path).columns))  # the names of the picture's axes
+        found = self.table(path, ("x", "y") if of_picture else plane, given.get("columns"))
         self.points = found.values[:, numpy.argsort(plane)]
         if numpy.ndim(self.error):
             self.error = float(numpy.sqrt((self.error**2).mean()))
@@ -199,7 +194,8 @@ class SeriesData(Datum):
         expect(not self.places or ("curve" in given and not self.against),
                f"{name}: `origin: free` is of a curve over time")
         if "curve" in given:
-            found = self.table(folder / given["curve"], given.get("columns"))
+            first = next(iter(self.against)).rpartition("/")[2] if self.against else "time"
+            found = self.table(folder / given["curve"], (first, "value"), given.get("columns"))
             self.along, self.values = found.values.T
             self.unit, self.value_unit = found.units
             self.span = float(numpy.ptp(self.along)) or 1.0  # unit of the time shift in the fit
