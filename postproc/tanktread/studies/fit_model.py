@@ -106,6 +106,7 @@ class Fit:
         # slice of the position of each datum in x
         self.positions = parts([len(self.unknowns), *(datum.places for datum in self.data)])[1:]
         self.count = sum(datum.count for datum in self.data)
+        self.beyond = []  # vector x at which runs failed and the iteration ended
         self.stated = all(datum.error is not None for datum in self.data)
 
     length = property(lambda self: sum(datum.length for datum in self.data)
@@ -174,8 +175,18 @@ class Fit:
                f"{self.law}: {free} numbers are unknown, positions included, and there are {self.count} data")
         bounds = numpy.array([one.bounds for one in self.unknowns] + [(-numpy.inf, numpy.inf)] * places).T
 
+        best = numpy.inf, x  # smallest chi square, and where it was found
+
         def function(x):
-            return self.residuals(*self.predictions(x), x)
+            nonlocal best
+            (found,) = self.predictions(x)
+            residual = self.residuals(found, x)
+            if found is not None:
+                best = min(best, (float(residual @ residual), x), key=lambda one: one[0])
+            elif abs(x - best[1])[:len(self.unknowns)].max() < TELLS:  # the edge of a region where runs fail
+                self.beyond = [x]
+                raise Settled(best[1])
+            return residual
 
         def derivative(x):
             (columns,), by_position = self.jacobian(x, STEP)
@@ -210,9 +221,9 @@ class Fit:
         then be the edge of the region where runs succeed instead of a minimum."""
         (up, down), self.moved = self.jacobian(self.x, TELLS, (1, -1))
         shifts = TELLS * numpy.eye(len(self.unknowns), len(self.x))
-        self.edge = self.failures_at(*(self.x + side * shift for side in (1, -1)
-                                       for one, number, shift in zip(self.unknowns, self.x, shifts)
-                                       if not one.bound_of(number, side * TELLS)))
+        near = [self.x + side * shift for side in (1, -1) for one, number, shift in zip(self.unknowns, self.x, shifts)
+                if not one.bound_of(number, side * TELLS)]
+        self.edge = self.failures_at(*self.beyond, *near)
         up, down = (numpy.where(numpy.isfinite(one), one, other) for one, other in ((up, down), (down, up)))
         self.derivative, disagreement = (up + down) / 2, numpy.linalg.norm(up - down, axis=0) / 2
         strength = numpy.linalg.norm(self.derivative, axis=0)

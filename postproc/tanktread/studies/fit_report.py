@@ -118,7 +118,7 @@ def told(fits, rows):
         elif len(fit.data) > 1:
             lines.append("  of it: " + ", ".join(f"{datum.name} {(fit.residual[own] ** 2).sum():.3g} of {datum.length}"
                                                  for datum, own in zip(fit.data, fit.rows)))
-        if fit.missed:
+        if fit.missed and not fit.edge:
             lines.append(f"  the residuals are {fit.scatter:.3g} times what the errors of the data say: a finer "
                          "mesh, a free scale or another law first")
         for name, runs in failed(fit).items():
@@ -151,7 +151,7 @@ def told(fits, rows):
         for (i, one), (j, other) in itertools.combinations(shown, 2):
             lines.append(f"  correlation of {one.name} and {other.name}: {correlation[i, j]:.3f}")
         # residuals far below the errors of the data, such as round-off, say nothing about the model
-        if not fit.stated or abs(fit.residual).max() > 1e-2:
+        if not fit.edge and (not fit.stated or abs(fit.residual).max() > 1e-2):
             lines += signs(fit)
     ended = [fit for fit in fits if fit.edge]
     fits = [fit for fit in fits if not fit.edge]
@@ -193,10 +193,10 @@ def draw(fits, axes=None):
             line.along = numpy.linspace(datum.along.min(), datum.along.max(), 200)
             data.plot(line.along, line.predicted(prediction, place), color=color, linewidth=1)
             data.errorbar(datum.along, datum.values, datum.error, fmt=".", color=color, ms=4, label=datum.name)
-        else:
+        elif over_time or not curves:  # a single value has no place on the axis of a key
             name = datum.name.removesuffix(": data")
-            if curves:  # a single value has no place on the axis of a key
-                name = numpy.nan if not over_time else prediction[0][-1] if datum.at is None else datum.at
+            if over_time:
+                name = prediction[0][-1] if datum.at is None else datum.at
             data.errorbar(name, datum.values[0], datum.error or 0, fmt=".", color=color, ms=7)
             data.plot(name, datum.predicted(prediction, [])[0], "_", color=color, ms=14)
         residual.plot(numpy.arange(rows.start, rows.start + datum.count), best.residual[rows][:datum.count], ".",

@@ -54,7 +54,7 @@ def anything(given, name):
 
 def texts(given, name):
     """Returns a list of texts from a text or a list of texts."""
-    return read(given if isinstance(given, list) else [given], [text], name)
+    return read(given, [text], name) if isinstance(given, list) else [text(given, name)]
 
 
 def word(*words):

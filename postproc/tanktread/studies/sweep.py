@@ -23,6 +23,10 @@ of series; their last values are the columns.
 Values may have units, such as 40 1/s, if the deck has the section Units. The tables contain them as numbers in the
 units of the deck.
 
+The tables contain the runs that have ended, and are written again whenever a run ends. The column `status` is done,
+refused, stopped (by a signal or at its limit) or failed. `ended` tells how a completed run ended: steady (with
+Time/steady tolerance), past (Time/end when past), or done: at its final time, or with the shape that was requested.
+
 A run that is complete is not repeated, even if the study has changed. A run that was interrupted is resumed. A run that
 was stopped at its `limit` is resumed, or repeated if it has no checkpoint, when the limit is larger or removed. The row
 of a run that fails contains its error message.
