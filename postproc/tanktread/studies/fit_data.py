@@ -4,7 +4,7 @@ import copy
 
 import numpy
 
-from .. import tables
+from .. import tables, units
 from ..interpolation import interpolated
 from ..mistakes import Mistake, expect, log
 from . import reading, silhouette
@@ -83,8 +83,8 @@ class Datum:
             self.error = found.values[:, index[2]]
             expect((self.error > 0).all() and numpy.isfinite(self.error).all(), f"{self.name}: column "
                    f"{known[index[2]]} of {path} is of standard errors, and one is not a number above 0")
-        columns, units = ([one[k] for k in index[:2]] for one in (known, found.units))
-        return tables.Table(columns, units, found.values[:, index[:2]], found.lines)
+        names, own = ([one[k] for k in index[:2]] for one in (known, found.units))
+        return tables.Table(names, own, found.values[:, index[:2]], found.lines)
 
     def joined(self, predictions):
         """Returns the prediction of the datum from its predictions by each of the runs `cases`."""
@@ -179,6 +179,7 @@ class SeriesData(Datum):
     kinds = {"series": reading.text, "over": reading.text, "value": number, "curve": reading.text, "error": positive,
              "at": number, "origin": reading.word("free"), "against": _against, "columns": _columns}
     length = property(lambda self: self.count)  # number of residuals
+    span = property(lambda self: float(numpy.ptp(self.along)) or 1.0, doc="The unit of the time shift in the fit.")
     discretisation = None  # estimated error of the series in the first run; 0 if its deck does not request an accuracy
 
     def __init__(self, given, name, folder):
@@ -198,7 +199,6 @@ class SeriesData(Datum):
             found = self.table(folder / given["curve"], (first, "value"), given.get("columns"))
             self.along, self.values = found.values.T
             self.unit, self.value_unit = found.units
-            self.span = float(numpy.ptp(self.along)) or 1.0  # unit of the time shift in the fit
         else:
             self.along, self.values, self.value_unit = self.at, numpy.array([given["value"]]), None
         self.count = len(self.values)
@@ -230,6 +230,19 @@ class SeriesData(Datum):
             one.error = float(numpy.sqrt(numpy.mean(numpy.square(self.error)))) if self.error is not None else None
         return one
 
+    def _convert(self, run):
+        """Converts the columns of the table from their units to those of a run."""
+        name, ratio = self.series[0], len(self.series) > 1
+        factors = []
+        for unit, one in (self.value_unit, name), (None if self.against else self.unit, "time"):
+            own = "1" if ratio and one == name else run.si[one] or run.units[one] or "1"
+            factors.append(1.0 if unit is None else units.factor(unit, own))
+            expect(factors[-1], f"{self.name}: the table is in {unit}, which does not fit the unit of {one}, {own}"
+                   + ("" if "Units" in run.deck else "; the deck has no section Units"))
+        self.values, self.error = (one if one is None else one * factors[0] for one in (self.values, self.error))
+        self.along, self.value_unit = self.along if self.along is None else self.along * factors[1], None
+        self.unit = self.unit if self.against else None
+
     def start(self, prediction):
         """Returns the start value of the time shift, divided by `span`: the last time at which the series of the run
         passes the first value of the curve, or is nearest to it. Empty if the origin is not free."""
@@ -243,6 +256,8 @@ class SeriesData(Datum):
     def prediction(self, run):
         """Returns the times and values of a run's series, where it is defined."""
         values, times = run.series[self.series[0]], run.series["time"]
+        if self.value_unit or (self.unit and not self.against):
+            self._convert(run)
         wanted = self.at if self.against else self.along
         last = 0 if wanted is None or self.places else numpy.max(wanted)
         expect(last <= times[-1] * (1 + 1e-9),
