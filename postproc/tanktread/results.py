@@ -26,9 +26,9 @@ class Run:
     `series`: {name: values (rows,)}, one row per recorded step. If there are several particles, the series of a
     particle is named `<particle>/<name>`. A value is NaN where the series is undefined (see its description). An
     unknown name raises Mistake. `units`, `descriptions`: {name: text}. `si`: {name: what the value 1 stands for, such
-    as "1e-06 m"}; "" if it is dimensionless or the deck has no section Units. `errors`: {name: estimated error (rows,)} if an
-    accuracy was requested, otherwise empty; NaN where no error can be estimated. `untrusted`: {name: reason why it
-    cannot be estimated}. `deck`: the effective deck as nested dicts; `deck_text`: the same as YAML text. `provenance`:
+    as "1e-06 m"}; "" if it is dimensionless or the deck has no section Units. `errors`: {name: estimated error (rows,)}
+    if an accuracy was requested, otherwise empty; NaN where no error can be estimated. `untrusted`: {name: reason why
+    it cannot be estimated}. `deck`: the effective deck as nested dicts; `deck_text`: the same as YAML text. `provenance`:
     version, compiler, ranks. `summary`: the content of summary.yaml, or None if the run has not ended."""
 
     def __init__(self, directory):

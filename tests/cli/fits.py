@@ -248,6 +248,36 @@ def a_curve_against_a_key_has_a_run_for_each_value_of_the_key():
     check(all(one["F/vector"] == [2 * one["F/rate"], 0, -4 * one["F/rate"]] for one in made), made[0])
 
 
+def a_force_extension_curve_with_units_recovers_the_modulus():
+    """The table is in nN and nm, the deck in pN and um. Two beads pull a capsule with a shear modulus of 6 uN/m."""
+    deck("""
+Tanktread:
+  Units: {}
+  Flow: {type: quiescent, viscosity: 1 mPa s}
+  Particle: {shape: sphere, radius: 3 um}
+  Membrane:
+    law: Skalak
+    shear modulus: 6 uN/m
+    forces: {left: {direction: [-1, 0, 0], radius: 1.5 um, force: [0, 0, 0]}, right: {direction: [1, 0, 0], radius: 1.5 um, force: [0, 0, 0]}}
+  Surface: {elements per side: 3}
+  Steady: {tolerance: 1.0e-6}
+""")
+    forces, sides = (2.0, 5.0, 9.0), {"Membrane/forces/left/force": [-1, 0, 0], "Membrane/forces/right/force": [1, 0, 0]}
+    found = tanktread.Study(directory="truth").all([(["deck.yaml"], {key: [one * force for one in side] for key, side in sides.items()}) for force in forces])
+    lengths = [one.series["length_x1"][-1] for one in found] + 0.01 * numpy.random.default_rng(2).standard_normal(3)
+    rows = "".join(f"{force / 1000};{1000 * length:.1f};10\n" for force, length in zip(forces, lengths)).replace(".", ",")
+    pathlib.Path("forces.csv").write_text("force [nN];extension [nm];error\n" + rows)
+    text = {"deck": "deck.yaml", "unknown": {"Membrane/shear modulus": 9.0}, "experiments": {"pulled": {"data": [{"series": "length_x1", "curve": "forces.csv", "against": sides}]}}}
+    said = _fit(text)
+    value, error = _found()["Membrane/shear modulus"]
+    check(abs(value - 6) < 2 * error < 0.5, value, error)
+    check(yaml.safe_load(open("results/experiment/fit.yaml"))["the deck's law"]["runs"] % 3 == 0 and " pN/µm (" in said, said)  # a run for each force
+    pathlib.Path("forces.csv").write_text("force [nN];extension [s];error\n" + rows)
+    check("the table is in s, which does not fit the unit of length_x1, 1e-06 m" in _fit(text, code=2), "a unit of another dimension")
+    pathlib.Path("forces.csv").write_text("force [nm];extension [nm];error\n" + rows)
+    check("pulled: the deck is refused: " in _fit(text, code=2), "a key with a unit of another dimension")
+
+
 def residuals_of_one_sign_are_reported():
     """The offset of the data is six standard errors, and the bound keeps the model below them."""
     _curve("curve.csv", lambda rate: rate / (rate + 8), 0.002, 0.03)
@@ -342,6 +372,7 @@ def mistakes_are_reported_in_one_sentence():
     datum, bare = {"series": "taylor_inertia", "value": 0.3, "error": 0.01}, {"series": "taylor_inertia", "value": 0.3}
     curve = {"series": "taylor_inertia", "curve": "curve.csv", "error": 0.01}
     numpy.savetxt("curve.csv", [[-1, 0.1], [0.5, 0.2]], delimiter=",")
+    pathlib.Path("units.csv").write_text("rate,length [um]\n1,2.1\n")
     for change, words in (({"unknown": {}}, "nothing is unknown"), ({"deck": "other.yaml"}, "no deck other.yaml"), ({"models": 1}, "models is not known"),
                           ({"unknown": {"Membrane/capillary number": 0.3, "Particle/viscosity ratio": 1.0}}, "2 numbers are unknown"),
                           ({"experiments": {"a": {"data": [{"outline": "arc.csv", "scale": 1, "error": 0.1}]}}}, "does not close"),
@@ -360,6 +391,8 @@ def mistakes_are_reported_in_one_sentence():
                           ({"experiments": {"a": {"data": [datum | {"against": "Flow/shear rate"}]}}}, "`against` is of a curve"),
                           ({"experiments": {"a": {"data": [curve | {"against": 3}]}}}, "against must be a section"),
                           ({"experiments": {"a": {"data": [curve | {"against": "Flow/shear rat"}]}}}, "a: the deck is refused: "),
+                          ({"experiments": {"a": {"data": [curve | {"series": "length_x1", "curve": "units.csv", "against": "Flow/shear rate"}]}}},
+                           "the table is in um, which does not fit the unit of length_x1, length; the deck has no section Units"),
                           ({"experiments": {"a": {"data": [curve | {"columns": [1, "D"]}]}}}, "has no column D; there are: column 1, column 2"),
                           ({"experiments": {"a": {"data": [datum]}, "b": {"data": [bare]}}}, "missing for b: data, but other"),
                           ({"experiments": {"a": {"data": [bare]}}, "unknown": {"Membrane/capillary number": {"known": 0.3, "error": 0.1}}},

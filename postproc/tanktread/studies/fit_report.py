@@ -98,8 +98,8 @@ def signs(fit):
     if share:
         plus, count, name, probability = share
         side = "below" if 2 * plus > count else "above"
-        meaning = ("as by chance" if probability > UNLIKELY else f"the model is {side} the data, which random errors do "
-                   "not explain: the data have an offset, or the model is not theirs")
+        meaning = ("as by chance" if probability > UNLIKELY else f"the model is {side} the data, which random errors "
+                   "do not explain: the data have an offset, or the model is not theirs")
         lines.append(f"  signs of the residuals: {plus} of {count} positive in {name} (binomial test, probability "
                      f"{probability:.2g}): {meaning}")
     return lines

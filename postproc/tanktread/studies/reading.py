@@ -101,7 +101,8 @@ def few(number, name):
 
 
 def setting(given, name):
-    """Returns the value of a key or section of a deck: a number, a text, true or false, a list or a section of these."""
+    """Returns the value of a key or section of a deck: a number, a text, true or false, or a list or section of
+    these."""
     if isinstance(given, dict):
         return read(given, {any_name: setting}, name)
     for one in given if isinstance(given, list) else [given]:
