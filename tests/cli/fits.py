@@ -359,6 +359,7 @@ def names_are_texts_and_occur_once():
     for text, words in ((f"unknown: {{A/b: 1}}\nexperiments:\n  e: {value}\n  e: {value}", "line 5: the key e is already in line 4"),
                         (f"unknown: {{A/b: 1, A/b: 2}}\nexperiments: {{e: {value}}}", "line 2: the key A/b is already in line 2"),
                         (f"set: {{3: 1}}\nunknown: {{A/b: 1}}\nexperiments: {{e: {value}}}", "set: 3 is not a key of a deck"),
+                        (f"set: {{A/b: &one {{c: *one}}}}\nunknown: {{A/b: 1}}\nexperiments: {{e: {value}}}", "within each other without end"),
                         (f"unknown: {{? [1] : 1}}\nexperiments: {{e: {value}}}", "a name is a text")):
         pathlib.Path("study.yaml").write_text(f"deck: deck.yaml\n{text}\n")
         said = package("fit", "study.yaml")

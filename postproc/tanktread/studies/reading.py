@@ -177,10 +177,14 @@ def study_of(path, kinds):
     """Returns the content of a study file: a section of these kinds and of `deck`, a list of the paths of its decks.
     Absent sections are {}. Decks are searched for next to the file, in the current directory, and in the directories of
     shared()."""
-    given = parsed(path, lambda content: yaml.load(content, Loader=_Loader))
-    expect(isinstance(given, dict), f"{path} must be a section of keys: {', '.join(sorted(kinds | {'deck': texts}))}")
+    kinds = kinds | {"deck": texts}
     found = {key: {} for key, kind in kinds.items() if isinstance(kind, dict)}
-    found |= read(given, kinds | {"deck": texts}, path)
+    try:
+        given = parsed(path, lambda content: yaml.load(content, Loader=_Loader))
+        expect(isinstance(given, dict), f"{path} must be a section of keys: {', '.join(sorted(kinds))}")
+        found |= read(given, kinds, path)
+    except RecursionError:
+        raise Mistake(f"{path} holds sections or lists within each other without end") from None
     expect(found.get("deck"), f"{path} names no deck")
     folders = [pathlib.Path(path).parent, *shared()]
     for k, deck in enumerate(found["deck"]):
