@@ -28,8 +28,9 @@ class Run:
     unknown name raises Mistake. `units`, `descriptions`: {name: text}. `si`: {name: what the value 1 stands for, such
     as "1e-06 m"}; "" if it is dimensionless or the deck has no section Units. `errors`: {name: estimated error (rows,)}
     if an accuracy was requested, otherwise empty; NaN where no error can be estimated. `untrusted`: {name: reason why
-    it cannot be estimated}. `deck`: the effective deck as nested dicts; `deck_text`: the same as YAML text. `provenance`:
-    version, compiler, ranks. `summary`: the content of summary.yaml, or None if the run has not ended."""
+    it cannot be estimated}. `deck`: the effective deck as nested dicts; `deck_text`: the same as YAML text.
+    `provenance`: version, compiler, ranks. `summary`: the content of summary.yaml, or None if the run has not
+    ended."""
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)
