@@ -195,8 +195,10 @@ class SeriesData(Datum):
         expect(not self.places or ("curve" in given and not self.against),
                f"{name}: `origin: free` is of a curve over time")
         if "curve" in given:
-            first = next(iter(self.against)).rpartition("/")[2] if self.against else "time"
-            found = self.table(folder / given["curve"], (first, "value"), given.get("columns"))
+            path, named = folder / given["curve"], next(iter(self.against or ["time"])).rpartition("/")[2]
+            known = tables.read(path).columns  # the first column, unless another one has the name of the key
+            first = next((one for one in known if one.lower() == named.lower()), known[0])
+            found = self.table(path, (first, "value"), given.get("columns"))
             self.along, self.values = found.values.T
             self.unit, self.value_unit = found.units
         else:

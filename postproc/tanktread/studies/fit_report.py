@@ -10,7 +10,7 @@ import scipy.stats
 
 from ..figures import style
 from .fit_data import OutlineData
-from .fit_model import SERIES, Fit, determined
+from .fit_model import Fit, determined
 
 
 UNLIKELY = 0.01  # a share of signs with a smaller probability is not explained by random errors
@@ -122,8 +122,8 @@ def told(fits, rows):
             lines.append(f"  the residuals are {fit.scatter:.3g} times what the errors of the data say: a finer "
                          "mesh, a free scale or another law first")
         for name, runs in failed(fit).items():
-            lines.append(f"  {len(runs)} run{'s' * (len(runs) > 1)} of {name} failed or gave no outline or no value; the "
-                         f"first one, {next(iter(runs))}: {next(iter(runs.values()))}")
+            lines.append(f"  {len(runs)} run{'s' * (len(runs) > 1)} of {name} failed or gave no outline or no value; "
+                         f"the first one, {next(iter(runs))}: {next(iter(runs.values()))}")
         if fit.edge:
             ends = (f"{one.name} = {one.value(x):.3g}{fit.runs.unit(one.key).replace(',', '', 1)}"
                     for one, x in zip(fit.unknowns, fit.x))
