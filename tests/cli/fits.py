@@ -283,6 +283,12 @@ def residuals_of_one_sign_are_reported():
     _curve("curve.csv", lambda rate: rate / (rate + 8), 0.002, 0.03)
     _, said, _ = _offline(RATES | {"unknown": {"M/G": {"start": 9.0, "from": 8.0}}}, _hyperbola)
     check("12 of 12 positive in e: data (binomial test, probability 0.00049): the model is below the data" in said, said)  # 2 / 2**12
+    # ten single values of a series beside a curve that is met
+    single = {f"rate {rate}": {"set": {"F/rate": rate}, "data": [{"series": "E", "value": rate / (rate + 8.0) + 0.03, "error": 0.005}]} for rate in range(1, 11)}
+    _curve("curve.csv", lambda rate: rate / (rate + 8), 0.005)
+    _, said, _ = _offline(RATES | {"unknown": {"M/G": {"start": 9.0, "from": 8.0}}, "experiments": RATES["experiments"] | single},
+                          lambda settings: _hyperbola(settings) | {"E": settings["F/rate"] / (settings["F/rate"] + 8)})
+    check("10 of 10 positive in E (binomial test, probability 0.0059): the model is below the data" in said, said)  # 3 tests: 3 x 2 / 2**10
     _curve("curve.csv", lambda rate: rate / (rate + 8), 0.005)
     _, said, _ = _offline(RATES, _hyperbola)
     check(re.search(r"positive in e: data .*as by chance", said), said)

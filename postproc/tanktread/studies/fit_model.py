@@ -274,12 +274,16 @@ class Fit:
 
     def signs(self):
         """Returns (number of positive residuals, number of residuals, name, probability) of the data whose residuals
-        have one sign most clearly: of each outline or curve, and of all data. The probability is that of a two-sided
-        binomial test, multiplied by the number of tests. Returns None if there are too few data."""
-        groups = [(datum.name, self.residual[own][:datum.count]) for datum, own in zip(self.data, self.rows)]
+        have one sign most clearly: of each outline or curve, of all values of a series, and of all data. The
+        probability is that of a two-sided binomial test, multiplied by the number of tests. Returns None if there are
+        too few data."""
+        groups = collections.defaultdict(list)
+        for datum, own in zip(self.data, self.rows):
+            name = datum.name if datum.count >= SERIES else " / ".join(getattr(datum, "series", ["outlines"]))
+            groups[name].extend(self.residual[own][:datum.count] > 0)
         if len(groups) > 1:
-            groups.append(("all data", numpy.concatenate([own for _, own in groups])))
-        tests = [(int((own > 0).sum()), len(own), name) for name, own in groups if len(own) >= SERIES]
+            groups["all data"] = list(itertools.chain.from_iterable(groups.values()))
+        tests = [(sum(signs), len(signs), name) for name, signs in groups.items() if len(signs) >= SERIES]
         found = [(*test, min(1.0, len(tests) * scipy.stats.binomtest(*test[:2]).pvalue)) for test in tests]
         return min(found, key=lambda test: test[3], default=None)
 
