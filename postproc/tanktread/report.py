@@ -149,7 +149,8 @@ def of_fit(directory):
                                                    for fit in fits.values()), f"{directory}/fit.yaml is damaged")
     for law, fit in fits.items():
         for name, one in fit["unknown"].items():
-            found = [one["value"], one["error"]] if numpy.isfinite(one["error"]) else ["not determined", ""]
+            missing = "no value: runs fail" if "edge" in one else "not determined"
+            found = [one["value"], one["error"]] if numpy.isfinite(one["error"]) else [missing, ""]
             label = f"{name}, {one['unit']}" if "unit" in one else name
             rows.append([law, label, *found, one.get("at bound", ""), *(fit[key] for key in of_law)])
     picture = base64.b64encode((directory / "fit.png").read_bytes()).decode()

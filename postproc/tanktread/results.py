@@ -25,10 +25,12 @@ class Run:
 
     `series`: {name: values (rows,)}, one row per recorded step. If there are several particles, the series of a
     particle is named `<particle>/<name>`. A value is NaN where the series is undefined (see its description). An
-    unknown name raises Mistake. `units`, `descriptions`: {name: text}. `errors`: {name: estimated error (rows,)} if an
-    accuracy was requested, otherwise empty; NaN where no error can be estimated. `untrusted`: {name: reason why it
-    cannot be estimated}. `deck`: the effective deck as nested dicts; `deck_text`: the same as YAML text. `provenance`:
-    version, compiler, ranks. `summary`: the content of summary.yaml, or None if the run has not ended."""
+    unknown name raises Mistake. `units`, `descriptions`: {name: text}. `si`: {name: what the value 1 stands for, such
+    as "1e-06 m"}; "" if it is dimensionless or the deck has no section Units. `errors`: {name: estimated error (rows,)}
+    if an accuracy was requested, otherwise empty; NaN where no error can be estimated. `untrusted`: {name: reason why
+    it cannot be estimated}. `deck`: the effective deck as nested dicts; `deck_text`: the same as YAML text.
+    `provenance`: version, compiler, ranks. `summary`: the content of summary.yaml, or None if the run has not
+    ended."""
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)
@@ -38,6 +40,7 @@ class Run:
             found = datasets(file["series"])
             self.series = Named({name: data[:] for name, data in found.items()}, f"{directory} holds no series")
             self.units = {name: text_of_hdf(data.attrs["unit"]) for name, data in found.items()}
+            self.si = {name: text_of_hdf(data.attrs.get("SI", "")) for name, data in found.items()}
             self.descriptions = {name: text_of_hdf(data.attrs["description"]) for name, data in found.items()}
             errors = datasets(file["error"]) if "error" in file else {}
             self.errors = {name: data[:] for name, data in errors.items()}

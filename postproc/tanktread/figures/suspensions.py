@@ -211,8 +211,7 @@ def viscosity(study, upper, lower, *, single: str = "inputs/shear_neo_hookean.ya
     made = Study(directory=directory / "runs", jobs=jobs)
     runs = Sweep(study, made)
     expect(all(CA in row for row in runs.rows), f"{study} varies or sets no {CA}")
-    runs.make()
-    runs.write(directory)
+    runs.make(directory)
     rows: dict = {}
     for outcome, settings in zip(runs.outcomes, runs.rows):
         if row := averages(outcome, from_, blocks):
