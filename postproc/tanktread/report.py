@@ -86,7 +86,7 @@ def shapes(run, field):
 
 def curves(run):
     """Returns all series, the most important ones first. Long series are thinned to every second, third … row."""
-    first = [name for key in FIRST for name in run.series if name == key or name.endswith(f"/{key}")]
+    first = [name for key in FIRST for name in (key, *(f"{one}/{key}" for one in run.bodies)) if name in run.series]
     defined = {name: run.defined(name)[1] for name in first}
     first = [name for name, values in defined.items() if len(values) and numpy.ptp(values) > 1e-9]
     names = first + sorted(name for name in run.series if name not in first and name != "time")

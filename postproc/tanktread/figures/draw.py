@@ -181,8 +181,9 @@ def draw_sections(axis, runs, shots):
         axis.plot([], [], color=style.FAINT, linewidth=1,
                   label="at the start" if "Continuation" not in runs[0].deck else runs[0].moment(start.time))
     axis.autoscale_view()
-    across, normal, up = (direction(one) for one in axes)
-    named = " or ".join(dict.fromkeys(f"{round(place, 3) + 0.0:.3g}" for place in places))
+    sign = numpy.sign(axes[1][abs(axes[1]).argmax()])
+    across, normal, up = (direction(one) for one in (axes[0], sign * axes[1], axes[2]))
+    named = " or ".join(dict.fromkeys(f"{round(sign * place, 3) + 0.0:.3g}" for place in places))
     axis.set(aspect="equal", anchor="N", xlabel=f"{across} / R$_C$", ylabel=f"{up} / R$_C$",
              title=f"section {normal}{' · x' * ('(' in normal)} / R$_C$ = {named}")
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4)

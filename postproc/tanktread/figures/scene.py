@@ -6,12 +6,13 @@ import numpy
 from ..files import arrays_of
 from ..lagrange import node_order
 from ..mistakes import expect
-from ..snapshots import Snapshot
+from ..snapshots import Snapshot, evenly
 
 MARGIN = 0.3           # length of walls beyond the particles, divided by the largest extent of all particles together
 REACH = 2.0            # distance from the particles up to which plane walls and tubes are drawn, divided by that extent
 AROUND, DEGREE = 8, 4  # number of cells around a post, and their degree; radii have errors below 1e-4
 EVERY, CORNER = 5, 0.2  # of an outline, each fifth point is drawn, and points where it turns by more than 0.2 radians
+RINGS = 80             # largest number of cross-sections of a channel that are drawn
 
 
 def flow_plane(run):
@@ -73,10 +74,13 @@ def posts(run, cell):
         place -= place.round() * [f"x{k + 1}" in run.deck["Domain"]["periodic"] for k in range(3)]
         length, centre = abs(cell[axis, axis]), place @ cell * (numpy.arange(3) != axis)
         pieces = max(1, round(length * AROUND / (2 * numpy.pi * radius)))  # cells are about as long as wide
-        for piece, part in numpy.ndindex(pieces, AROUND):
-            angle = 2 * numpy.pi * (part + s) / AROUND
-            ring = length * ((piece + t) / pieces - 0.5), radius * numpy.cos(angle), radius * numpy.sin(angle)
-            points.append(centre + numpy.roll(numpy.transpose(ring), axis, axis=1))
+        along, wide = length * (numpy.add.outer(numpy.arange(pieces), t) / pieces - 0.5), numpy.ones((pieces, len(t)))
+        ends = 0.4999 * length * numpy.outer([-1, 1], numpy.ones(len(t)))  # inside the faces of the cell
+        for x, factor in zip([*along, *ends], [*wide, t, 1 - t]):
+            for part in range(AROUND):
+                angle = 2 * numpy.pi * (part + s) / AROUND
+                ring = x, radius * factor * numpy.cos(angle), radius * factor * numpy.sin(angle)
+                points.append(centre + numpy.roll(numpy.transpose(ring), axis, axis=1))
     return Snapshot.of(points) if points else None
 
 
@@ -120,6 +124,7 @@ def add_duct(run, shot):
             nearest = numpy.linalg.norm(x[:, None] - centre, axis=2).argmin(1)
             more = int(MARGIN * size / numpy.linalg.norm(centre[1] - centre[0])) + 1
             rings = rings[max(0, nearest.min() - more):nearest.max() + more + 1]
+        rings = numpy.array(evenly(rings, RINGS))
     else:
         rings = numpy.array([numpy.insert(outline, 0, end, axis=1) for end in (low, high)])
         if numpy.linalg.norm(x[:, None, 1:] - outline, axis=2).min() > REACH * size:
