@@ -73,9 +73,9 @@ class Run:
     def particles(self):
         """The names of the particles in the order of the deck, without posts; ["particle"] if the deck has the section
         Particle."""
-        return [name for name in self.bodies if self._kind(name).get("shape") != "cylinder"]
+        return [name for name in self.bodies if self.kind(name).get("shape") != "cylinder"]
 
-    def _kind(self, name):
+    def kind(self, name):
         """Returns the section of the deck that describes a body: `cell` for `cell 3`."""
         if not self.several:
             return self.deck.get("Particle", {})
@@ -210,8 +210,10 @@ class Run:
         return f"time · {name}" if name else f"time{self.in_units('time') or ', in the unit of the deck'}"
 
     def moment(self, time, form="g"):
-        """Returns "t = 0.5", or "point 5" on a branch, for titles of figures. `form`: format of the time."""
-        return f"point {time:.0f}" if "Continuation" in self.deck else f"t = {time:{form}}"
+        """Returns "t = 0.5", with the unit if the deck has units, or "point 5" on a branch, for titles of figures.
+        `form`: format of the time."""
+        unit = self.in_units("time").replace(",", "")
+        return f"point {time:.0f}" if "Continuation" in self.deck else f"t = {time:{form}}{unit}"
 
     @property
     def radius(self):
