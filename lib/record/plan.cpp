@@ -11,6 +11,7 @@
 #include "record/plan_particles.hpp"
 #include "scene/member.hpp"
 #include "scene/particles/gaps.hpp"
+#include "scene/particles/warnings.hpp"
 #include "scene/solids.hpp"
 #include "scene/tube.hpp"
 #include "stokes/layer_surface.hpp"
@@ -285,7 +286,9 @@ output::Entries<std::string> plan(const Scene& scene, int ranks) {
   arrange(all);
   const std::unique_ptr<Body> stacked = make_stacked_body(all);
   if (stacked && scene.tube.present) stacked->wall = make_wall(scene, *stacked);
-  return plan(scene, stacked ? *stacked : *all.front().body, ranks);
+  Lines lines = plan(scene, stacked ? *stacked : *all.front().body, ranks);
+  for (const Warning& warning : first_warnings(scene)) lines.emplace_back("warning", warning.sentence);
+  return lines;
 }
 
 std::string plan_text(const output::Entries<std::string>& plan) {
