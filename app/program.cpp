@@ -228,12 +228,13 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
     return Exit::done;
   }
   coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
-  for (const auto& sentences : {check_expectations(scene), scene.idle_keys})
+  for (const auto& sentences : {check_expectations(scene), scene.idle_keys, std::vector{coupling::crowding()}})
     for (const std::string& sentence : sentences)
-      if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
+      if (speaks && !sentence.empty()) std::cerr << "tanktread: warning: " << sentence << std::endl;
   accuracy::check_series(scene.accuracy.requests, names_of_series(scene));
 
   if (arguments.check) {
+    check_room(scene);
     output::Entries<std::string> lines = plan(scene, coupling::Ranks().size());
     if (!arguments.quiet) std::ranges::move(evaluation_cost(scene), std::back_inserter(lines));
     print(speaks, deck.effective() + "\n" + plan_text(lines));

@@ -261,7 +261,10 @@ class Run : AnyRun {
   void end_at_wall(const std::string& list, double contact_gap) {
     const double gap = row_.value("gap"), least = contact_gap * scene_.least_radius();
     if (gap >= least) return;
-    fail(formatted("a particle touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap, list.c_str(), contact_gap, least));
+    const auto* const system = particles_->capsule();
+    const std::span<const coupling::Particle> particles = system ? system->particles() : std::span<const coupling::Particle>();
+    fail(nearest_to_wall(scene_, particles_->body(), particles, state_.x) +
+         formatted(" touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap, list.c_str(), contact_gap, least));
   }
 
   /// Throws RunFailure if two particles are so close that they count as touching.

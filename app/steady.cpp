@@ -229,6 +229,7 @@ class SteadySearch : public SteadyRun {
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     write(found.converged);
+    if (!found.converged && !found.why.empty()) throw RunFailure("the steady shape was not found, because " + found.why);
     if (!found.converged)
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g; another Steady/step or Steady/method "
                                  "`%s` may help", found.iterations, found.rest,

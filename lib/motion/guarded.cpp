@@ -20,7 +20,7 @@ bool GuardedDynamics::done(bool stop, const std::function<bool()>& act) {
   int mine = stop ? stop_requested : fine;
   std::string reason;
   try {
-    if (!act()) mine = failed, reason = "it is not a number";
+    if (!act()) mine = failed, reason = motion_.why_undefined();
   } catch (const std::bad_alloc&) {
     mine = exhausted, reason = "there is not enough memory";
   } catch (const std::exception& error) {

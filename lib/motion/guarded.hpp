@@ -24,6 +24,7 @@ class GuardedDynamics : public coupling::Dynamics {
   void set_time(double time, double start) override { motion_.set_time(time, start); }
   double next_kink(double time) const override { return motion_.next_kink(time); }
   Net velocity(const Net& x) override;
+  std::string why_undefined() const override { return motion_.why_undefined(); }
   void freeze(const Net& x) override;
   bool lattice_moves() const override { return motion_.lattice_moves(); }
   double frozen_bytes() const override { return motion_.frozen_bytes(); }

@@ -147,6 +147,7 @@ coupling::Particle particle(const Member& member) {
   const ParticleScene& particle_scene = member.scene;
   const Body& body = *member.body;
   coupling::Particle particle;
+  particle.path = particle_scene.path();
   particle.space = &body.space;
   particle.viscosity_ratio = particle_scene.particle.viscosity_ratio;
   particle.material = material(particle_scene, body);

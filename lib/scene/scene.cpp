@@ -83,6 +83,7 @@ std::vector<ParticleKind> declare_particles(deck::Section& root, ParticleKind& o
     for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
       refuse(root.given(list), std::string(list), "Particles", unread::one_and_several);
   } else {
+    only.implied = !root.given("Particle") && !root.given("Membrane");
     root.section("Particle", only.particle, "resting shape, initial shape and motion of the particle");
     only.declare_sections(root, registry);
   }

@@ -38,6 +38,7 @@ class Capsule : public Dynamics {
   std::shared_ptr<Evaluation> evaluate_on_demand(const Net& x, const Net& velocity, double distance);
 
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
+  std::string why_undefined() const override { return solver_.crossing().empty() ? Dynamics::why_undefined() : solver_.crossing(); }
   void set_time(double time, double start) override;
   double next_kink(double time) const override { return flow().next_kink(time); }
   void freeze(const Net& x) override;

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "motion/integrator.hpp"
@@ -58,6 +59,9 @@ class ParticleSystem {
   /// Moves the centroid back if it is held, then adapts meshes after a step; returns true if this has changed the mesh of body().
   virtual bool adapt(motion::State& state, RunTotals& totals) = 0;
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
+  /// Returns a sentence about the membrane that is compressed most at the state x although its resistance to bending is too small for its mesh, and
+  /// what to do about it in a search for a steady shape; empty if there is none.
+  virtual std::string slackness(const Net& /*x*/) const { return {}; }
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::OperationCounts counts() const = 0;
   /// Returns the phase angle of each particle when the series were last computed.
@@ -75,6 +79,9 @@ class ParticleSystem {
 
 /// Builds the system for the particles of the scene: a coupled system, or a free rigid body.
 std::unique_ptr<ParticleSystem> make_particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+
+/// Throws UserError if particles overlap walls, posts or each other at their start, or are closer than a run allows.
+void check_room(const Scene& scene);
 
 /// Builds the particles of the scene at their start, and discards them. Throws UserError if they cannot start there. Collective.
 void check_start(const Scene& scene);

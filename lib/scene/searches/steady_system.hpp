@@ -29,7 +29,8 @@ struct SteadySystem {
     motion.emplace(particles->dynamics(), is_to_stop);
     motion->set_time(0, 0);
     const Body& body = particles->body();
-    equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particles->capsule()->particles()), steady_step(scene), x);
+    equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particles->capsule()->particles()), steady_step(scene), x,
+                      [this](const Net& y) { return particles->slackness(y); });
   }
 
   /// Returns the mesh, for move_to().

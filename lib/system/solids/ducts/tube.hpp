@@ -195,8 +195,8 @@ class Tube {
   bool fixed() const { return properties().fixed; }
   surface::DuctProperties properties() const { return surface::properties(wall().kind); }
 
-  /// Returns whether the points `rows` of x are inside the duct; in a channel, also between its ends.
-  bool inside(const Net& x, std::span<const int> rows) const;
+  /// Returns the first of the points `rows` of x that is not inside the duct or, in a channel, not between its ends; -1 if there is none.
+  Eigen::Index first_outside(const Net& x, std::span<const int> rows) const;
 
   const surface::TubeWall& wall() const;
   const stokes::DuctFlow& flow() const { return *flow_; }

@@ -36,7 +36,7 @@ PlatesAndPosts::PlatesAndPosts(const std::vector<Solid>& solids, const Parameter
   for (const Solid& one : solids) {
     velocities_.middleRows(first_.back(), one.surface.n_points()).rowwise() = one.velocity.transpose();
     first_.push_back(first_.back() + one.surface.n_points());
-    if (one.outside) outside_.push_back(one.outside);
+    if (one.outside) outside_.emplace_back(one.outside, one.name);
   }
   areas_ = moments([](const Vec3&) { return 1.; });
   flux_ = surface_.open_from_periodic.transpose() * surface::Geometry(surface_.space).volume_gradient(surface_.net);
@@ -107,11 +107,11 @@ bool PlatesAndPosts::reaches(const Net& at) const {
   return low[2] >= reached_[0][2] - slack && high[2] <= reached_[1][2] + slack;
 }
 
-bool PlatesAndPosts::outside(const Net& at) const {
-  for (const auto& outside : outside_)
-    for (const auto row : at.rowwise())
-      if (!outside(row.transpose())) return false;
-  return true;
+PlatesAndPosts::Crossing PlatesAndPosts::crossing(const Net& at) const {
+  for (const auto& [outside, name] : outside_)
+    for (Eigen::Index i = 0; i < at.rows(); ++i)
+      if (!outside(at.row(i).transpose())) return {i, name};
+  return {};
 }
 
 /// Returns the rows of the single-layer matrix for control values of f (2.46) at `sites`, three rows per site.
