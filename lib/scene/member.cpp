@@ -9,6 +9,7 @@
 #include "scene/exact_body.hpp"
 #include "scene/particles/drift.hpp"
 #include "scene/tube.hpp"
+#include "system/parallel/stop_together.hpp"
 
 namespace tanktread {
 
@@ -70,6 +71,7 @@ std::vector<Member> make_members(const Scene& scene) {
   std::vector<Member> all;
   std::vector<ParticleScene> scenes = scene.particle_scenes();
   for (ParticleScene& one : scenes) {
+    coupling::stop_together();
     const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
     Body body = scenes.size() == 1
                     ? make_body(one)

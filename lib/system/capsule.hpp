@@ -65,6 +65,10 @@ class Capsule : public Dynamics {
   /// Returns the change of the velocity at the shape of `at` due to additional forces with the virtual work `work`. Linear in `work`.
   Net response(Evaluation& at, const Net& work);
 
+  /// Discards the evaluation and the shape of the walls that are kept for the next call. A run discards them after each checkpoint, because a
+  /// checkpoint does not contain them.
+  void forget();
+
   /// Returns whether the shape evaluated last is within `distance` of x (in `norm`), apart from a translation along a straight tube that
   /// changes no load.
   bool evaluated_about(const Net& x, double distance) const;
@@ -104,7 +108,7 @@ class Capsule : public Dynamics {
   VelocitySolver solver_;
   FrozenLayers frozen_;                 // set by freeze()
   CapsuleJacobian jacobian_;            // set by linearise()
-  std::shared_ptr<Evaluation> latest_;  // set by evaluate(); reset by set_time() and set_forces() if they change something
+  std::shared_ptr<Evaluation> latest_;  // set by evaluate(); reset by forget(), and by set_time() and set_forces() if they change something
 };
 
 }  // namespace tanktread::coupling

@@ -62,7 +62,6 @@ class CoupledParticles : public ParticleSystem {
     const bool another_mesh = restore_mesh(resumed.checkpoint, resumed.state.x);
     require_fit(resumed.totals.phase_angle.size() == members_.size());
     motion::refreeze(dynamics(), resumed.state, resumed.state.time);
-    capsule_->counts() = resumed.totals.counts;
     for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle[p];
     set_contacts(resumed.totals.contacts);
     return another_mesh;
@@ -177,6 +176,8 @@ class CoupledParticles : public ParticleSystem {
 
   std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
   coupling::OperationCounts counts() const override { return capsule_->counts(); }
+  void set_counts(const coupling::OperationCounts& counts) override { capsule_->counts() = counts; }
+  void forget() override { capsule_->forget(); }
 
   std::vector<PhaseAngle> phase_angle() const override {
     std::vector<PhaseAngle> all;

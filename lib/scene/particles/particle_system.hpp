@@ -64,6 +64,9 @@ class ParticleSystem {
   virtual std::string slackness(const Net& /*x*/) const { return {}; }
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::OperationCounts counts() const = 0;
+  virtual void set_counts(const coupling::OperationCounts& counts) = 0;  ///< sets the counts of the operations so far
+  /// Discards what evaluations keep for later ones and checkpoints do not contain, so that a resumed run makes the same evaluations.
+  virtual void forget() {}
   /// Returns the phase angle of each particle when the series were last computed.
   virtual std::vector<PhaseAngle> phase_angle() const = 0;
   /// Returns the number of kernel evaluations on this rank, without the evaluations that SharedOptions::walls counts.
@@ -72,8 +75,7 @@ class ParticleSystem {
   /// `progress`, with the time and the work of the run. To be called once per row, in the order of times.
   virtual Columns next_row(const motion::State& state, const ProgressRow& progress) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
-  /// Returns the surface and the fields of a snapshot. At the state of the last row, it must neither solve systems nor evaluate kernels: a run does
-  /// not collect the counts of operations again before it stores them in the checkpoint.
+  /// Returns the surface and the fields of a snapshot.
   virtual SurfaceSnapshot snapshot(const motion::State& state) = 0;
 };
 

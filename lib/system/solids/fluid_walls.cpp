@@ -12,6 +12,11 @@ void FluidWalls::set_shape(const Net& x, const Targets& targets, std::optional<d
   if (solids) solids->set_shape(x, targets.values() * x, targets.own());
 }
 
+void FluidWalls::forget() const {
+  if (tube) tube->forget();
+  if (solids) solids->forget();
+}
+
 FluidWalls::Crossing FluidWalls::crossing(const Net& at, const Layout& layout) const {
   if (tube) return {tube->first_outside(at, layout.points()), "the wall of the duct"};
   return solids ? solids->scene().solids->crossing(at) : Crossing();

@@ -103,6 +103,7 @@ class Tube {
   /// latest call. `origin`: x1 coordinate of the origin of the frame of wall() if the wall is straight; by default the x1 coordinate of the
   /// particle's centroid. In a periodic channel, by default the x1 coordinate of the period that contains the particles.
   void set_shape(const Net& x, std::optional<double> origin = {});
+  void forget() { latest_shape_ = {}; }  ///< requires set_shape() before the next response, also if the shape does not change
 
   /// Returns the lattice of a periodic duct; not set for other ducts.
   const std::optional<stokes::PeriodicCell>& cell() const;
