@@ -12,10 +12,8 @@ SHAPE is one of
 Points are fitted by spherical harmonics up to `--degree`, by least squares, about the centre of the sphere that fits them best. Every ray from that
 centre may meet the surface once only. Prints how far the points lie from the fit, and the fit from the surface that is written."""
 import argparse
-import csv
 import math
 import pathlib
-import re
 import sys
 import tempfile
 
@@ -25,6 +23,8 @@ from scipy.special import lpmv
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "postproc"))
 import tanktread
+from tanktread import tables
+from tanktread.mistakes import answer
 
 SPHERE = """Tanktread:
   Flow: {type: quiescent}
@@ -108,13 +108,10 @@ def main():
     if words.shape.suffix == ".stl":
         coefficients, center = fitted(corners_of_stl(words.shape), words.degree)
     else:
-        rows = [row for row in csv.reader(words.shape.open()) if row and re.match(r"[-+.\d]", row[0].strip())]
-        with open(words.shape) as file:
-            named = file.readline().startswith("l,m")
-        if named:
-            coefficients = {(int(l), int(m)): float(value) for l, m, value in rows}
+        if {"l", "m"} <= set(tables.read(words.shape).columns):
+            coefficients = {(int(l), int(m)): value for l, m, value in tables.read(words.shape, ("l", "m", "value")).values}
         else:
-            coefficients, center = fitted(numpy.array(rows, float), words.degree)
+            coefficients, center = fitted(tables.read(words.shape, ("x1", "x2", "x3")).values, words.degree)
     lines, nodes, table = sphere(words.elements)
     direction = table @ nodes
     direction /= numpy.linalg.norm(direction, axis=1)[:, None]
@@ -129,4 +126,4 @@ def main():
     print(words.output)
 
 
-main()
+answer(main)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <random>
 
@@ -10,9 +11,10 @@
 #include "accuracy/outcome.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "motion/guarded.hpp"
+#include "base/stop.hpp"
 #include "record/files/file.hpp"
 #include "system/parallel/agreement.hpp"
+#include "system/parallel/ranks.hpp"
 
 namespace tanktread::accuracy {
 
@@ -62,9 +64,15 @@ std::vector<std::string> forecast(const LadderRequest& task, const Program& prog
     const fs::path place = directory.path / output::level_folder(std::to_string(k));
     std::string text;
     const auto fail = [&](const std::string& why) { failure = formatted("level %d failed: ", k) + why; };
+    if (coupling::Ranks().rank() == 0 && !task.quiet) {
+      const double seconds = outcomes.empty() ? 0 : predicted_seconds({outcomes[0].seconds});
+      const std::string about = seconds > 0 ? formatted(", about %.2g s", seconds) : "";
+      std::printf("  accuracy    pilot run of level %d: %d elements per side%s\n", k, elements_per_side(k), about.c_str());
+      std::fflush(stdout);
+    }
     try {  // climb() continues after the same failures
       text = program.deck(settings(task.values, level));
-      if (program.run(text, place, false, task.options.wall_clock_limit) == Exit::stopped) throw motion::Stopped();
+      if (program.run(text, place, false, task.options.wall_clock_limit) == Exit::stopped) throw Stopped();
     } catch (const RunFailure& error) {
       const std::string what = error.what();
       fail(what.substr(0, what.find("; the checkpoint")));  // the checkpoint is deleted with the directory

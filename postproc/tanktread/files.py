@@ -4,10 +4,8 @@ import contextlib
 import difflib
 import functools
 import pathlib
-import warnings
 
 import h5py
-import numpy
 import yaml
 
 from .mistakes import Mistake, expect
@@ -67,21 +65,3 @@ def arrays_of(path):
     """Returns {name: array} of the datasets of an HDF5 file, such as duct.h5 of a tube and channel.h5 of a channel."""
     with opened(path) as file:
         return {name: data[()] for name, data in file.items()}
-
-
-def table(path, names=(), columns=2, delimiter=","):
-    """Returns the columns of a CSV file. With `names`: a structured array with these columns. Without: all rows as an
-    array (n, k), where k is at least `columns`; a header row is skipped. Raises Mistake if this is not possible."""
-    expect(pathlib.Path(path).is_file(), f"there is no file {path}")
-    found = numpy.zeros(0)
-    with warnings.catch_warnings(), contextlib.suppress(OSError, ValueError, IndexError):
-        warnings.simplefilter("ignore")
-        found = numpy.genfromtxt(path, delimiter=delimiter, names=True if names else None)
-    if names:
-        expect(found.size > 1 and set(names) <= set(found.dtype.names or ()),
-               f"{path} is no table with the columns {', '.join(names)}, separated by commas")
-        return found
-    found = found[1:] if found.ndim == 2 and not numpy.isfinite(found[0]).any() else found
-    expect(found.ndim == 2 and len(found) and found.shape[1] >= columns and numpy.isfinite(found[:, :columns]).all(),
-           f"{path} is no table of {columns} columns of numbers, separated by commas")
-    return found

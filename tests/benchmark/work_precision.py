@@ -20,8 +20,8 @@ import operator
 import pathlib
 
 from package import answer, command_line, expect, footer, interpolation, numpy, plt, studies, style
+from tanktread import tables
 from tanktread.files import parsed as read
-from tanktread.files import table
 
 COSTS = {"seconds": "processor seconds", "kernels": "kernel evaluations"}
 # A completed run as a point of the figure. Points are compared by identity.
@@ -53,8 +53,7 @@ class Scene:
             return lambda outcome: abs(outcome.final[self.error["final"]] - self.error.get("value", 0.0))
         series = self.error["series"]
         if self.curves and "curve" in self.error:
-            curve = table(self.curves / self.error["curve"], ("t", series))
-            t, values = curve["t"], curve[series]
+            t, values = tables.read(self.curves / self.error["curve"], ("t", series), others=True).values.T
         else:
             reference = study.run(self.deck, self.base | self.error["reference"])
             expect(reference.done, f"the reference run failed: {reference.message}")

@@ -356,7 +356,7 @@ def impossible_figures_are_rejected_in_one_sentence():
     folder.write_text("")
     pathlib.Path("curve.csv").write_text("nothing\nof,a,table\n")
     for script, words, code, said in (("shape", ["-o", "not_a_folder/shape.png"], 2, "cannot be written"), ("shape", ["-o", "shape.doc"], 2, "ends in"),
-                                      ("animation", ["--width", "0"], 2, "--width must be"), ("convergence", ["--curve", "curve.csv"], 2, "no table"),
+                                      ("animation", ["--width", "0"], 2, "--width must be"), ("convergence", ["--curve", "curve.csv"], 2, "no row of numbers"),
                                       ("convergence", ["--curve", "none.csv"], 2, "no file none.csv"), ("plane-wall", [], 2, "no plane Wall"),
                                       ("suspension", [], 2, "no Domain"), ("branch", [], 2, "no Continuation")):
         heard = _command(script, name, *words, code=code)

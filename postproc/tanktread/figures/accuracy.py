@@ -8,7 +8,7 @@ import numpy
 import scipy.interpolate
 import scipy.optimize
 
-from ..files import table
+from .. import tables
 from ..interpolation import difference, mean
 from ..mistakes import expect, log
 from ..results import Run, time_label
@@ -110,9 +110,8 @@ def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None,
     curve: file of the reference curve (required)
     series: series that is compared, and name of its column in the file"""
     expect(curve, "give the reference: --curve FILE")
-    known = table(curve, ("t", series))
-    expect(numpy.isfinite(known["t"]).all() and ("NaN if" in runs[0].descriptions.get(series, "")
-                                                 or numpy.isfinite(known[series]).all()), f"{curve} has NaN")
+    rows = tables.read(curve, ("t", series), others=True, nan="NaN if" in runs[0].descriptions.get(series, ""))
+    known = dict(zip(rows.columns, rows.values.T))
     runs = sorted(runs, key=lambda run: run.series["n_control_points"][-1])
     families: dict = {}
     errors = []
@@ -169,7 +168,7 @@ def step(deck, axis, *, radii: tuple[float, float] = (0.1, 0.05), finer: list[st
            f"--radii needs two positive radii, the larger one first, but is given {large:g} and {small:g}")
     expect(begin < end, f"--between needs two centroids that ascend, but is given {begin:g} and {end:g}")
     settings_of(words + finer)
-    known = [table(path)[:, :2] for path in curves or []]
+    known = [tables.read(path, ("centroid_x1", "value")).values for path in curves or []]
     within = [curve[(curve[:, 0] > begin) & (curve[:, 0] < end)].T for curve in known]
     for path, rows in zip(curves or [], within):
         expect(rows.size, f"{path} has no row between {begin:g} and {end:g}")

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy
 import yaml
 
-from ..files import table
+from .. import tables
 from ..interpolation import difference
 from ..mistakes import expect, log
 from ..results import time_label
@@ -35,9 +35,8 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
     panels = dict(zip((deformation, "inclination"), axes))
     known: dict = {}
     for path in map(pathlib.Path, curves or []):
-        rows = table(path, ("t", "taylor_inertia"))
-        expect(numpy.isfinite([rows["t"], rows["taylor_inertia"]]).all(), f"{path} has NaN")
-        known[path.stem] = numpy.sort(rows, order="t")
+        rows = tables.read(path, ("t", "taylor_inertia", "inclination"), (2, 3), others=True)
+        known[path.stem] = dict(zip(rows.columns, rows.values[rows.values[:, 0].argsort(kind="stable")].T))
     for run, color in style.coloured(runs):
         if run.several:
             draw_particles(panels, run, deformation, style.RUNS if len(runs) == 1 else [color])
@@ -46,14 +45,14 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
         for label, curve in known.items():
             words = {"taylor_inertia": "in D"} | ({"inclination": "degrees"} if run in inclined else {})
             apart = [f"{difference(run.time, run.series[name], curve['t'], curve[name]):.2e} {unit}"
-                     for name, unit in words.items() if name in curve.dtype.names]
+                     for name, unit in words.items() if name in curve]
             log.info(f"{run.name}: largest difference from {label}: {', '.join(apart)}")
     for (label, curve), mark in zip(known.items(), style.MARKS * len(known)):
-        inside = curve[curve["t"] <= 1.001 * max(run.time[-1] for run in runs)]
+        inside = curve["t"] <= 1.001 * max(run.time[-1] for run in runs)
         for axis, name in zip(axes, ("taylor_inertia", "inclination")):
-            if name in curve.dtype.names:
-                axis.plot(inside["t"], inside[name], mark, ms=3.6, mfc="none", mec=style.FAINT, mew=0.8, zorder=2,
-                          markevery=max(1, len(inside) // 40), label=label)
+            if name in curve:
+                axis.plot(curve["t"][inside], curve[name][inside], mark, ms=3.6, mfc="none", mec=style.FAINT, mew=0.8,
+                          zorder=2, markevery=max(1, inside.sum() // 40), label=label)
     titles = [" and ".join(dict.fromkeys(str(run.value(key)) for run in runs if run.value(key)))
               for key in ("Membrane/law", "Flow/type")]
     if len(runs) == 1 and runs[0].value("Membrane/capillary number"):
