@@ -5,9 +5,9 @@
 
 namespace tanktread {
 
-/// Installs handlers of SIGTERM, SIGINT and SIGHUP, which are answered as stop requests (base/stop.hpp). The second signal of a kind ends the program immediately.
-/// Signals that are ignored, for example by nohup, stay ignored. Writing to a closed pipe or beyond a file size limit becomes an ordinary write
-/// error.
+/// Installs handlers of SIGTERM, SIGINT and SIGHUP, which then are stop requests (base/stop.hpp). The second signal of a kind ends the program
+/// immediately. Signals that are ignored, for example by nohup, stay ignored. Writing to a closed pipe or beyond a file size limit becomes an
+/// ordinary write error.
 void catch_signals();
 
 /// Returns whether this process has received a stop signal.

@@ -277,8 +277,8 @@ class BranchSearch : public SteadyRun {
   void search() override {
     pool_.begin_branch(first_);
     motion::Branch branch([this](double parameter, double second) { return equations_of(pool_.at({parameter, second}, state_.x)); },
-                          [this](double parameter, std::vector<Net>& shapes) { return adapt_at({parameter, first_[1]}, shapes); }, scene_.continuation,
-                          scene_.steady, scene_.solvers, first_[0], first_[1], state_.x);
+                          [this](double parameter, std::vector<Net>& shapes) { return adapt_at({parameter, first_[1]}, shapes); },
+                          scene_.continuation, scene_.steady, scene_.solvers, first_[0], first_[1], state_.x);
     branch.search([&](Net& x, const motion::SteadyReport& failed) { return approach(state_.x, x, failed); });
     for (int k = 0; const auto point = branch.next(); ++k) {
       coupling::stop_together();

@@ -49,6 +49,14 @@ int needed(const RequestResult& answer, const std::vector<Outcome>& pilots, int 
   return level;
 }
 
+/// Prints on the first rank that the pilot run of a level begins. `before`: outcomes of the pilot runs before it.
+void announce(int level, const std::vector<Outcome>& before) {
+  if (coupling::Ranks().rank() != 0) return;
+  const std::string about = before.empty() ? "" : formatted(", about %.2g s", predicted_seconds({before[0].seconds}));
+  std::printf("  accuracy    pilot run of level %d, with %d elements per side%s\n", level, elements_per_side(level), about.c_str());
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 std::vector<std::string> forecast(const LadderRequest& task, const Program& program) {
@@ -64,12 +72,7 @@ std::vector<std::string> forecast(const LadderRequest& task, const Program& prog
     const fs::path place = directory.path / output::level_folder(std::to_string(k));
     std::string text;
     const auto fail = [&](const std::string& why) { failure = formatted("level %d failed: ", k) + why; };
-    if (coupling::Ranks().rank() == 0 && !task.quiet) {
-      const double seconds = outcomes.empty() ? 0 : predicted_seconds({outcomes[0].seconds});
-      const std::string about = seconds > 0 ? formatted(", about %.2g s", seconds) : "";
-      std::printf("  accuracy    pilot run of level %d: %d elements per side%s\n", k, elements_per_side(k), about.c_str());
-      std::fflush(stdout);
-    }
+    if (!task.quiet) announce(k, outcomes);
     try {  // climb() continues after the same failures
       text = program.deck(settings(task.values, level));
       if (program.run(text, place, false, task.options.wall_clock_limit) == Exit::stopped) throw Stopped();

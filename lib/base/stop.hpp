@@ -16,8 +16,8 @@ void set_stop_request(std::function<bool()> requested);
 /// Returns whether this process is to stop and has not answered the request.
 bool stop_requested();
 
-/// Throws Stopped if this process is to stop. Loops that take long and make no collective calls call it between their blocks. On one of several ranks,
-/// does nothing except within the work of coupling::stop_together(), because the other ranks would wait for a rank that stops alone.
+/// Throws Stopped if this process is to stop. Loops that take long and make no collective calls call it between their blocks. On one of several
+/// ranks, does nothing except within the work of coupling::stop_together(), because the other ranks would wait for a rank that stops alone.
 void stop_here();
 
 /// Marks the request as answered and throws Stopped.

@@ -10,8 +10,8 @@ namespace tanktread::motion {
 
 /// Wraps another motion for the integrators. An evaluation at a trial shape may fail on some ranks, because a solver does not converge, the surface
 /// is folded or open, or values are not finite. The result is then NaN on all ranks, and every scheme shortens its step. If memory runs out, all
-/// ranks throw RunFailure. If a rank is to stop, all ranks throw Stopped at the next velocity evaluation. The decisions of a scheme depend on norms. Every rank uses the norms of the first rank, so that all decisions are equal.
-/// Collective, like the motion.
+/// ranks throw RunFailure. If a rank is to stop, all ranks throw Stopped at the next velocity evaluation. The decisions of a scheme depend on norms.
+/// Every rank uses the norms of the first rank, so that all decisions are equal. Collective, like the motion.
 class GuardedDynamics : public coupling::Dynamics {
  public:
   explicit GuardedDynamics(coupling::Dynamics& motion) : motion_(motion) {}

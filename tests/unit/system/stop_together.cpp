@@ -125,7 +125,7 @@ TEST_F(StopTogether, AFactorisationAndAnAssemblyStopBetweenTheirBlocks) {
   stokes::Rows<double> rows;
   polls = 0;
   set_stop_request([&] { return ++polls == 2; });
-  EXPECT_THROW(stop_together([&] { static_cast<stokes::Layer&>(layer).assemble(indices(space.n_points), rows); }), Stopped);  // more than sixteen rows
+  EXPECT_THROW(stop_together([&] { static_cast<stokes::Layer&>(layer).assemble(indices(space.n_points), rows); }), Stopped);
   EXPECT_EQ(polls, 2);
 }
 

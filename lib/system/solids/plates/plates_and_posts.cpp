@@ -137,15 +137,15 @@ void PlatesAndPosts::factor(stokes::Layer& on_itself) {
   if (plates_) {
     all.topLeftCorner(n, n) = plates_->uniform();
   } else {
-    stop_together([&] {
-      for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
-        const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
-        const Eigen::MatrixXd part = rows(on_itself, some);
-        for (std::size_t k = 0; k < some.size(); ++k)
-          all.block(3 * some[k], 0, 3, n) = part.middleRows<3>(3 * static_cast<Eigen::Index>(k));
-      }
+    all = ranks_.assembled<Eigen::MatrixXd>(n + m, n + m, [&](Eigen::MatrixXd& a) {
+      stop_together([&] {
+        for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
+          const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
+          const Eigen::MatrixXd part = rows(on_itself, some);
+          for (std::size_t k = 0; k < some.size(); ++k) a.block(3 * some[k], 0, 3, n) = part.middleRows<3>(3 * static_cast<Eigen::Index>(k));
+        }
+      });
     });
-    ranks_.add(std::span<double>(all.data(), static_cast<std::size_t>(all.size())));
     for (std::size_t s = 0; s + 1 < first_.size(); ++s) {
       const Eigen::Index first = 3 * first_[s], length = 3 * first_[s + 1] - first;
       const Eigen::Map<const Eigen::VectorXd> w(normals_.data() + first, length), b(flux_.data() + first, length);
