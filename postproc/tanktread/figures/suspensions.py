@@ -162,8 +162,8 @@ def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
     blocks: number of blocks for the standard errors"""
     for run, color in style.coloured(runs):
         expect("Domain" in run.deck, f"{run.directory} is no suspension: its deck has no Domain")
-        expect(SYMBOLS.keys() <= run.series.keys(), f"{run.directory} has no effective viscosity, because of its walls, "
-               "posts, or flow without shear; its pressure drop or mean velocity is a series")
+        expect(SYMBOLS.keys() <= run.series.keys(), f"{run.directory} has no effective viscosity, because of walls or posts; "
+               "their series are mean_velocity_x1, wall_force_x1 and post_force_x1")
         strain, words, label = run.time, [], f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
         for (name, symbol), axis, line in zip(SYMBOLS.items(), (upper, lower, lower), ("-", "-", "--")):
             axis.plot(strain, run.series[name], color=color, linestyle=line,
