@@ -67,7 +67,7 @@ def shapes(run, field):
 
         posts = [quads(shot.posts.sampled(shot.posts.points, 6))] if shot.posts else []
         walls = numpy.concatenate([shot.walls, *posts])
-        facing = numpy.cross(walls[:, 0, 1] - walls[:, 0, 0], walls[:, 1, 0] - walls[:, 0, 0])
+        facing = numpy.cross(walls[:, 1, 1] - walls[:, 0, 0], walls[:, 1, 0] - walls[:, 0, 1])
         facing = numpy.repeat(facing / numpy.linalg.norm(facing, axis=1)[:, None].clip(1e-300), 4, axis=0)
         lines = numpy.concatenate([shot.edges, *(numpy.stack([rim[:-1], rim[1:]], axis=1) for rim in shot.rims)])
         normals = shot.sampled(shot.fields["Normals"], k)

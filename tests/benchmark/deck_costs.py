@@ -7,7 +7,8 @@
 
 The cost of a deck is stated in words in its line `# Cost:` and in the last column of the table of inputs/README.md. Use
 a machine without other load, whose cores are then fastest. Words are wrong (*) if the measured time is outside of their
-range by a factor of more than 1.5. A deck that reaches the limit keeps its words.
+range by a factor of more than 1.5. A deck that reaches the limit keeps its words. tests/style/form.py checks that deck
+and table state the same.
 """
 
 import re
@@ -33,19 +34,17 @@ def main():
 
 
 def row(name, outcome, write):
-    """Returns the row of the printed table for a deck. Corrects the words that are wrong if `write`."""
+    """Returns the row of the printed table for a deck. If `write`, corrects words that are wrong or differ."""
     if not outcome.done:
         return [name, outcome.message, "", "", ""]
-    seconds, stated = outcome.processor_seconds, []
+    seconds = outcome.processor_seconds
     words = next(words for words, most in WORDS.items() if seconds <= most)
-    for path, pattern in ((INPUTS / name, r"(?m)^(# Cost: )([^\n]*?)( on one core)"),
-                          (README, rf"(?m)^(\| \[{re.escape(name)}\].*\| )([^|]+)( \|)$")):
-        text = path.read_text()
-        found = re.search(pattern, text)[2]
-        stated.append(found + " *" * wrong(found, seconds))
-        if write and wrong(found, seconds):
-            path.write_text(re.sub(pattern, rf"\g<1>{words}\g<3>", text))
-    return [name, seconds, words, *stated]
+    places = {INPUTS / name: r"(?m)^(# Cost: )([^\n]*?)( on one core\.)",
+              README: rf"(?m)^(\| \[{re.escape(name)}\].*\| )([^|]+)( \|)$"}
+    stated = [re.search(pattern, path.read_text())[2] for path, pattern in places.items()]
+    for path, pattern in places.items() if write and (wrong(stated[0], seconds) or stated[0] != stated[1]) else ():
+        path.write_text(re.sub(pattern, rf"\g<1>{words}\g<3>", path.read_text()))
+    return [name, seconds, words, *(one + " *" * wrong(one, seconds) for one in stated)]
 
 
 def wrong(words, seconds):

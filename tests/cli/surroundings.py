@@ -159,6 +159,7 @@ def a_tube_with_several_particles_and_units_is_drawn_at_several_times():
     check(sum(line.get_marker() == "o" for line in figures.duct("tube").axes[0].lines) == 3, "paths across the duct")
     film = figures.animation("tube", frame=0.4)
     check("t = 0.4 ms" in film.axes[0].get_title(loc="left"), film.axes[0].get_title(loc="left"))
+    check([text.get_text() for text in film.axes[2].get_legend().get_texts()] == ["soft", "drop"], "the particles of the curves of D")
 
 
 def every_figure_draws_each_scene_or_says_why_it_cannot():

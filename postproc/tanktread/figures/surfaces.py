@@ -125,9 +125,9 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
     """The moving particle, as a GIF: its surface with the elements, coloured by a field, and two series over time.
 
     The series are D (the Taylor parameter) and the number of control points. For a rigid particle they are inclination
-    and angular velocity. For several particles they are D of each deformable particle and the smallest gap. Each
-    snapshot is one frame: `Output/interval` sets the number of frames. In Python, the attribute `film` of the figure is
-    the FuncAnimation of matplotlib.
+    (for a sphere velocity) and angular velocity. For several particles they are D of each deformable particle, or the
+    angular velocities of rigid ones, and the smallest gap. Each snapshot is one frame: `Output/interval` sets the
+    number of frames. In Python, the attribute `film` of the figure is the FuncAnimation of matplotlib.
 
     field: field that colours the surface
     view: azimuth and elevation of the observer, in degrees (default: above the plane of the flow, -85 18 for x1 x3)
@@ -186,20 +186,28 @@ def draw_series(panels, run):
     if run.several:
         last = {"smallest gap" + run.in_units("length"): ["smallest_gap"]} if "smallest_gap" in run.series else {
             "control points": [f"{name}/n_control_points" for name in run.particles]}
-        shown = ({"D": deforming} if deforming else {}) | last
+        turning = {"ω₂" + run.in_units("1/time"): [f"{name}/angular_velocity_x2" for name in run.particles]}
+        shown = ({"D": deforming} if deforming else turning) | last
     elif "taylor_inertia" in run.series:
         shown = {"D": ["taylor_inertia"], "control points": ["n_control_points"]}
     else:
-        shown = {"incl., °": ["inclination"], "ω₂" + run.in_units("1/time"): ["angular_velocity_x2"]}
+        # the inclination of a sphere is undefined
+        turned = len(run.defined("inclination")[1]) > 0
+        first = ("incl., °", "inclination") if turned else ("v₁" + run.in_units("length/time"), "velocity_x1")
+        shown = {first[0]: [first[1]], "ω₂" + run.in_units("1/time"): ["angular_velocity_x2"]}
     marks = {}
     for axis, (label, names), color in zip(panels, shown.items(), style.RUNS):
         width, size = (1.8, 4.5) if len(names) < 9 else (0.6, 1.5)
-        for name in names:
+        each = 1 < len(names) <= len(style.RUNS)  # of a few particles, each has its colour
+        for name, own in zip(names, style.RUNS if each else [color] * len(names)):
             drawn = run.time, run.series[name]
-            axis.plot(*unbroken(*drawn) if name == "inclination" else drawn, color=color, linewidth=width,
-                      drawstyle="steps-post" if name.endswith("n_control_points") else "default")
+            axis.plot(*unbroken(*drawn) if name == "inclination" else drawn, color=own, linewidth=width,
+                      drawstyle="steps-post" if name.endswith("n_control_points") else "default",
+                      label=name.split("/")[0])
             marks[name], = axis.plot([], [], "o", color=style.INK, markersize=size, clip_on=False)
         axis.set_ylabel(label)
+        if each:
+            axis.legend(loc="center left", bbox_to_anchor=(1, 0.5), fontsize=7)
         values = numpy.concatenate([run.defined(name)[1] for name in names])
         if len(values) and values.min() >= 0:
             axis.set_ylim(0, 1.1 * max(values.max(), 1e-6))

@@ -41,8 +41,9 @@ def encounter(runs, path, gap, deformation, *, pair: tuple[str, str] | None = No
         pairs = numpy.column_stack([run.series["first_of_gap"], run.series["second_of_gap"]])
         others = pairs != sorted(1 + run.particles.index(name) for name in names)
         smallest[others.any(axis=1)] = numpy.nan
+        why = ": choose another --pair" if len(run.particles) > 2 else ", but that of a periodic image"
         expect(not numpy.isnan(smallest).all(),
-               f"{run.directory}: the smallest gap is never that of {' and '.join(names)}: choose another --pair")
+               f"{run.directory}: the smallest gap is never that of {' and '.join(names)}{why}")
         gap.plot(dx, smallest, color=color)
         for name, line in zip(names, ("-", style.DASHES)):
             if f"{name}/taylor_inertia" in run.series:  # it is not rigid
@@ -164,8 +165,8 @@ def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
     blocks: number of blocks for the standard errors"""
     for run, color in style.coloured(runs):
         expect("Domain" in run.deck, f"{run.directory} is no suspension: its deck has no Domain")
-        expect(SYMBOLS.keys() <= run.series.keys(), f"{run.directory} has no effective viscosity, because of its walls, "
-               "posts, or flow without shear; its pressure drop or mean velocity is a series")
+        expect(SYMBOLS.keys() <= run.series.keys(), f"{run.directory} has no effective viscosity, because it has walls "
+               "or posts: see its series mean_velocity_x1, wall_force_x1, post_force_x1, disturbed_pressure_drop")
         strain, words, label = run.time, [], f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
         for (name, symbol), axis, line in zip(SYMBOLS.items(), (upper, lower, lower), ("-", "-", "--")):
             axis.plot(strain, run.series[name], color=color, linestyle=line,

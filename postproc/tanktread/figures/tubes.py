@@ -261,8 +261,9 @@ def in_period(run, c, way):
     successive periods."""
     if run.cell(0) is None:
         return way
-    periods = (way - c["s"][0]) // (c["s"][-1] - c["s"][0])
-    return numpy.where(numpy.diff(periods, prepend=periods[0]) == 0, way - periods * (c["s"][-1] - c["s"][0]), numpy.nan)
+    period = c["s"][-1] - c["s"][0]
+    number = (way - c["s"][0]) // period
+    return numpy.where(numpy.diff(number, prepend=number[0]) == 0, way - number * period, numpy.nan)
 
 
 def cut_open(axis, run, c, ways, n, across):
