@@ -6,6 +6,7 @@
 
 #include "record/files/checkpoint.hpp"
 #include "record/files/file.hpp"
+#include "surface/walls/outline.hpp"
 
 namespace tanktread {
 
@@ -42,7 +43,7 @@ std::string own_name(const std::string& file) { return std::filesystem::path(fil
 /// Finds the files (shapes, positions of copies) that the deck names in the section of a particle, and reads the shape.
 void find_shapes(ParticleKind& kind, const DeckPlaces& at, Scene& scene) {
   surface::ParticleShape& shape = kind.particle.shape;
-  if (kind.copies.file) find_and_keep(*kind.copies.file, kind.name + ".csv", at, scene);
+  if (kind.copies.file) find_and_keep(kind.copies.file->path, kind.name + ".csv", at, scene);
   if (shape.file) find_and_keep(*shape.file, start_of_names(kind) + ".iga", at, scene);
   if (auto& file = kind.membrane.stress_free_file) find_and_keep(*file, start_of_names(kind) + "_stress_free.iga", at, scene);
   shape.read();
@@ -54,10 +55,14 @@ void find_shapes(ParticleKind& kind, const DeckPlaces& at, Scene& scene) {
 
 void prepare(deck::Document& deck, const DeckPlaces& places, Scene& scene) {
   deck.declare(scene);
-  if (auto& outline = scene.tube.outline) find_and_keep(*outline, own_name(*outline), places, scene);
-  if (auto& channel = scene.tube.channel; channel && channel->points) find_and_keep(*channel->points, own_name(*channel->points), places, scene);
+  if (auto& outline = scene.tube.outline) find_and_keep(outline->path, own_name(outline->path), places, scene);
+  if (auto& channel = scene.tube.channel; channel && channel->points) find_and_keep(channel->points->path, own_name(channel->points->path), places, scene);
+  if (scene.tube.present && scene.flow.flow_rate) {
+    scene.tube.check();
+    scene.flow.complete(surface::outline(scene.tube).area());
+  }
   if (auto& history = scene.flow.history; history && history->file) {
-    find_and_keep(*history->file, "flow_history.csv", places, scene);
+    find_and_keep(history->file->path, "flow_history.csv", places, scene);
     history->read();
   }
   for (ParticleKind& kind : scene.particles) find_shapes(kind, places, scene);

@@ -14,6 +14,7 @@
 
 #include "base/types.hpp"
 #include "deck/forward.hpp"
+#include "deck/table.hpp"
 
 namespace tanktread::deck {
 
@@ -83,11 +84,17 @@ class Section {
 
   void key(std::string_view name, bool& field, std::string_view meaning);
 
+  /// Declares a key whose value is the path of a table.
+  void key(std::string_view name, std::optional<TableFile>& field, std::string_view meaning);
+
   /// States that the keys `names`, which are declared before, have no effect `because` of another choice ("with Time/scheme `bs3`"). A key to which
   /// the deck gives another value than the default is then listed by idle_keys().
   void without_effect(const std::vector<std::string>& names, const std::string& because);
   void without_effect_except(const std::string& name, const std::string& because);  ///< without_effect() for all declared keys but `name`
   std::vector<std::string> idle_keys() const;  ///< one sentence per key without effect that the deck sets, also in inner sections
+
+  /// Returns one sentence per given value, also in inner sections, that is a thousand times smaller or larger than usual; none without units.
+  std::vector<std::string> unusual_values() const;
 
   /// Declares a section inside this one by calling `options(Section&)` if `options` is a function, and otherwise `options.declare(Section&)`.
   template <class Options>

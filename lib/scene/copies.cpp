@@ -11,7 +11,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "base/text_file.hpp"
+#include "deck/table.hpp"
 #include "scene/packing.hpp"
 #include "scene/scene.hpp"
 
@@ -31,21 +31,13 @@ Eigen::AngleAxisd rotation(const Vec3& degrees) {
   return angle > 0 ? Eigen::AngleAxisd(angle * std::numbers::pi / 180, degrees / angle) : Eigen::AngleAxisd(0, Vec3::UnitX());
 }
 
-std::vector<Copy> in_file(const std::string& file, const std::string& list) {
-  const std::string name = list + "/file \"" + file + "\"";
+std::vector<Copy> in_file(const deck::TableFile& file, const std::string& list) {
   std::vector<Copy> copies;
-  for (const CsvRow& row : csv_rows(text_of_file(file, name, 100'000'000), "x1")) {
-    const std::string where = name + formatted(", line %d: ", row.line);
-    if (row.fields.size() != 3 && row.fields.size() != 6)
-      throw UserError(
-          where +
-          "a row holds a centre x1,x2,x3, optionally followed by a rotation vector of three numbers in degrees, but this one holds " +
-          formatted("%zu %s.", row.fields.size(), row.fields.size() == 1 ? "entry" : "entries"));
-    Copy& copy = copies.emplace_back();
-    for (std::size_t c = 0; c < row.fields.size(); ++c)
-      (c < 3 ? copy.centre : copy.orientation)[static_cast<Eigen::Index>(c % 3)] = csv_number(row.fields[c], where);
+  const deck::TableForm form{{{"x1", "length"}, {"x2", "length"}, {"x3", "length"}, {"r1", "degree"}, {"r2", "degree"}, {"r3", "degree"}}, {3, 6}};
+  for (const deck::TableRow& row : deck::read_table(file, list + "/file \"" + file.path + "\"", form)) {
+    copies.push_back({Vec3(row.numbers.data())});
+    if (row.numbers.size() == 6) copies.back().orientation = Vec3(row.numbers.data() + 3);
   }
-  if (copies.empty()) throw UserError(name + " contains no row with a centre.");
   return copies;
 }
 
@@ -183,10 +175,10 @@ std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::P
 }  // namespace
 
 void CopiesOptions::declare(deck::Section& section) {
-  section.key("file", file, deck::Choice{},
+  section.key("file", file,
               "path of a file with the positions of the copies of the particle, one row per copy: the centre x1,x2,x3 in the deck's unit "
-              "of length, optionally followed by a rotation vector of three numbers in degrees, all separated by commas. The first row "
-              "may hold column names. A rotation turns the shape only: forces, torques and velocities of the copies keep their components "
+              "of length, in all rows or in none followed by a rotation vector r1,r2,r3 in degrees. A first line may name the columns, in any "
+              "order, and their units. A rotation turns the shape only: forces, torques and velocities of the copies keep their components "
               "along x1, x2, x3. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("lattice", lattice, deck::at_least(1), "1",
               "numbers of copies of the particle along x1, x2 and x3 on a rectangular lattice, which is centred at the particle's centre");

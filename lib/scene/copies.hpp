@@ -17,7 +17,7 @@ struct ParticleKind;
 /// is applied first, then the orientation of the copy. It turns the shape only: forces, torques and velocities keep their components along the axes
 /// of space.
 struct CopiesOptions {
-  std::optional<std::string> file;    ///< CSV file: per row a centre, and optionally a rotation vector in degrees
+  std::optional<deck::TableFile> file;  ///< table: per row a centre, and optionally a rotation vector in degrees
   std::optional<Vec3> lattice;        ///< number of copies along x1, x2, x3
   std::optional<Vec3> spacing;        ///< distances of neighbouring centres on the lattice
   std::optional<int> number;          ///< number of copies placed at random

@@ -45,75 +45,96 @@ Net net_of_file(const spline::Space& space, const std::string& name, const std::
   return surface.net;
 }
 
-UserError several_particles(const std::string& name) {
-  return UserError(key + "run: " + name + " is a run of several particles, but must be a run of one particle.");
-}
-
-/// Throws UserError if the scene cannot start from the surface of the run: the run has several particles, its mesh options differ from the scene's,
-/// or the mesh adapts and the resting shapes differ. Material properties may differ.
-void check_surface(const ParticleScene& particle_scene, const output::Checkpoint& run, const std::string& name) {
-  Scene of_run(*particle_scene.registry);
-  deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
-  deck.declare(of_run);
-  if (of_run.particles.size() > 1) throw several_particles(name);
-  const ParticleScene before = of_run.first();
+/// Throws UserError if the scene cannot start from the surface of a particle of the run: the mesh options differ from the scene's, or the mesh adapts
+/// and the resting shapes differ. Material properties may differ.
+void check_surface(const ParticleScene& particle_scene, const ParticleKind& before, const std::string& name) {
   const auto refuse = [&](const char* what) { throw UserError(key + "run: " + what + " must be the same as in " + name + "."); };
   if (!(before.surface == particle_scene.surface)) refuse("Surface");
   const motion::AdaptationOptions &then = before.adaptation, &now = particle_scene.adaptation;
   if (then.enabled != now.enabled || (now.enabled && then.levels != now.levels)) refuse("Adaptation/enabled and Adaptation/levels");
-  if (now.enabled && !before.particle.shape.same_rest(particle_scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
+  surface::ParticleShape rest = before.particle.shape;
+  if (before.copies.present) rest.center = particle_scene.particle.shape.center, rest.orientation = particle_scene.particle.shape.orientation;
+  if (now.enabled && !rest.same_rest(particle_scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
 }
 
-/// If the run's deck names its only particle, removes this name from the names of the run's arrays: `cell: unstressed` becomes `unstressed`. Throws
-/// UserError if the run has several particles, which may be copies of one.
-void drop_name(output::Checkpoint& run, const std::string& name) {
-  const std::string kept_for_each = ": unstressed";
-  std::vector<std::string> prefixes;
-  for (const auto& [array, values] : run.arrays)
-    if (array.ends_with(kept_for_each)) prefixes.push_back(array.substr(0, array.size() - kept_for_each.size()) + ": ");
-  if (prefixes.size() > 1) throw several_particles(name);
-  if (prefixes.empty()) return;
+/// Particle of an earlier run: its name, its kind, and its rows in the nets of the run.
+struct Part {
+  std::string name;
+  const ParticleKind* kind;
+  Eigen::Index first_row, n_rows;
+};
+
+/// Returns the particles of a run, in the order of their rows. `scene`: scene of the run's deck, in which the copies are not yet made.
+std::vector<Part> parts_of(const Scene& scene, const output::Checkpoint& run) {
+  std::vector<Part> parts;
+  Eigen::Index first_row = 0;
+  const auto add = [&](const std::string& name, const ParticleKind& kind) {
+    const auto found = run.arrays.find(name.empty() ? "unstressed" : name + ": unstressed");
+    if (found == run.arrays.end()) return false;
+    parts.push_back({name, &kind, first_row, found->second.rows()});
+    first_row += found->second.rows();
+    return true;
+  };
+  for (const ParticleKind& kind : scene.particles) {
+    if (!kind.copies.present) add(kind.name, kind);
+    for (int copy = 1; kind.copies.present && add(kind.name + formatted(" %d", copy), kind);) ++copy;
+  }
+  if (parts.empty()) parts.push_back({"", &scene.particles.front(), 0, run.arrays.at("x").rows()});  // a free rigid body
+  return parts;
+}
+
+/// Reduces a run to the particle from which the particle of the scene starts: removes the rows of other particles and of surface fields from the
+/// state and the modes, and the name of the particle from the names of its arrays (`cell: unstressed` becomes `unstressed`).
+void reduce(RunBefore& run, const ParticleScene& particle_scene, const std::string& name) {
+  Scene of_run(*particle_scene.registry);
+  deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
+  deck.declare(of_run);
+  const std::vector<Part> parts = parts_of(of_run, run);
+  const std::optional<std::string>& given = particle_scene.particle.shape.initial->particle;
+  run.in_place = parts.size() > 1 && !given;
+  const auto part = std::ranges::find(parts, given.value_or(run.in_place ? particle_scene.name : parts.front().name), &Part::name);
+  if (part == parts.end()) {
+    std::vector<std::string> names;
+    for (const Part& one : parts) names.push_back("`" + one.name + "`");
+    throw UserError(key + "particle must be one of the particles of " + name + ", " + deck::shortened(deck::alternatives(names), 200) +
+                    (given ? ", but is " + deck::in_quotes(*given) : "") + ".");
+  }
+  check_surface(particle_scene, *part->kind, name);
   std::map<std::string, Eigen::MatrixXd> arrays;
-  for (auto& [array, values] : run.arrays)
-    arrays[array.starts_with(prefixes.front()) ? array.substr(prefixes.front().size()) : array] = std::move(values);
+  for (auto& [array, values] : run.arrays) {
+    const bool own = !part->name.empty() && array.starts_with(part->name + ": ");
+    const bool stacked = array == "x" || array.starts_with("mode ");
+    arrays[own ? array.substr(part->name.size() + 2) : array] = stacked ? values.middleRows(part->first_row, part->n_rows).eval() : std::move(values);
+  }
   run.arrays = std::move(arrays);
 }
 
-/// Returns the control net in the last state x of a run. The rows of x after this net, if any, are coefficients of surface fields.
-Net shape_of(const output::Checkpoint& run) {
-  const Eigen::MatrixXd& x = run.arrays.at("x");
-  const auto alone = run.arrays.find("unstressed");
-  return x.topRows(alone == run.arrays.end() ? x.rows() : std::min(x.rows(), alone->second.rows()));
-}
-
-/// Returns an eigenmode from the section Spectrum of a run, as a displacement of the `n_points` control points. The rows of the mode after the
-/// displacement, if any, are changes of surface fields.
-Net mode_of_run(const output::Checkpoint& run, int number, Eigen::Index n_points) {
+/// Returns an eigenmode from the section Spectrum of a run, as a displacement of the control points.
+Net mode_of_run(const output::Checkpoint& run, int number) {
   const auto found = run.arrays.find("mode " + std::to_string(number));
   if (found == run.arrays.end())
     throw UserError(key + formatted("mode must be one of the modes of the run's Spectrum, and there is no mode %d.", number));
-  return found->second.topRows(n_points);
+  return found->second;
 }
 
 }  // namespace
 
-std::optional<output::Checkpoint> run_before(const ParticleScene& particle_scene) try {
+std::optional<RunBefore> run_before(const ParticleScene& particle_scene) try {
   const auto& initial = particle_scene.particle.shape.initial;
   if (!initial || !initial->run) return {};
   const std::string name = deck::shortened(*initial->run, 80);
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(*initial->run, error);
   if (error) throw UserError(key + "run: cannot read " + name + ": " + error.message());
-  output::Checkpoint run;
+  RunBefore run;
   if (std::filesystem::is_directory(status)) {
     auto saved = output::newest_checkpoint(*initial->run);
     if (!saved) throw UserError(key + "run: there is no checkpoint in " + name + ".");
-    run = std::move(saved->checkpoint);
+    run = {std::move(saved->checkpoint)};
   } else {
-    run = output::read_checkpoint(*initial->run);
+    run = {output::read_checkpoint(*initial->run)};
   }
-  check_surface(particle_scene, run, name);
-  drop_name(run, name);
+  reduce(run, particle_scene, name);
   using Names = std::vector<const char*>;
   for (const char* needed : particle_scene.adaptation.enabled ? Names{"x", stored_rest, "mesh edges", "mesh spacing"} : Names{"x"})
     static_cast<void>(run.arrays.at(needed));
@@ -125,18 +146,18 @@ std::optional<output::Checkpoint> run_before(const ParticleScene& particle_scene
   throw UserError(key + "run: " + error.what());
 }
 
-Net initial_shape(const ParticleScene& particle_scene, const Body& body, const output::Checkpoint* before) {
+Net initial_shape(const ParticleScene& particle_scene, const Body& body, const RunBefore* before) {
   const surface::ParticleShape& shape = particle_scene.particle.shape;
   if (!shape.initial) return body.rest;
   const surface::InitialShape& initial = *shape.initial;
   const bool own = initial.volume == "own";
   if (const auto map = initial.affine(shape.rotation())) return image(body.rest, shape.center, *map / (own ? 1 : std::cbrt(map->determinant())));
-  Net x = before ? shape_of(*before) : net_of_file(body.space, initial.file.value(), key + "file");
+  Net x = before ? Net(before->arrays.at("x")) : net_of_file(body.space, initial.file.value(), key + "file");
   if (x.rows() != body.space.n_points)
     throw UserError(key + formatted("run: its surface has %d control points, but the particle has %d.", static_cast<int>(x.rows()),
                                     body.space.n_points));
-  if (initial.mode) x += initial.mode_amplitude * body.radius * mode_of_run(*before, *initial.mode, x.rows());
-  x = (x * initial.turn.transpose()).rowwise() + initial.shift.transpose();
+  if (initial.mode) x += initial.mode_amplitude * body.radius * mode_of_run(*before, *initial.mode);
+  if (!before || !before->in_place) x = (x * initial.turn.transpose()).rowwise() + initial.shift.transpose();
   const surface::Measures measures = surface::measures(body.space, x);
   const double scale = own ? 1 : std::cbrt(surface::volume(body.space, body.rest) / measures.volume);
   return image(x, measures.centroid, scale * Mat3::Identity());

@@ -10,13 +10,19 @@
 
 namespace tanktread {
 
-/// Returns the last checkpoint of the run named by Particle/initial shape/run; nothing if the deck names no run. Throws UserError if there is no
-/// checkpoint, if it lacks data, or if the mesh of the run does not fit the scene.
-std::optional<output::Checkpoint> run_before(const ParticleScene& particle_scene);
+/// Last checkpoint of an earlier run, reduced to one particle.
+struct RunBefore : output::Checkpoint {
+  bool in_place = false;  ///< true if the run has several particles, and each particle of the scene starts from the one with its name, where that is
+};
+
+/// Returns the last checkpoint of the run named by Particle/initial shape/run, with the particle named by Particle/initial shape/particle; nothing if
+/// the deck names no run. Throws UserError if there is no checkpoint or no such particle, if data are missing, or if the mesh of the run does not fit
+/// the scene.
+std::optional<RunBefore> run_before(const ParticleScene& particle_scene);
 
 /// Returns the control net of the initial shape on the body's mesh; by default the resting shape. `before`: checkpoint that run_before() returned, or
 /// null. Throws UserError if the file or checkpoint holds another surface.
-Net initial_shape(const ParticleScene& particle_scene, const Body& body, const output::Checkpoint* before);
+Net initial_shape(const ParticleScene& particle_scene, const Body& body, const RunBefore* before);
 
 /// Returns the control net of the membrane's stress-free shape on the mesh of `body`, before any pre-inflation. The default is the resting shape.
 /// `first`: the body on the mesh of the deck, which differs from the mesh of `body` if an earlier run has adapted it. A spheroid is fitted on the

@@ -29,8 +29,9 @@ void MeshOptions::declare(deck::Section& section) {
   if (of_cylinder) azimuthal_elements = 24;
   section.key("elements per side", elements_per_side, deck::between(3, 200), "1",
               "number n of elements along each edge of the cube from which the surface mesh is made, which has 6n^2 elements. With 6, "
-              "deformations of a rounded particle have errors of about 0.1 %; elements half as long have about a sixteenth of the error. If not "
-              "given: 6, or 8 for a rigid particle in a tube or channel if R_C is more than 3/4 of the distance from the axis to the wall");
+              "the Taylor parameter of a particle that stays rounded errs by about 0.1 %, lengths of pointed, folded or thin particles by 10 % or "
+              "more: compare a run with 8, or use --accuracy. Elements half as long have about a sixteenth of the error once they resolve the "
+              "shape. If not given: 6, or 8 for a rigid particle in a tube or channel if R_C is more than 3/4 of the distance from the axis to the wall");
   section.key(
       "extraordinary points", extraordinary_points, spline::extraordinary_rules,
       "treatment of the extraordinary points, the eight corners of the cube mesh where three elements meet instead of four. `g1`: "
@@ -131,10 +132,14 @@ void InitialShape::declare(deck::Section& section) {
               "path of a file with the initial surface in Bezier-extraction format (.iga), on the same mesh as the particle and at the "
               "position that it is to have. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("run", run, deck::Choice{},
-              "path of the results of an earlier run of one particle on the same mesh; the last shape of that run becomes the initial shape, at "
-              "the same position. The path names a results directory, whose newest checkpoint is read, or one of its snapshots; if the mesh of that "
+              "path of the results of an earlier run on the same mesh; the last shape of the particle in that run becomes the initial shape, at "
+              "the same position. If that run has several particles, each particle starts from the one with its own name, unless Particle/initial "
+              "shape/particle names another one. The path names a results directory, whose newest checkpoint is read, or one of its snapshots; if the mesh of that "
               "run was refined, the refined mesh is used. Surfactant and other surface fields start as in a new run. A relative path is looked "
               "up in the working directory, then in the directory of the deck");
+  section.key("particle", particle, deck::Choice{},
+              "name of the particle of the earlier run (Particle/initial shape/run) whose last shape becomes the initial shape, for example "
+              "`cell` or, of copies, `cell 2`. If not given, the particle with the same name or, if there is one only, this one");
   section.key("mode", mode, deck::at_least(1), "1",
               "number, from 1, of an eigenmode that the earlier run (Particle/initial shape/run) computed with its section Spectrum. The mode, "
               "scaled by `mode amplitude`, is added to the shape of that run, to see how a disturbance grows; of a complex mode the real part "
@@ -150,6 +155,8 @@ void InitialShape::declare(deck::Section& section) {
 void InitialShape::check() const {
   if (map.has_value() + stretch.has_value() + file.has_value() + run.has_value() != 1)
     throw UserError("Particle/initial shape needs exactly one of the keys stretch, map, file and run.");
+  if (particle && !run)
+    throw UserError("Particle/initial shape/particle needs Particle/initial shape/run, a run with the particle.");
   if (mode && !run)
     throw UserError("Particle/initial shape/mode needs Particle/initial shape/run, a run with a Spectrum that contains the mode.");
   if (map && !(map->determinant() > 0))

@@ -54,6 +54,7 @@ struct InitialShape {
   std::optional<Vec3> stretch;      ///< factors of a linear map that stretches the resting shape along the particle's body-fixed axes
   std::optional<std::string> file;  ///< path of a Bezier-extraction file with a surface on the particle's mesh
   std::optional<std::string> run;   ///< path of the results of another run, or of one of its snapshots
+  std::optional<std::string> particle;  ///< name of the particle of `run`, if it has several; if not set, the particle of the same name
   std::optional<int> mode;          ///< index, from 1, of a mode in the spectrum of `run`; this mode is added to the shape
   double mode_amplitude = 0.01;     ///< largest displacement by the added mode, divided by the particle radius R_C
   /// volume that the particle starts with and keeps: `resting` (of the resting shape) or `own` (of the initial shape)

@@ -15,7 +15,7 @@ RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic":
 # Series of one particle; the others belong to the scene. A deck with several particles states it by /series/<particle>.
 OF_PARTICLE = re.compile(
     r"area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|intrinsic_viscosity|length_x\d|phase|"
-    r"gap|local_area_change|n_control_points|(normal|shape)_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|"
+    r"gap|(local|rms)_area_change|n_control_points|(normal|shape)_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|"
     r"taylor_\w+|((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|\w*concentration|"
     r"surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|(fluid|membrane)_dissipation|power_residual")
 
@@ -73,9 +73,9 @@ class Run:
     def particles(self):
         """The names of the particles in the order of the deck, without posts; ["particle"] if the deck has the section
         Particle."""
-        return [name for name in self.bodies if self._kind(name).get("shape") != "cylinder"]
+        return [name for name in self.bodies if self.kind(name).get("shape") != "cylinder"]
 
-    def _kind(self, name):
+    def kind(self, name):
         """Returns the section of the deck that describes a body: `cell` for `cell 3`."""
         if not self.several:
             return self.deck.get("Particle", {})
@@ -171,6 +171,13 @@ class Run:
         """Returns the axis label of a series: its name and, unless it is dimensionless, its unit."""
         return name + self.unit(self.units[name])
 
+    def column(self, name):
+        """Returns the heading of a series in a table: its name and, unless it is dimensionless, its unit in ASCII, such
+        as "velocity_x1 (um/s)"."""
+        unit = self.unit(self.units[name]).removeprefix(", ").replace("µ", "u")
+        unit = re.sub("[⁰¹²³⁴]", lambda power: f"^{'⁰¹²³⁴'.index(power[0])}", unit)
+        return f"{name} ({unit})" if unit else name
+
     @property
     def rate(self):
         """The rate of the flow (1/time), by which times are multiplied to be dimensionless, and its name; (1, None) if
@@ -203,8 +210,10 @@ class Run:
         return f"time · {name}" if name else f"time{self.in_units('time') or ', in the unit of the deck'}"
 
     def moment(self, time, form="g"):
-        """Returns "t = 0.5", or "point 5" on a branch, for titles of figures. `form`: format of the time."""
-        return f"point {time:.0f}" if "Continuation" in self.deck else f"t = {time:{form}}"
+        """Returns "t = 0.5", with the unit if the deck has units, or "point 5" on a branch, for titles of figures.
+        `form`: format of the time."""
+        unit = self.in_units("time").replace(",", "")
+        return f"point {time:.0f}" if "Continuation" in self.deck else f"t = {time:{form}}{unit}"
 
     @property
     def radius(self):

@@ -101,7 +101,8 @@ def _names(text, separator, count, own=True):
     the rows; otherwise another one."""
     tries = [_fields(text, separator)]
     if separator == " " or not own and separator not in text:
-        tries = [_fields(text, one) for one in ";\t,"] + [_fields(re.sub(" {2,}", "\t", text.strip()), "\t")]
+        tries = [_fields(text, one) for one in ";\t," if separator != ","]  # 0,5 below a;b may be one number
+        tries += [_fields(re.sub(" {2,}", "\t", text.strip()), "\t")]
         joined = re.sub(r"\s+(?=[\[(])|\s*(/)\s*", r"\1", text)  # without blanks before units
         tries += [_fields(joined, " "), _fields(text, " ")]
     return next((names for names in tries if len(names) == count), None)

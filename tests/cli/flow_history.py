@@ -79,8 +79,9 @@ def a_resumed_run_uses_its_copy_of_the_table():
 
 
 def wrong_tables_are_rejected():
-    wrong = {"": "no row", "time, amplitude\n": "no row", "0\n": "1 entry", "0,1,2,3\n": "4 entries", "0,1\n1,2,3\n": "line 2", "0,1\n1,2,\n2,b\n": "\"b\" is not a number",
-             "0,nan\n": "not a number", "1,1\n0,1\n": "line 2: times must", "-1,1\n": "line 1: times must", "0;1\n": "1 entry", "0,1e99\n": "not a number"}
+    wrong = {"": "no numbers", "time, amplitude\n": "no row", "0\n": "1 number", "0,1,2,3\n": "4 numbers", "0,1\n1,2,3\n": "line 2", "0,1\n1,2,\n2,b\n": "\"b\" is not a number",
+             "0,nan\n": "not a number", "1,1\n0,1\n": "line 2: times must", "-1,1\n": "line 1: times must", "time,angle\n0,1\n": "columns are time, angle; expected",
+             "0,1e99\n": "not a number", "time (s),amplitude\n0,1\n": "no section Units"}
     for text, words in wrong.items():
         pathlib.Path("wrong.csv").write_text(text)
         said = run(deck(SHEAR % "file: wrong.csv"), "--check", code=2).stderr

@@ -99,7 +99,7 @@ def a_run_that_starts_from_its_own_directory_keeps_the_shape():
 
 def copies_translate_and_rotate_a_shape_from_a_file_or_run():
     run(deck(FIRST % ("0.05", "false")), "--output", "first", "--quiet", "--set", "Particle/center=[0.5, 0, 0]", "--set", "Particle/drift=held")
-    deck("0, 0, 0\n4, 1, 0, 0, 0, 90\n", "positions.csv")
+    deck("0, 0, 0, 0, 0, 0.0\n4, 1, 0, 0, 0, 90\n", "positions.csv")
     for shape in "run: first", "file: first/surface.iga":
         run(deck(COPIES % shape), "--output", "then", "--quiet", "--overwrite")
         for copy, centre, axes in (1, (0.5, 0, 0), "123"), (2, (4.5, 1, 0), "213"):

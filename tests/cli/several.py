@@ -403,7 +403,7 @@ def _centres(results, kind="many "):
 
 
 def copies_are_at_the_given_positions():
-    deck("x1, x2, x3\n0, 0, 0\n1.5, 0, 0.5, 0, 90, 0\n", "places.csv")
+    deck("r2; x3; x1; x2; r1; r3\n0; 0; 0; 0; 0; 0\n90; 0,5; 1,5; 0; 0; 0\n", "places.csv")
     deck("0, 0, 0\n1.5, 0, 0.5\n", "short.csv")
     for name, how in (("file", "file: places.csv"), ("lattice", "lattice: [2, 1, 3], spacing: [2.0, 1.0, 1.5]")):
         deck(COPIES % how)
@@ -471,7 +471,7 @@ def mistakes_of_copies_are_named():
         ("lattice: [2, 2, 1]", ["Particles/many/copies/spacing"]),
         ("lattice: [2, 2, 1], spacing: [0.9, 2.0, 2.0]", ["overlap", "many 1", "many 3"]),
         ("file: none.csv", ["none.csv"]),
-        ("file: short.csv", ["short.csv", "line 2", "2 entries"]),
+        ("file: short.csv", ["short.csv", "line 2", "commas", "2 numbers", "x1, x2, x3"]),
         ("number: 5, lattice: [1, 1, 1], spacing: [1.0, 1.0, 1.0]", ["one of `file`, `lattice`"]),
         ("", ["one of `file`"]),
     ):

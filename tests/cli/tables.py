@@ -1,12 +1,15 @@
 #!/usr/bin/python3
 # Tests of the reader of tables of the Python package. tests/unit/deck/table.cpp tests that of the program with the same tables.
+import os
 import pathlib
 import sys
 
+import numpy
 import yaml
 
-from harness import SOURCE, check, main
+from harness import PROGRAM, SOURCE, check, deck, main, package, run
 
+os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
 from tanktread import tables
@@ -34,6 +37,20 @@ def a_file_that_cannot_be_read_is_refused():
             check(not tables.read(path), path)
         except tanktread.Mistake as mistake:
             check(words in str(mistake), mistake)
+
+
+def the_series_of_a_run_are_a_table_with_names_and_units():
+    units = "  Units: {length: 1 um, time: 1 ms, force: 1 pN}\n"
+    motion = "  Particle: {motion: prescribed, velocity: [1, 0, 0]}\n  Surface: {elements per side: 3}\n"
+    run(deck("Tanktread:\n" + units + motion), "--output", "results", "--quiet")
+    pathlib.Path("table.csv").write_text(package("read", "results", "--csv").stdout)
+    found, series = tables.read("table.csv", nan=True), tanktread.run("results").series
+    check(sorted(found.columns) == sorted(series) and found.columns[0] == "time", found.columns)
+    check(numpy.array_equal(found.values, numpy.transpose([series[name] for name in found.columns]), equal_nan=True), found.values)
+    unit = dict(zip(found.columns, found.units))
+    check([unit[name] for name in ("time", "area", "volume", "drag", "evaluations")] == ["ms", "um^2", "um^3", "pN", None], unit)
+    said = package("read", "results", "--csv", "-s", "time", "velocity_x1").stdout
+    check(said.splitlines()[0] == "time (ms),velocity_x1 (um/ms)", said)
 
 
 def all_columns_are_returned_by_default():

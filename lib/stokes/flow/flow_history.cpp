@@ -11,8 +11,8 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "base/small_matrices.hpp"
-#include "base/text_file.hpp"
 #include "deck/section.hpp"
+#include "deck/table.hpp"
 #include "deck/words.hpp"
 
 namespace tanktread::stokes {
@@ -59,10 +59,10 @@ void FlowHistory::declare(deck::Section& section) {
               "it; 1 if not given");
   section.key("angles", angles, deck::any(), "degree",
               "angles, in degrees, by which the ambient flow is rotated about `axis`, one for each of `times`; not rotated if not given");
-  section.key("file", file, deck::Choice{},
-              "path of a file with the time dependence of the ambient flow, instead of the keys `times`, `amplitudes` and `angles`. A row "
-              "holds, separated by commas, the time in the deck's unit, the factor of the velocity and, optionally (but then in every row), "
-              "the angle in degrees; a header row that begins with `time` is allowed. A relative path is looked up in the working directory, "
+  section.key("file", file,
+              "path of a table with the time dependence of the ambient flow, instead of the keys `times`, `amplitudes` and `angles`. A row "
+              "holds the time in the deck's unit, the factor of the velocity and, in all rows or in none, the angle in degrees. A first "
+              "line may name the columns (time, amplitude, angle), in any order, and their units. A relative path is looked up in the working directory, "
               "then in the directory of the deck");
   if (angles || section.given("angles")) axis = "x2";
   section.key("axis", axis, deck::Choice{"x1", "x2", "x3"},
@@ -86,22 +86,15 @@ void FlowHistory::read() {
   if (!file) return;
   for (const auto& [key, given] : {std::pair{"times", &times}, {"amplitudes", &amplitudes}, {"angles", &angles}})
     refuse(given->has_value(), "Flow/history/file", std::string("Flow/history/") + key, "the file holds all of them");
-  const std::string name = "Flow/history/file " + deck::in_quotes(deck::shortened(*file, 80));
-  const std::vector<CsvRow> rows = csv_rows(text_of_file(*file, name, 10'000'000), "time");
-  if (rows.empty()) throw UserError(name + " contains no row with a time and an amplitude.");
-  const std::size_t columns = rows.front().fields.size();
+  const std::string name = "Flow/history/file " + deck::in_quotes(deck::shortened(file->path, 80));
   times.emplace(), amplitudes.emplace();
-  if (columns == 3) angles.emplace(), axis = axis.value_or("x2");
-  for (const CsvRow& row : rows) {
-    const std::string where = name + formatted(", line %d: ", row.line);
-    if (columns < 2 || columns > 3 || row.fields.size() != columns)
-      throw UserError(where + "a row holds a time, an amplitude and, in all rows or in none, an angle, but this one holds " +
-                      formatted("%zu %s.", row.fields.size(), row.fields.size() == 1 ? "entry" : "entries"));
-    times->push_back(csv_number(row.fields[0], where));
-    amplitudes->push_back(csv_number(row.fields[1], where));
-    if (angles) angles->push_back(csv_number(row.fields[2], where));
+  for (const deck::TableRow& row : deck::read_table(*file, name, {{{"time", "time"}, {"amplitude", "1", true}, {"angle", "degree"}}, {2, 3}})) {
+    times->push_back(row.numbers[0]);
+    amplitudes->push_back(row.numbers[1]);
+    if (row.numbers.size() == 3 && !angles) angles.emplace(), axis = axis.value_or("x2");
+    if (angles) angles->push_back(row.numbers[2]);
     if (times->back() < 0 || (times->size() > 1 && times->back() < times->end()[-2]))
-      throw UserError(where + "times must not be negative and must be in ascending order.");
+      throw UserError(name + formatted(", line %d: times must not be negative and must be in ascending order.", row.line));
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/types.hpp"
 #include "deck/forward.hpp"
+#include "deck/table.hpp"
 
 namespace tanktread::stokes {
 
@@ -18,7 +19,7 @@ struct FlowHistory {
   std::optional<std::vector<double>> amplitudes;  ///< amplitudes at `times`, linear in between, constant before and after; 1 if only angles are
                                                   ///< given
   std::optional<std::vector<double>> angles;      ///< rotation angles of the flow at `times`, in degrees; if not given, the flow is not rotated
-  std::optional<std::string> file;                ///< file with the columns time, amplitude, angle
+  std::optional<deck::TableFile> file;            ///< file with the columns time, amplitude, angle
   std::optional<std::string> axis;                ///< axis about which the flow is rotated; set if angles are given
   std::optional<double> mean, amplitude, frequency, phase;  ///< parameters of the sine: mean + amplitude sin(2 pi frequency t + phase), phase in
                                                             ///< degrees

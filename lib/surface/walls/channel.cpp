@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/text_file.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "deck/table.hpp"
 #include "deck/words.hpp"
 
 namespace tanktread::surface {
@@ -51,19 +51,17 @@ Channel::Channel(const TubeOptions& options)
   check();
 }
 
-/// Reads the scale factors of the cross-section from the file Channel/points, which has rows s,f or s,f2,f3 (arc length and factors).
+/// Reads the scale factors of the cross-section from the table Channel/points, which has rows s,f or s,f2,f3 (arc length and factors).
 void Channel::read_points() {
-  const std::string name = "Channel/points \"" + deck::shortened(*own_.points, 80) + "\"";
+  const std::string name = "Channel/points \"" + deck::shortened(own_.points->path, 80) + "\"";
   std::vector<double> s;
   std::vector<Vec2> factor;
-  for (const CsvRow& row : csv_rows(text_of_file(*own_.points, name, 10'000'000), "s")) {
-    const std::string here = name + ", line " + std::to_string(row.line) + ": ";
-    if (row.fields.size() < 2 || row.fields.size() > 3)
-      throw UserError(here + formatted("a row is s,f or s,f2,f3, but this one holds %d entries.", static_cast<int>(row.fields.size())));
-    const double at = csv_number(row.fields[0], here), f = csv_number(row.fields[1], here);
+  for (const deck::TableRow& row : deck::read_table(*own_.points, name, {{{"s", "length"}, {"f2", "1", true}, {"f3", "1"}}, {2, 3}})) {
+    const std::string here = name + formatted(", line %d: ", row.line);
+    const double at = row.numbers[0];
     if (!s.empty() && at <= s.back()) throw UserError(here + formatted("s must ascend, but %g comes after %g.", at, s.back()));
     s.push_back(at);
-    factor.emplace_back(f, row.fields.size() == 3 ? csv_number(row.fields[2], here) : f);
+    factor.emplace_back(row.numbers[1], row.numbers.back());
     if (own_.directions == "x2") factor.back()[1] = 1;
     if (own_.directions == "x3") factor.back()[0] = 1;
     if (options_.repulsion && factor.back()[0] != factor.back()[1])

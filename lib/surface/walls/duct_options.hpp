@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "deck/forward.hpp"
+#include "deck/table.hpp"
 
 namespace tanktread::surface {
 
@@ -42,7 +43,7 @@ struct ChannelOptions {
   std::optional<double> half_length;
   std::optional<double> corner_radius;   ///< radius of the rounded edges of the profile `step`
   std::string directions = "x2 x3";      ///< directions in which the cross-section is scaled
-  std::optional<std::string> points;     ///< path of the file with the factors that scale the cross-section; set for the profile `file`
+  std::optional<deck::TableFile> points;  ///< path of the file with the factors that scale the cross-section; set for the profile `file`
   std::optional<double> bend_radius;     ///< radius of the arc of the centre line; not set for a straight centre line
   double bend_start = 0, bend_angle = 90;  ///< bend_start: arc length s of the centre line at which the arc begins (up to there, s = x1). bend_angle:
                                            ///< angle of the arc, from x1 towards x2, degrees
@@ -66,7 +67,7 @@ struct TubeOptions {
   std::optional<double> radius;              ///< radius of the circle; default 1
   std::optional<Eigen::Vector2d> semi_axes;  ///< semi-axes of the ellipse along x2 and x3
   std::optional<Eigen::Vector2d> sides;      ///< sides of the rectangle along x2 and x3
-  std::optional<std::string> outline;        ///< path of the file with the points of the outline; set for the cross-section `file`
+  std::optional<deck::TableFile> outline;    ///< path of the file with the points of the outline; set for the cross-section `file`
 
   std::optional<double> length;  ///< length of the wall; default: the larger of 2 pi R_T and the particle's length plus 4.6 R_T (R_T: tube radius)
   double period = 0;  ///< period of the duct along x1, from the section Domain or from `periodic_length`; 0 if the duct is not periodic

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "base/text_file.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "deck/table.hpp"
 #include "deck/words.hpp"
 #include "surface/walls/outline.hpp"
 
@@ -21,8 +21,9 @@ struct Row {
 
 class File {
  public:
-  File(const std::string& list, const std::string& path) : name_(list + "/outline \"" + deck::shortened(path, 80) + "\"") {
-    for (const CsvRow& row : csv_rows(text_of_file(path, name_, 10'000'000), "x2")) rows_.push_back(point(row));
+  File(const std::string& list, const deck::TableFile& file) : name_(list + "/outline \"" + deck::shortened(file.path, 80) + "\"") {
+    for (const deck::TableRow& row : deck::read_table(file, name_, {{{"x2", "length"}, {"x3", "length"}}, {2}, "corner"}))
+      rows_.push_back({row.line, Vec2(row.numbers.data()), row.marked});
     if (rows_.size() > 1 && (rows_.front().x - rows_.back().x).norm() <= same_point * longest_step()) {
       rows_.front().corner |= rows_.back().corner;
       rows_.pop_back();
@@ -35,17 +36,6 @@ class File {
 
  private:
   std::string at(int line) const { return name_ + ", line " + std::to_string(line) + ": "; }
-
-  Row point(const CsvRow& row) const {
-    const auto& field = row.fields;
-    const std::string here = at(row.line);
-    if (field.size() < 2 || field.size() > 3)
-      throw UserError(here + "a point is two numbers x2,x3 and, where two sides meet, the word `corner`, but this line holds " +
-                      std::to_string(field.size()) + (field.size() == 1 ? " entry." : " entries."));
-    const bool third = field.size() == 3 && !field[2].empty();
-    if (third && field[2] != "corner") throw UserError(here + "the third entry must be `corner` or nothing, but is \"" + field[2] + "\".");
-    return {row.line, {csv_number(field[0], here), csv_number(field[1], here)}, third};
-  }
 
   /// Returns the largest distance between consecutive points of the file.
   double longest_step() const {

@@ -79,7 +79,7 @@ surface::TubeOptions by_elements(surface::TubeOptions tube) {
 
 surface::TubeOptions capillary() {
   surface::TubeOptions tube;
-  tube.section = "file", tube.outline = SOURCE_DIRECTORY "/inputs/capillary_outline.csv";
+  tube.section = "file", tube.outline = {SOURCE_DIRECTORY "/inputs/capillary_outline.csv"};
   return tube;
 }
 
