@@ -167,6 +167,7 @@ def _against(given, name):
 
 
 def _with_unit(number, unit):
+    """Returns the value of a key: a text with the unit, or the number if it has none."""
     return f"{number:.15g} {unit}" if unit not in (None, "1") else float(number)
 
 

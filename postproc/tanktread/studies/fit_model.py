@@ -54,6 +54,7 @@ class Runs:
 
     @staticmethod
     def name(experiment, settings):
+        """Returns a text that is the same for equal runs of an experiment."""
         return f"{experiment.name} {experiment.cases} {sorted(settings.items())}"
 
     def all(self, jobs):

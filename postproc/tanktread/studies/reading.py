@@ -68,6 +68,7 @@ def word(*words):
 
 
 def flag(given, name):
+    """Returns true or false."""
     expect(isinstance(given, bool), f"{name} is true or false, not {_shown(given)}")
     return given
 
