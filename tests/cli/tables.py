@@ -12,7 +12,7 @@ from harness import PROGRAM, SOURCE, check, deck, main, package, run
 os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
-from tanktread import tables
+from tanktread import files, tables
 
 
 def foreign_tables_are_read_or_refused_in_one_sentence():
@@ -32,11 +32,14 @@ def foreign_tables_are_read_or_refused_in_one_sentence():
 
 def a_file_that_cannot_be_read_is_refused():
     pathlib.Path("folder").mkdir()
-    for path, words in (("none.csv", "there is no file none.csv"), ("folder", "folder is a directory"), ("/dev/zero", "/dev/zero is a directory or a device")):
-        try:
-            check(not tables.read(path), path)
-        except tanktread.Mistake as mistake:
-            check(words in str(mistake), mistake)
+    pathlib.Path("binary").write_bytes(b"\xff\x00")
+    for path, words in (("none.csv", "there is no file none.csv"), ("folder", "folder is a directory"), ("/dev/zero", "/dev/zero is a directory or a device"),
+                        ("binary", "binary is")):
+        for read in tables.read, files.parsed:
+            try:
+                check(not read(path), path)
+            except tanktread.Mistake as mistake:
+                check(words in str(mistake), mistake)
 
 
 def the_series_of_a_run_are_a_table_with_names_and_units():
