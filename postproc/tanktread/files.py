@@ -26,8 +26,9 @@ def bytes_of(path):
 
 def parsed(path, parse=yaml_text, kind=object):
     """Returns parse(text) of a file in UTF-8. Raises Mistake if it is not of this kind, such as dict."""
+    data = bytes_of(path)
     try:
-        found = parse(bytes_of(path).decode("utf-8"))
+        found = parse(data.decode("utf-8"))
     except yaml.YAMLError as error:
         raise Mistake(f"{path} is not YAML: {error}") from None
     except UnicodeDecodeError:

@@ -33,13 +33,12 @@ def foreign_tables_are_read_or_refused_in_one_sentence():
 def a_file_that_cannot_be_read_is_refused():
     pathlib.Path("folder").mkdir()
     pathlib.Path("binary").write_bytes(b"\xff\x00")
-    for path, words in (("none.csv", "there is no file none.csv"), ("folder", "folder is a directory"), ("/dev/zero", "/dev/zero is a directory or a device"),
-                        ("binary", "binary is")):
+    for path, words in (("none.csv", "there is no file none.csv"), ("folder", "folder is a directory"), ("/dev/zero", "/dev/zero is a directory or a device"), ("binary", "binary is")):
         for read in tables.read, files.parsed:
             try:
                 check(not read(path), path)
             except tanktread.Mistake as mistake:
-                check(words in str(mistake), mistake)
+                check(str(mistake).startswith(words), mistake)
 
 
 def the_series_of_a_run_are_a_table_with_names_and_units():
