@@ -6,6 +6,7 @@
 
 #include "record/files/checkpoint.hpp"
 #include "record/files/file.hpp"
+#include "surface/walls/outline.hpp"
 
 namespace tanktread {
 
@@ -56,6 +57,10 @@ void prepare(deck::Document& deck, const DeckPlaces& places, Scene& scene) {
   deck.declare(scene);
   if (auto& outline = scene.tube.outline) find_and_keep(outline->path, own_name(outline->path), places, scene);
   if (auto& channel = scene.tube.channel; channel && channel->points) find_and_keep(channel->points->path, own_name(channel->points->path), places, scene);
+  if (scene.tube.present && scene.flow.flow_rate) {
+    scene.tube.check();
+    scene.flow.complete(surface::outline(scene.tube).area());
+  }
   if (auto& history = scene.flow.history; history && history->file) {
     find_and_keep(history->file->path, "flow_history.csv", places, scene);
     history->read();

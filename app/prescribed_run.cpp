@@ -10,12 +10,14 @@
 #include "app/runs.hpp"
 #include "app/signals.hpp"
 #include "base/errors.hpp"
+#include "base/stop.hpp"
 #include "record/plan.hpp"
 #include "scene/exact_body.hpp"
 #include "scene/particles/adaptation.hpp"
 #include "scene/particles/prescribed.hpp"
 #include "scene/series/run_row.hpp"
 #include "surface/geometry.hpp"
+#include "system/parallel/stop_together.hpp"
 #include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
@@ -39,6 +41,12 @@ SurfaceSnapshot snapshot(const ParticleScene& particle_scene, const Body& body, 
 
 }  // namespace
 
+AnyRun::AnyRun(const Scene& scene, const RunRequest& request) : scene_(scene), request_(request) {
+  set_stop_request([this] { return stop_signal_received() || scene_.output.too_late(seconds_here()); });
+}
+
+AnyRun::~AnyRun() { set_stop_request(stop_signal_received); }
+
 void AnyRun::print(const output::Entries<std::string>& plan) const {
   if (prints()) std::fputs(plan_text(plan).c_str(), stdout);
 }
@@ -54,11 +62,12 @@ void StationaryRun::show(output::Entries<std::string> plan) {
 
 void StationaryRun::end_set_up() {
   clock_.reset();
-  stop_where_told(scene_.output.too_late(seconds()));
+  coupling::stop_together();
 }
 
 int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot& snapshot, Account account, const stokes::Evaluations& kernel,
                           std::span<const Warning> remarks) {
+  const Meanwhile complete(stop_rules().answers, false);
   clock_.emplace(phases_, "output");
   Results results(scene_, request_, body, surface::BezierMap(body.space), ranks_);
   results.record(row);
@@ -88,7 +97,6 @@ int resist(const Scene& scene, const RunRequest& request) {
   coupling::RigidTractions tractions = make_tractions(particle_scene, body, run.ranks(), around.get());
   run.end_set_up();
   const RigidSolution solution = rigid_solution(particle_scene, body, tractions, run.phases());
-  stop_where_told();
   const double seconds = run.seconds();
   const stokes::Evaluations kernel = run.ranks().of_all(tractions.kernel_evaluations() + particle_scene.walls->evaluations());
   RunRow row{.progress = {.wall_seconds = seconds}};

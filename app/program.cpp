@@ -16,16 +16,16 @@
 #include <malloc.h>
 #endif
 
+#include "accuracy/ladder.hpp"
 #include "app/deck_files.hpp"
 #include "app/provenance.hpp"
-#include "app/signals.hpp"
 #include "app/runs.hpp"
-#include "accuracy/ladder.hpp"
+#include "app/signals.hpp"
 #include "base/errors.hpp"
+#include "base/stop.hpp"
 #include "base/timing.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"
-#include "motion/guarded.hpp"
 #include "record/citations.hpp"
 #include "record/evaluation_cost.hpp"
 #include "record/files/exit_code.hpp"
@@ -71,7 +71,10 @@ void declare_options(CLI::App& app, Arguments& arguments) {
                  "where results go (default: results/<deck name>, followed by what is laid over it: _<overlay name>, _<key>=<value>)")
       ->check(directory, "");
   app.add_flag("--overwrite", arguments.overwrite, "delete the results of an earlier run there");
-  app.add_flag("--check", arguments.check, "print the effective deck, the plan and the cost of one velocity evaluation, and stop");
+  app.add_flag(
+      "--check", arguments.check,
+      "print the effective deck, the plan and the cost of one velocity evaluation, and stop; with Accuracy, also run two coarse levels, to "
+      "predict the level that meets the requests");
   app.add_option("--resume", arguments.resume, "continue from the newest checkpoint in this directory")->check(directory, "");
   app.add_flag("--no-expect", arguments.no_expect, "report a missed Expect, and do not fail the run for it");
   app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
@@ -169,7 +172,11 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
     prepare(level, arguments, of_level);
     return level.effective();
   };
-  program.check_start = [&](const std::string& text) { check_start(scene_of(text, {}, arguments, registry)); };
+  program.check_start = [&](const std::string& text) {
+    const Scene of_level = scene_of(text, {}, arguments, registry);
+    check_search(of_level, run_request(arguments, text, registry));
+    check_start(of_level);
+  };
   program.run = [&, start = Phases::Clock::now()](const std::string& text, const auto& directory, bool resume, std::optional<double> limit) {
     Scene of_level = scene_of(text, {}, arguments, registry);
     of_level.output.limit(start, limit);
@@ -228,19 +235,21 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
     return Exit::done;
   }
   coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
-  for (const auto& sentences : {check_expectations(scene), scene.idle_keys})
+  for (const auto& sentences : {check_expectations(scene), scene.idle_keys, std::vector{coupling::crowding()}})
     for (const std::string& sentence : sentences)
-      if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
+      if (speaks && !sentence.empty()) std::cerr << "tanktread: warning: " << sentence << std::endl;
   accuracy::check_series(scene.accuracy.requests, names_of_series(scene));
 
+  RunRequest request = run_request(arguments, deck.effective(), registry);
   if (arguments.check) {
+    check_room(scene);
+    check_search(scene, request);
     output::Entries<std::string> lines = plan(scene, coupling::Ranks().size());
     if (!arguments.quiet) std::ranges::move(evaluation_cost(scene), std::back_inserter(lines));
     print(speaks, deck.effective() + "\n" + plan_text(lines));
     return scene.accuracy.present ? climb(scene, deck, arguments, registry, speaks) : static_cast<int>(Exit::done);
   }
   if (scene.accuracy.present) return climb(scene, deck, arguments, registry, speaks);
-  RunRequest request = run_request(arguments, deck.effective(), registry);
   request.another_scheme = resume && before.time.scheme != scene.time.scheme;
   return simulate(scene, request);
 }
@@ -259,8 +268,8 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
     if (speaks) std::cerr << "tanktread: " << message << std::endl;
     return code;
   };
+  Arguments arguments;
   try {
-    Arguments arguments;
     CLI::App app("Deformable capsules and drops in viscous flow, by isogeometric boundary elements.", "tanktread");
     declare_options(app, arguments);
     try {
@@ -273,8 +282,10 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
       return Exit::done;
     }
     return run(arguments, registry, speaks);
-  } catch (const motion::Stopped&) {
-    return report((spoken(reason_of_stop()) + " before any results were written").c_str(), Exit::stopped);
+  } catch (const Stopped&) {
+    const std::string what = arguments.resume.empty() ? " before any results were written"
+                                                      : " before its first step; --resume " + arguments.resume + " continues the run";
+    return report((spoken(reason_of_stop()) + what).c_str(), Exit::stopped);
   } catch (const UserErrors& errors) {
     for (const std::string& sentence : errors.all) report(sentence.c_str(), Exit::mistake);
     message = one_line(errors.what());

@@ -12,11 +12,15 @@ namespace tanktread {
 
 /// Runs the scene to its end. Uses one of the functions below if the deck requests a steady or periodic shape, a spectrum or a prescribed motion, or
 /// has no particles; otherwise integrates the motion in time. Returns Exit::done, Exit::missed or Exit::stopped. Throws UserError, RunFailure, and
-/// motion::Stopped if a stop signal arrives before the first step. Collective.
+/// Stopped if a stop signal arrives before the first step. Collective.
 int simulate(const Scene& scene, const RunRequest& request);
 
 /// Runs the computation that the section Steady, Periodic or Spectrum of the deck requests. Returns and throws like `simulate`. Collective.
 int find_steady(const Scene& scene, const RunRequest& request);
+
+/// Throws UserError if find_steady() refuses the scene before its first step, for example because of the parameter of a branch. Does nothing if the
+/// scene requests no search. Collective.
+void check_search(const Scene& scene, const RunRequest& request);
 
 /// Solves for the traction on a body with prescribed motion. Records one row of the series and one snapshot. Returns the exit code like `simulate`.
 /// Collective.
@@ -26,10 +30,16 @@ int resist(const Scene& scene, const RunRequest& request);
 /// Returns the exit code like `simulate`. Collective.
 int flow_past_solids(const Scene& scene, const RunRequest& request);
 
-/// Scene, request, ranks and timers, which runs of all kinds have. Begins the set-up.
+/// Scene, request, ranks and timers, which runs of all kinds have. Begins the set-up. During its lifetime, the program is also to stop after
+/// Output/wall-clock limit.
 class AnyRun {
+ public:
+  AnyRun(const AnyRun&) = delete;
+  AnyRun& operator=(const AnyRun&) = delete;
+
  protected:
-  AnyRun(const Scene& scene, const RunRequest& request) : scene_(scene), request_(request) {}
+  AnyRun(const Scene& scene, const RunRequest& request);
+  ~AnyRun();
 
   /// Returns the wall time on this rank since the run began.
   double seconds_here() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
@@ -51,7 +61,7 @@ class StationaryRun : AnyRun {
   StationaryRun(const Scene& scene, const RunRequest& request, const std::string& why);
 
   void show(output::Entries<std::string> plan);  ///< prints the plan of the run
-  void end_set_up();  ///< throws motion::Stopped if a stop signal has arrived or the wall-clock limit has passed
+  void end_set_up();                             ///< throws Stopped if the program is to stop
   double seconds() const { return ranks_.seconds_since(start_); }  ///< returns the wall time since the run began
   coupling::Ranks& ranks() { return ranks_; }
   Phases& phases() { return phases_; }

@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-#include "motion/guarded.hpp"
+#include "base/stop.hpp"
 #include "record/files/summary.hpp"
 #include "system/parallel/agreement.hpp"
 
@@ -30,16 +30,13 @@ void catch_signals() {
   }
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  set_stop_request(stop_signal_received);
 }
 
-bool stop_requested() { return signalled != 0; }
-
-void stop_where_told(bool too_late) {
-  if (coupling::any_stop_requested(stop_requested() || too_late)) throw motion::Stopped();
-}
+bool stop_signal_received() { return signalled != 0; }
 
 std::string reason_of_stop() {
-  return coupling::any_stop_requested(stop_requested()) ? output::run_status::by_signal : output::run_status::by_clock;
+  return coupling::any_stop_requested(stop_signal_received()) ? output::run_status::by_signal : output::run_status::by_clock;
 }
 
 std::string spoken(std::string status) {

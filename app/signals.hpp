@@ -5,18 +5,15 @@
 
 namespace tanktread {
 
-/// Installs handlers of SIGTERM, SIGINT and SIGHUP, so that the run ends with a checkpoint. The second signal of a kind ends the program immediately.
-/// Signals that are ignored, for example by nohup, stay ignored. Writing to a closed pipe or beyond a file size limit becomes an ordinary write
-/// error.
+/// Installs handlers of SIGTERM, SIGINT and SIGHUP, which then are stop requests (base/stop.hpp). The second signal of a kind ends the program
+/// immediately. Signals that are ignored, for example by nohup, stay ignored. Writing to a closed pipe or beyond a file size limit becomes an
+/// ordinary write error.
 void catch_signals();
 
 /// Returns whether this process has received a stop signal.
-bool stop_requested();
+bool stop_signal_received();
 
-/// Throws motion::Stopped on every rank if any rank has received a stop signal or passes `too_late` = true (wall-clock limit exceeded). Collective.
-void stop_where_told(bool too_late = false);
-
-/// Returns the status of a run after all ranks have thrown motion::Stopped: run_status::by_signal (record/files/summary.hpp) if any rank has received
+/// Returns the status of a run after all ranks have thrown Stopped: run_status::by_signal (record/files/summary.hpp) if any rank has received
 /// a stop signal, otherwise run_status::by_clock. Collective.
 std::string reason_of_stop();
 

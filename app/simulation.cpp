@@ -10,10 +10,11 @@
 #include "app/time_steps.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "base/stop.hpp"
 #include "motion/guarded.hpp"
 #include "motion/integrator.hpp"
-#include "record/files/progress.hpp"
 #include "record/files/checkpoint.hpp"
+#include "record/files/progress.hpp"
 #include "record/plan.hpp"
 #include "record/results.hpp"
 #include "scene/body.hpp"
@@ -24,6 +25,7 @@
 #include "scene/plane_wall.hpp"
 #include "scene/tube.hpp"
 #include "system/parallel/agreement.hpp"
+#include "system/parallel/stop_together.hpp"
 #include "system/solids/shared_walls.hpp"
 #include "system/solvers/krylov.hpp"
 
@@ -41,7 +43,7 @@ class Run : AnyRun {
   }
 
   int go() {
-    stop_where_told();
+    coupling::stop_together();
     print(plan(scene_, particles_->body(), ranks_.size()));
     begin();
     clock_.emplace(phases_, "time stepping");
@@ -68,7 +70,7 @@ class Run : AnyRun {
     for (const Warning& warning : first_warnings(scene_)) warn(warning);
     state_.x = particles_->start();
     prepare();
-    motion::GuardedDynamics motion(particles_->dynamics(), stop_requested);
+    motion::GuardedDynamics motion(particles_->dynamics());
     motion::begin(motion, state_);
     if (!motion.failure().empty()) throw RunFailure("the evaluation of the velocity of the initial shape failed: " + motion.failure());
     state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(motion, state_, scene_.time);
@@ -94,8 +96,15 @@ class Run : AnyRun {
     earlier_wall_seconds_ = totals_.wall_seconds;
     warnings_.remember(totals_.warnings);
     earlier_seconds_ = totals_.seconds;
-    const stokes::Evaluations again = kernel_evaluations(), before = totals_.kernel;
-    earlier_kernel_ = {before.far - again.far, before.near - again.near, before.self - again.self};
+    particles_->forget();
+    restore_counts();
+  }
+
+  /// Sets the counts of operations to those in totals_, so that operations since then do not count.
+  void restore_counts() {
+    particles_->set_counts(totals_.counts);
+    const stokes::Evaluations here = kernel_evaluations(), all = totals_.kernel;
+    earlier_kernel_ = {all.far - here.far, all.near - here.near, all.self - here.self};
   }
 
   /// Makes one step and records its row. Returns the reason to end the run early, or an empty text. If a stop signal arrives within the step or the
@@ -119,9 +128,10 @@ class Run : AnyRun {
       results_.remesh(particles_->body(), particles_->bezier());
     });
     particles_->set_contacts(totals_.contacts);
+    restore_counts();
     if (!error.empty()) fail(error);
     if (!undone.empty()) fail(undone);
-    return output::run_status::by_signal;
+    return reason_of_stop();
   }
 
   /// Runs `act`. Returns the error message if `act` fails on any rank, or an empty text if `act` succeeds or a stop signal interrupts it.
@@ -129,7 +139,7 @@ class Run : AnyRun {
     return coupling::failure_of_any([&] {
       try {
         act();
-      } catch (const motion::Stopped&) {
+      } catch (const Stopped&) {
         interrupted_ = true;
       }
     });
@@ -160,7 +170,7 @@ class Run : AnyRun {
   void adapt() {
     if (!particles_->adapt(state_, totals_)) return;
     results_.remesh(particles_->body(), particles_->bezier());
-    motion::GuardedDynamics motion(particles_->dynamics(), stop_requested);
+    motion::GuardedDynamics motion(particles_->dynamics());
     motion.set_time(state_.time, steps_.began());  // if the flow jumps at the end of the step, the velocity before the jump
     state_.history = {motion.velocity(state_.x)};
     state_.slope_error = 0;
@@ -169,12 +179,16 @@ class Run : AnyRun {
   /// Returns the kernel evaluations of this part of the run on all ranks. Collective.
   stokes::Evaluations kernel_evaluations() const { return ranks_.of_all(particles_->kernel_evaluations() + scene_.walls->evaluations()); }
 
+  void collect_counts() {
+    totals_.counts = particles_->counts();
+    totals_.kernel = earlier_kernel_ + kernel_evaluations();
+  }
+
   /// Collects the totals of the run after a finished step, for a checkpoint: counts of operations, phase angle, contacts and warnings.
   void collect_totals() {
-    totals_.counts = particles_->counts();
+    collect_counts();
     totals_.phase_angle = particles_->phase_angle();
     totals_.contacts = particles_->contacts();
-    totals_.kernel = earlier_kernel_ + kernel_evaluations();
     totals_.warnings = warnings_.memory();
 #ifndef NDEBUG
     if (!output::equal_on_all_ranks(state_)) fail("the states on the ranks are not identical");
@@ -231,17 +245,17 @@ class Run : AnyRun {
   }
 
   void save() {
+    const Meanwhile complete(stop_rules().answers, false);
     const auto clock = phases_.time("output");
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const Results::Sampled snapshot = within_step_ && within_step_->sampled ? *within_step_->sampled : sample();
-    // A snapshot within the step needs an evaluation of the velocity, which the totals must include. In two other cases, the totals must stay as they
-    // are: a snapshot at the state of the last row needs no evaluation, and the evaluations of a discarded step do not count.
-    if (within_step_) collect_totals();
+    collect_counts();  // includes the evaluations of the snapshot, which the next row counts
     output::Checkpoint checkpoint;
     particles_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, snapshot);
     coupling::Krylov::forget_recycled();
+    particles_->forget();
   }
 
   /// Evaluates and returns the snapshot that is due, at the end of the last step or at a time within the step.
@@ -261,7 +275,10 @@ class Run : AnyRun {
   void end_at_wall(const std::string& list, double contact_gap) {
     const double gap = row_.value("gap"), least = contact_gap * scene_.least_radius();
     if (gap >= least) return;
-    fail(formatted("a particle touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap, list.c_str(), contact_gap, least));
+    const auto* const system = particles_->capsule();
+    const std::span<const coupling::Particle> particles = system ? system->particles() : std::span<const coupling::Particle>();
+    fail(nearest_to_wall(scene_, particles_->body(), particles, state_.x) +
+         formatted(" touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap, list.c_str(), contact_gap, least));
   }
 
   /// Throws RunFailure if two particles are so close that they count as touching.
@@ -278,14 +295,14 @@ class Run : AnyRun {
     if (scene_.tube.present) end_at_wall(scene_.tube.list(), scene_.tube.contact_gap);
     if (scene_.wall.present) end_at_wall("Wall", scene_.wall.contact_gap);
     if (scene_.has_gaps()) end_at_contact();
-    const bool signalled = coupling::any_stop_requested(stop_requested()), late = scene_.output.too_late(ranks_.seconds_since(start_));
+    const bool stops = coupling::any_stop_requested(stop_requested());
     const auto tolerance = scene_.time.steady_tolerance;
     const bool flow_changes = scene_.flow.history && scene_.flow.history->lasts(state_.time);
     if (tolerance && !flow_changes && row_.largest("shape_velocity") < *tolerance) return output::run_status::steady;
     if (scene_.time.end_when_past && least_axial_position(scene_, particles_->body(), row_) > *scene_.time.end_when_past)
       return output::run_status::past;
     if (!(state_.time < scene_.time.final_time)) return {};
-    return signalled ? output::run_status::by_signal : late ? output::run_status::by_clock : "";
+    return stops ? reason_of_stop() : "";
   }
 
   Account account(const std::string& status) const {

@@ -12,6 +12,7 @@
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "base/stop.hpp"
 #include "motion/approach.hpp"
 #include "motion/guarded.hpp"
 #include "motion/periodic.hpp"
@@ -20,13 +21,14 @@
 #include "scene/particles/particle_system.hpp"
 #include "scene/particles/warnings.hpp"
 #include "scene/searches/searches.hpp"
-#include "scene/series/run_totals.hpp"
-#include "scene/series/series.hpp"
 #include "scene/searches/shape_modes.hpp"
 #include "scene/searches/steady_system.hpp"
 #include "scene/searches/system_pool.hpp"
+#include "scene/series/run_totals.hpp"
+#include "scene/series/series.hpp"
 #include "scene/tube.hpp"
 #include "system/parallel/agreement.hpp"
+#include "system/parallel/stop_together.hpp"
 
 namespace tanktread {
 
@@ -36,7 +38,9 @@ namespace {
 class SteadyRun : protected AnyRun {
  public:
   SteadyRun(const Scene& scene, const RunRequest& request)
-      : AnyRun(scene, request), pool_(scene, request.changed, ranks_, phases_, stop_requested_), system_(pool_.latest()),
+      : AnyRun(scene, request),
+        pool_(scene, request.changed, ranks_, phases_),
+        system_(pool_.latest()),
         chosen_(plan(scene, system_->particles->body(), ranks_.size())),
         results_(scene, request, system_->particles->body(), system_->particles->bezier(), ranks_) {
     ranks_.measure(phases_);
@@ -46,14 +50,14 @@ class SteadyRun : protected AnyRun {
 
   /// Computes and records all shapes. Returns the exit code.
   int go() {
-    stop_where_told();
+    coupling::stop_together();
     print(chosen_);
     for (const Warning& warning : first_warnings(scene_)) results_.warn(warning);
     check_parity(*system_);
     clock_.emplace(phases_, "steady shape");
     try {
       failure_ = coupling::failure_of_any([this] { search(); });
-    } catch (const motion::Stopped&) {
+    } catch (const Stopped&) {
       if (results_.last_saved() < 0) throw;
       stopped_ = reason_of_stop();
     }
@@ -129,7 +133,7 @@ class SteadyRun : protected AnyRun {
       found_.modes = modes();
     } catch (const RunFailure&) {
       lost = std::current_exception();
-    } catch (const motion::Stopped&) {
+    } catch (const Stopped&) {
       lost = std::current_exception();
     }
     if (lost) system_->motion->set_time(0, 0);  // a return map may have set another time
@@ -148,6 +152,7 @@ class SteadyRun : protected AnyRun {
   }
 
   void save() {
+    const Meanwhile complete(stop_rules().answers, false);
     const auto clock = phases_.time("output");
     output::Checkpoint checkpoint;
     system_->particles->store(checkpoint);
@@ -185,8 +190,6 @@ class SteadyRun : protected AnyRun {
     return stopped_.empty() ? code : Exit::stopped;
   }
 
-  // Function that returns whether this rank has received a stop signal or has passed the wall-clock limit.
-  const std::function<bool()> stop_requested_ = [this] { return stop_requested() || scene_.output.too_late(seconds_here()); };
   int earlier_coarsenings_ = 0;  // coarsenings up to the last recorded shape
   std::string failure_, stopped_;  // reasons for which the search failed or was stopped
 
@@ -229,6 +232,7 @@ class SteadySearch : public SteadyRun {
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     write(found.converged);
+    if (!found.converged && !found.why.empty()) throw RunFailure("the steady shape was not found, because " + found.why);
     if (!found.converged)
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g; another Steady/step or Steady/method "
                                  "`%s` may help", found.iterations, found.rest,
@@ -265,17 +269,19 @@ class PeriodicSearch : public SteadyRun {
 
 /// Follows a branch of steady shapes, on meshes that are adapted to its points.
 class BranchSearch : public SteadyRun {
-  using SteadyRun::SteadyRun;
+ public:
+  /// `first`: see SystemPool::begin_branch().
+  BranchSearch(const Scene& scene, const RunRequest& request, const Parameters& first) : SteadyRun(scene, request), first_(first) {}
 
+ private:
   void search() override {
-    const Parameters first = first_parameters(scene_, request_.deck_text);
-    pool_.begin_branch(first);
+    pool_.begin_branch(first_);
     motion::Branch branch([this](double parameter, double second) { return equations_of(pool_.at({parameter, second}, state_.x)); },
-                          [&](double parameter, std::vector<Net>& shapes) { return adapt_at({parameter, first[1]}, shapes); }, scene_.continuation,
-                          scene_.steady, scene_.solvers, first[0], first[1], state_.x);
+                          [this](double parameter, std::vector<Net>& shapes) { return adapt_at({parameter, first_[1]}, shapes); },
+                          scene_.continuation, scene_.steady, scene_.solvers, first_[0], first_[1], state_.x);
     branch.search([&](Net& x, const motion::SteadyReport& failed) { return approach(state_.x, x, failed); });
     for (int k = 0; const auto point = branch.next(); ++k) {
-      stop_where_told();
+      coupling::stop_together();
       use(pool_.at({point->parameter, point->second}, state_.x));
       state_.x = point->x, state_.time = k, totals_.step = k;
       system_->motion->restore_constraints(state_.x);
@@ -300,14 +306,27 @@ class BranchSearch : public SteadyRun {
     if (changed) pool_.adapted();
     return changed;
   }
+
+  const Parameters first_;
 };
 
 }  // namespace
 
+void check_search(const Scene& scene, const RunRequest& request) {
+  if (scene.runs_in_time()) return;
+  if (scene.continuation.present) first_parameters(scene, request.deck_text, request.changed);
+  if (!scene.spectrum.parity) return;
+  coupling::Ranks ranks;
+  Phases phases;
+  check_parity(*SystemPool(scene, request.changed, ranks, phases).latest());
+}
+
 int find_steady(const Scene& scene, const RunRequest& request) {
   if (request.resume) throw UserError("--resume continues a run in time: " + scene.sought().here + " has no time steps to continue.");
   switch (scene.search()) {
-    case Search::steady: return scene.continuation.present ? BranchSearch(scene, request).go() : SteadySearch(scene, request).go();
+    case Search::steady:
+      return scene.continuation.present ? BranchSearch(scene, request, first_parameters(scene, request.deck_text, request.changed)).go()
+                                        : SteadySearch(scene, request).go();
     case Search::periodic: return PeriodicSearch(scene, request).go();
     case Search::spectrum: return InitialShape(scene, request).go();
     case Search::none: break;

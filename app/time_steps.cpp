@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "motion/guarded.hpp"
 
@@ -27,7 +26,7 @@ TimeSteps::TimeSteps(const Scene& scene, ParticleSystem& particles)
     : scene_(scene), particles_(particles), scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {}
 
 void TimeSteps::advance(motion::State& state, double limit, motion::State& before) {
-  motion::GuardedDynamics motion(particles_.dynamics(), stop_requested);
+  motion::GuardedDynamics motion(particles_.dynamics());
   try {
     if (motion::cross_kink(motion, state)) before = state;
     if (!state.history.front().allFinite()) throw RunFailure("the evaluation of the velocity failed at the start of a step");

@@ -14,7 +14,7 @@ class TimeSteps {
   TimeSteps(const Scene& scene, ParticleSystem& particles);
 
   /// Makes a step that ends at the time `limit` or earlier. If the motion is not smooth at the start of the step (a kink), the scheme restarts there,
-  /// and `before` becomes the state after the kink. Throws RunFailure if the step fails, and motion::Stopped if a stop signal arrives within the
+  /// and `before` becomes the state after the kink. Throws RunFailure if the step fails, and Stopped if a stop signal arrives within the
   /// step.
   void advance(motion::State& state, double limit, motion::State& before);
 

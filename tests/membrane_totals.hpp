@@ -1,6 +1,7 @@
 #pragma once
 // Energy and tensions of a whole membrane, from the values that the library returns for its elements.
 
+#include <cmath>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -21,7 +22,7 @@ inline double energy(const Membrane& membrane, const Net& x) { return energy(mem
 inline TensionSummary tension_summary(const Membrane& membrane, const Net& x) {
   const ElementTensions all = membrane.element_tensions(x, indices(membrane.space().elements.size()));
   const auto sum = [](const std::vector<double>& areas) { return std::accumulate(areas.begin(), areas.end(), 0.); };
-  return {all.smallest, sum(all.compressed) / sum(all.area), all.area_change};
+  return {all.smallest, sum(all.compressed) / sum(all.area), all.area_change, std::sqrt(sum(all.squared_change) / sum(all.unstressed))};
 }
 
 }  // namespace tanktread::membrane

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <random>
 
@@ -10,9 +11,10 @@
 #include "accuracy/outcome.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "motion/guarded.hpp"
+#include "base/stop.hpp"
 #include "record/files/file.hpp"
 #include "system/parallel/agreement.hpp"
+#include "system/parallel/ranks.hpp"
 
 namespace tanktread::accuracy {
 
@@ -47,6 +49,14 @@ int needed(const RequestResult& answer, const std::vector<Outcome>& pilots, int 
   return level;
 }
 
+/// Prints on the first rank that the pilot run of a level begins. `before`: outcomes of the pilot runs before it.
+void announce(int level, const std::vector<Outcome>& before) {
+  if (coupling::Ranks().rank() != 0) return;
+  const std::string about = before.empty() ? "" : formatted(", about %.2g s", predicted_seconds({before[0].seconds}));
+  std::printf("  accuracy    pilot run of level %d, with %d elements per side%s\n", level, elements_per_side(level), about.c_str());
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 std::vector<std::string> forecast(const LadderRequest& task, const Program& program) {
@@ -62,9 +72,10 @@ std::vector<std::string> forecast(const LadderRequest& task, const Program& prog
     const fs::path place = directory.path / output::level_folder(std::to_string(k));
     std::string text;
     const auto fail = [&](const std::string& why) { failure = formatted("level %d failed: ", k) + why; };
+    if (!task.quiet) announce(k, outcomes);
     try {  // climb() continues after the same failures
       text = program.deck(settings(task.values, level));
-      if (program.run(text, place, false, task.options.wall_clock_limit) == Exit::stopped) throw motion::Stopped();
+      if (program.run(text, place, false, task.options.wall_clock_limit) == Exit::stopped) throw Stopped();
     } catch (const RunFailure& error) {
       const std::string what = error.what();
       fail(what.substr(0, what.find("; the checkpoint")));  // the checkpoint is deleted with the directory

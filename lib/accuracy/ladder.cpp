@@ -9,9 +9,9 @@
 #include "accuracy/publication.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "base/stop.hpp"
 #include "base/text_file.hpp"
 #include "deck/words.hpp"
-#include "motion/guarded.hpp"
 #include "record/files/checkpoint.hpp"
 #include "record/files/file.hpp"
 #include "system/parallel/agreement.hpp"
@@ -206,7 +206,7 @@ class Ladder {
     try {
       if (program_.run(deck, directory(name), resume, limit) == Exit::stopped) return Exit::stopped;
       return 0;
-    } catch (const motion::Stopped&) {
+    } catch (const Stopped&) {
       return Exit::stopped;
     } catch (const RunFailure& failure) {
       fail(name, failure.what());
@@ -246,7 +246,7 @@ class Ladder {
     } catch (const UserError&) {  // there is no record, or it is damaged
       return Start::anew;
     }
-    return output::snapshots(place).empty() ? Start::anew : Start::resume;
+    return output::obstacle_to_resuming(place).empty() ? Start::resume : Start::anew;
   }
 
   /// Estimates the error for each request from the finished levels. Called only on the first rank.

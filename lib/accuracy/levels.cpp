@@ -16,7 +16,7 @@ namespace tanktread::accuracy {
 namespace {
 
 constexpr std::array<int, last_level + 1> sides{3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 50, 66};
-constexpr double least_quadrature = 1e-6;  // smallest error of far-field sums in single precision and near-singular quadrature
+constexpr double least_quadrature = 1e-6;  // smallest Quadrature/tolerance of a level: the smallest error of near-singular quadrature
 
 /// Collects the settings `Section/key=value` of a level in `all`, computed from the values of the deck.
 class Setter {

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#include "base/versions.hpp"
+
 namespace tanktread {
 
 using Vec3 = Eigen::Vector3d;

@@ -95,12 +95,14 @@ struct Layers {
     for (auto& [name, keys] : changed) {
       if (!sublist(sublist(merged.get(), "Expect"), name)) continue;
       Teuchos::ParameterList& expectation = merged->sublist("Expect").sublist(name);
+      const Teuchos::ParameterEntry* const reason = expectation.getEntryPtr("not binding");
+      if (reason && !as_text(*reason)) continue;  // a value of another type is reported later, when the deck is declared
       if (before_end(expectation, own)) std::erase(keys, "Time/final time");
       std::ranges::sort(keys);
       keys.erase(std::ranges::unique(keys).begin(), keys.end());
       if (!all.empty())
         expectation.set("not binding", all);
-      else if (!keys.empty() && expectation.get("not binding", std::string()).empty())
+      else if (!keys.empty() && (!reason || as_text(*reason)->empty()))
         expectation.set("not binding", "the deck was changed: " + joined(keys, " and "));
     }
   }

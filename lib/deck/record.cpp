@@ -88,6 +88,8 @@ std::vector<std::string> mistakes(const Record& section) { return all_of(section
 
 std::vector<std::string> idle_keys(const Record& section) { return all_of(section, &Record::idle); }
 
+std::vector<std::string> unusual_values(const Record& section) { return all_of(section, &Record::unusual); }
+
 std::vector<std::string> unknown_keys(const Record& section, const Record& root) {
   std::vector<std::string> all;
   if (section.foreign) return all;

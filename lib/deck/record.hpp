@@ -52,6 +52,7 @@ struct Record {
   std::vector<std::unique_ptr<Record>> sections;
   std::vector<std::string> mistakes;                ///< one sentence per refused value; the key keeps its default
   std::vector<std::string> idle;                    ///< one sentence per key that is given but has no effect
+  std::vector<std::string> unusual;                 ///< one sentence per given value of unusual size
   bool alike = false;                               ///< true if inner sections inherit keys through the key `like` or from `defaults`
   std::vector<std::string> mentioned;               ///< names that are allowed in this section although they are not declared
   std::shared_ptr<Teuchos::ParameterList> foreign;  ///< parameters passed to another library; null if this program reads the section
@@ -73,6 +74,9 @@ std::vector<std::string> mistakes(const Record& section);
 
 /// Returns the sentences about keys without effect in a section and its inner sections, in the order of mistakes().
 std::vector<std::string> idle_keys(const Record& section);
+
+/// Returns the sentences about values of unusual size in a section and its inner sections, in the order of mistakes().
+std::vector<std::string> unusual_values(const Record& section);
 
 /// Returns a sentence for each key in a section or its inner sections that is given but not declared. The sentence suggests the closest key, which
 /// may be in another section of `root`. An unknown key that several sections inherit is reported once.

@@ -3,6 +3,7 @@
 #include <Teuchos_ParameterList.hpp>
 
 #include "deck/record.hpp"
+#include "deck/value.hpp"
 #include "deck/words.hpp"
 
 namespace tanktread::deck {
@@ -31,7 +32,7 @@ std::string json_type(const Entry& entry) {
   }
   std::string number = R"("type": "number")";
   if (type.kind == ValueType::whole) number = R"("type": "integer")";
-  else if (is_dimensional(entry)) number = R"("type": ["number", "string"], "pattern": "^[-+.0-9]")";
+  else if (is_dimensional(entry)) number = R"("type": ["number", "string"], "pattern": "^[-−+.0-9]")";
   number += bounds(type.rule);
   if (type.count == 1) return number;
   const std::string size = std::to_string(type.count);
@@ -69,7 +70,10 @@ std::string commented_text(const Record& section, int depth) {
       others += (others.empty() ? "" : ", ") + entry.key + (entry.fallback.empty() ? "" : " (" + entry.fallback + ")");
       continue;
     }
-    out += indent + "# " + described(entry) + "\n" + indent + entry.key + ": " + entry.value + "\n";
+    const std::vector<std::string> texts = as_texts(*section.given->getEntryPtr(entry.key));  // numbers with units stay as they are given
+    std::string value = entry.value;
+    if (entry.type.kind == ValueType::number && !texts.empty()) value = entry.type.count == 1 ? texts.front() : "[" + joined(texts, ", ") + "]";
+    out += indent + "# " + described(entry) + "\n" + indent + entry.key + ": " + value + "\n";
   }
   if (!others.empty()) out += indent + "# and, with their defaults: " + others + "\n";
   for (const auto& inner : section.sections)

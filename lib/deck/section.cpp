@@ -1,7 +1,6 @@
 #include "deck/section.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include <Teuchos_ParameterList.hpp>
 
 #include "base/errors.hpp"
+#include "deck/quantity.hpp"
 #include "deck/record.hpp"
 #include "deck/units.hpp"
 #include "deck/value.hpp"
@@ -48,9 +48,17 @@ Value value_of(const std::vector<double>& numbers) {
 
 /// Returns whether a text begins with a number followed by other characters, such as a unit, but not by a comma, as in a list without brackets.
 bool has_unit(const std::string& text) {
-  double number = 0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && rest != text.data() + text.size() && *rest != ',';
+  const std::optional<Quantity> given = quantity(text);
+  return given && !given->unit.empty() && given->unit.front() != ',';
+}
+
+/// Returns the end of a sentence about a refused value of `size` numbers: the spelling of a number that works, if the deck has another one.
+std::string spelling_of_numbers(const Teuchos::ParameterEntry& entry, int size) {
+  const std::vector<std::string> texts = as_texts(entry);
+  for (const std::string& text : texts)
+    if (const std::string works = working_spelling(text); !works.empty()) return works;
+  const std::size_t given = std::max(texts.size(), as_numbers(entry).value_or(std::vector<double>()).size());
+  return size > 1 && static_cast<int>(given) > size ? "; if commas are meant as decimal points, write points: [0.5, 1.0, 1.5]" : "";
 }
 
 /// Returns the numbers of an entry, converted to the deck's units, if at least one of them has a unit; otherwise an empty vector. Throws UserError if
@@ -58,7 +66,7 @@ bool has_unit(const std::string& text) {
 std::vector<double> numbers_with_units(const std::string& path, const Teuchos::ParameterEntry& entry, std::string_view unit, const Units* units) {
   const std::vector<std::string> texts = as_texts(entry);
   if (std::ranges::none_of(texts, has_unit)) return {};
-  if (!units) refuse(path, "a plain number in a deck without the section Units", unit, description(entry));
+  if (!units) refuse(path, "a plain number in a deck without the section Units", unit, description(entry) + "; with `Units: {}` units work");
   std::vector<double> numbers;
   for (const std::string& text : texts) try {
       numbers.push_back(units->number(text, unit));
@@ -81,7 +89,7 @@ std::vector<double> checked(const std::string& path, const Teuchos::ParameterEnt
   if (single) good = good && (as_number(entry) || as_text(entry));
   for (const double x : numbers)
     good = good && std::isfinite(x) && type.rule.holds(x) && (!whole || (x == std::floor(x) && std::abs(x) <= std::numeric_limits<int>::max()));
-  if (!good) refuse(path, numbers_text(type, " in brackets"), unit, description(entry));
+  if (!good) refuse(path, numbers_text(type, " in brackets"), unit, description(entry) + spelling_of_numbers(entry, type.count));
   if (!whole && !std::ranges::all_of(numbers, computable)) refuse(path, "between 1e-75 and 1e75 in size", unit, description(entry));
   return numbers;
 }
@@ -128,6 +136,14 @@ void state(Record& record, std::string_view name, Field& field, const ValueType&
   record.entries.push_back(std::move(entry));
 }
 
+/// Records a sentence about the largest of a key's numbers if its size is unusual. The lengths of Adaptation are left out because they are tolerances.
+void note_unusual(Record& record, const Units& units, const std::string& path, const std::vector<double>& numbers, const Rule& rule,
+                  std::string_view unit) {
+  const double size = std::abs(std::ranges::max(numbers, {}, [](double x) { return std::abs(x); }));
+  const std::string how = record.name == "Adaptation" ? "" : units.unusual(unit, size, rule.low < 0 && unit == "length");
+  if (!how.empty()) record.unusual.push_back(path + " " + how + ".");
+}
+
 /// Returns the section of this name, completed by the keys of the section that its key `like` names. Without the key `like`, it is completed by the
 /// keys of the section `defaults`, if there is one. `above`: names of the sections whose `like` led to this section, to detect a cycle.
 std::shared_ptr<Teuchos::ParameterList> with_shared(const Record& all, const std::string& name, std::vector<std::string> above) {
@@ -166,7 +182,11 @@ void Section::key(std::string_view name, Field& field, const Rule& rule, std::st
   using Value = typename Held<Field>::Value;
   const ValueType type = type_of<Value>(rule);
   state(*state_->record, name, field, type, unit, meaning,
-        [&](const std::string& path, const auto& entry) { return value_of<Value>(checked(path, entry, type, unit, state_->units.get())); });
+        [&](const std::string& path, const auto& entry) {
+          const std::vector<double> numbers = checked(path, entry, type, unit, state_->units.get());
+          if (state_->units) note_unusual(*state_->record, *state_->units, path, numbers, rule, unit);
+          return value_of<Value>(numbers);
+        });
 }
 
 template void Section::key(std::string_view, double&, const Rule&, std::string_view, std::string_view);
@@ -226,6 +246,7 @@ void Section::without_effect_except(const std::string& name, const std::string& 
 }
 
 std::vector<std::string> Section::idle_keys() const { return deck::idle_keys(*state_->record); }
+std::vector<std::string> Section::unusual_values() const { return deck::unusual_values(*state_->record); }
 
 Section Section::enter(std::string_view name, std::string_view meaning) {
   Record& outer = *state_->record;

@@ -93,6 +93,9 @@ class Section {
   void without_effect_except(const std::string& name, const std::string& because);  ///< without_effect() for all declared keys but `name`
   std::vector<std::string> idle_keys() const;  ///< one sentence per key without effect that the deck sets, also in inner sections
 
+  /// Returns one sentence per given value, also in inner sections, that is a thousand times smaller or larger than usual; none without units.
+  std::vector<std::string> unusual_values() const;
+
   /// Declares a section inside this one by calling `options(Section&)` if `options` is a function, and otherwise `options.declare(Section&)`.
   template <class Options>
   void section(std::string_view name, Options&& options, std::string_view meaning) {

@@ -24,7 +24,7 @@ struct Meaning {
   std::string_view what;
 };
 
-constexpr std::array<Meaning, 31> synonyms{{
+constexpr std::array<Meaning, 32> synonyms{{
     {"|capsules|cells|drops|bodies|number of particles|number of capsules|n particles|suspension|hematocrit|haematocrit|volume fraction|",
      "Particles"},
     {"|dt|delta t|time step|timestep|step|step size|stepsize|", "Time/fixed step or Time/initial step"},
@@ -46,6 +46,7 @@ constexpr std::array<Meaning, 31> synonyms{{
     {"|angle|rotation|tilt|euler angles|inclination|", "Particle/orientation"},
     {"|mu|eta|dynamic viscosity|outer viscosity|viscosity outside|", "Flow/viscosity"},
     {"|gamma|gammadot|gamma dot|shear|rate|strain rate|", "Flow/shear rate"},
+    {"|q|volumetric flow rate|volume flow|volume flow rate|flowrate|pump rate|", "Flow/flow rate"},
     {"|velocity gradient|gradu|grad u|gradient tensor|", "Flow/gradient"},
     {"|mesh size|h|n|resolution|elements|number of elements|n elements|refinement|refinement level|subdivisions|element size|",
      "Surface/elements per side"},

@@ -44,6 +44,14 @@ bool reads(const std::string& text, Number& number) {
   return error == std::errc() && last == end;
 }
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Returns whether a node is a whole number.
+bool is_whole(const YAML::Node& node) {
+  long long whole = 0;
+  return node.IsScalar() && reads(node.Scalar(), whole);
+}
+
 /// Converts a word to an entry of the first of these types that fits: truth value, whole number, number, text. A word in quotes is text.
 Teuchos::ParameterEntry typed(const YAML::Node& node) {
   const std::string& text = node.Scalar();
@@ -87,6 +95,8 @@ class Walk {
   /// Adds the keys of `map` to `list`. `path` is the path of the list in the deck.
   void read(const YAML::Node& map, const std::string& path, int level, Teuchos::ParameterList& list) {
     std::map<std::string, int> lines;
+    std::string last;    // path of the key before
+    YAML::Node before;   // value of the key before
     for (const auto& item : map) {
       const YAML::Node key = item.first;
       if (!key.IsScalar() || key.Scalar().empty() || key.Scalar().size() > longest_key)
@@ -94,6 +104,8 @@ class Walk {
       check(key);
       const std::string& name = key.Scalar();
       const std::string here = path.empty() ? name : path + "/" + name;
+      if (item.second.IsNull() && is_whole(before) && is_digit(name.front())) refuse_comma(key, last, before.Scalar() + "." + name);
+      last = here, before.reset(item.second);
       const auto [first, is_new] = lines.emplace(name, key.Mark().line + 1);
       if (!is_new) refuse(key, here + " is set twice; it was first set in line " + std::to_string(first->second));
       add(name, item.second, level == 0 ? "" : here, level, list);
@@ -117,12 +129,30 @@ class Walk {
     throw UserError(origin_ + ", line " + std::to_string(node.Mark().line + 1) + ": " + what + ".");
   }
 
+  [[noreturn]] void refuse_comma(const YAML::Node& node, const std::string& path, const std::string& works) const {
+    refuse(node, path + " has a comma, which is no decimal point: write " + works);
+  }
+
+  /// Throws UserError if the blanks in a sequence show that every second comma stands for a decimal point, as in `[0,5, 1,0]`.
+  void check_commas(const YAML::Node& sequence, const std::string& path) const {
+    std::string works;
+    bool decimal = sequence.size() > 2 && sequence.size() % 2 == 0;
+    for (std::size_t i = 0; decimal && i < sequence.size(); ++i) {
+      const YAML::Node one = sequence[i], before = sequence[i > 0 ? i - 1 : 0];
+      decimal = one.IsScalar() && !one.Scalar().empty() && (i % 2 == 1 ? is_digit(one.Scalar().front()) : is_whole(one));
+      if (decimal && i > 0) decimal = (one.Mark().pos - before.Mark().pos - static_cast<int>(before.Scalar().size()) == 1) == (i % 2 == 1);
+      if (decimal) works += (i == 0 ? "" : i % 2 == 1 ? "." : ", ") + one.Scalar();
+    }
+    if (decimal) refuse_comma(sequence, path, "[" + works + "]");
+  }
+
   void check(const YAML::Node& node) const {
     if (node.IsScalar() && !is_utf8(node.Scalar())) refuse(node, "a word has bytes that are not UTF-8, but a deck is a text file in UTF-8");
   }
 
   /// Returns the scalars of a sequence, or of a sequence of sequences of equal length (a matrix, row by row).
   std::vector<YAML::Node> words(const YAML::Node& sequence, const std::string& path) {
+    check_commas(sequence, path);
     std::vector<YAML::Node> out;
     for (const YAML::Node& item : sequence) {
       const bool row = item.IsSequence() && item.size() > 0 && item.size() == sequence[0].size();

@@ -164,11 +164,11 @@ Net Membrane::load(const Net& x) const {
 
 ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> elements, double uniform) const {
   const std::vector<double> none(space_->elements.size(), 0.);
-  ElementTensions result{std::numeric_limits<double>::infinity(), 0, none, none};
+  ElementTensions result{std::numeric_limits<double>::infinity(), 0, none, none, none, none};
   const int lanes = pack_lanes();
   const auto mine = part(elements);
   mine->each_batch([&](const Part::Points& at) {
-    const bool sampled = mine->sampled[at.group.material];
+    const bool sampled = mine->sampled[at.group.material], all_points = at.group.material < static_cast<int>(materials_.all.size());
     Pack a[6 * max_gauss], tension[max_gauss], share[max_gauss];
     const double unit = modulus(at.whole);
     tangents(at.group, at.batch, x, a);
@@ -176,11 +176,14 @@ ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> el
     for (int q = 0; q < at.n; ++q)
       for (int l = 0; l < at.batch.used; ++l) {
         const double here = numbers(tension)[lanes * q + l] / unit + uniform, area = numbers(share)[lanes * q + l];
-        result.area_change = std::max(result.area_change, std::abs(area / numbers(at.reference, q, 4)[l] - 1));
+        const double unstressed = numbers(at.reference, q, 4)[l], change = area / unstressed - 1;
+        const int e = at.batch.elements[l];
+        result.area_change = std::max(result.area_change, std::abs(change));
+        if (all_points) result.unstressed[e] += unstressed, result.squared_change[e] += unstressed * change * change;
         if (!sampled) continue;
         result.smallest = std::min(result.smallest, here);
-        result.area[at.batch.elements[l]] += area;
-        if (here < compressed_below) result.compressed[at.batch.elements[l]] += area;
+        result.area[e] += area;
+        if (here < compressed_below) result.compressed[e] += area;
       }
   });
   return result;

@@ -16,16 +16,18 @@ struct Part;
 
 /// Summary of tensions and area changes over the Gauss points, for the columns `smallest_tension`, `compressed_area` and `local_area_change` of the
 /// time series. smallest: smallest principal tension divided by the modulus. compressed_area: fraction of the current area in which a principal
-/// tension is less than -1e-9 of the modulus. area_change: largest |J - 1|, with J the ratio of current to unstressed area.
+/// tension is less than -1e-9 of the modulus. area_change: largest |J - 1|, with J the ratio of current to unstressed area. rms_area_change: root
+/// mean square of J - 1 over the unstressed area.
 struct TensionSummary {
-  double smallest = 0, compressed_area = 0, area_change = 0;
+  double smallest = 0, compressed_area = 0, area_change = 0, rms_area_change = 0;
 };
 
 /// Contributions of some elements to a TensionSummary: the smallest tension and the largest |J - 1| on the given elements, and for each element of
-/// the space its area and its area under compression. Both areas are zero for elements that are not given.
+/// the space its area, its area under compression, its unstressed area and the integral of (J - 1)^2 over its unstressed area. All are zero for
+/// elements that are not given.
 struct ElementTensions {
   double smallest = 0, area_change = 0;
-  std::vector<double> area, compressed;
+  std::vector<double> area, compressed, unstressed, squared_change;
 };
 
 /// A membrane: a spline space, its unstressed net X, a law and a Gauss rule. Uses no MPI. The argument `elements` lists the elements to evaluate, in

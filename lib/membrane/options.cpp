@@ -118,7 +118,7 @@ void Options::declare(deck::Section& section) {
               "constant C of the laws `Skalak` and `Evans-Skalak`: at small strains, area modulus / shear modulus = 1 + 2 C; 1 if not given");
   section.key("area points", area_order, deck::between(0, 8), "1",
               "number of Gauss points per direction of an element at which the area resistance of the laws `Skalak` and `Evans-Skalak` is "
-              "evaluated; 0: the points that the rest of the law uses. Use 1 if Membrane/area dilatation is 50 or more, because the mesh locks "
+              "evaluated; 0: the points that the rest of the law uses. Use 1 if Membrane/area dilatation is 20 or more, because the mesh locks "
               "(is too stiff) if the area is resisted at all 16 points of an element");
   section.key(
       "global area dilatation", global_area_dilatation, deck::not_negative(), "1",

@@ -9,7 +9,9 @@ namespace tanktread::motion {
 
 std::string Approach::text() const {
   if (by_shorter_steps) return "no steady shape was found from the initial shape with Steady/step; one was found with a tenth of this step";
-  if (amplitudes.empty()) return "no steady shape was found: not from the initial shape, not with shorter steps, and not in weaker flows";
+  if (amplitudes.empty())
+    return std::string("no steady shape was found: not from the initial shape, not with shorter steps") +
+           (last.why.empty() ? ", and not in weaker flows" : "");
   std::string all;
   for (const double amplitude : amplitudes) all += (all.empty() ? "" : ", ") + formatted("%.4g", amplitude);
   return "no steady shape was found from the initial shape; steady shapes of the flow times " + all +
@@ -23,19 +25,22 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
   // the first and the last shape of a search, divided by the particle radius. few: a search with fewer iterations makes the next step of the
   // amplitude longer. most_searches: largest number of searches. most_polishes: largest number of repeated searches in the full flow with
   // Steady/tolerance; each starts at the shape found by the previous search, with a new Jacobian. most_short_searches: number of searches in the
-  // full flow, with a tenth of Steady/step, that are tried before the continuation.
+  // full flow, with a tenth of Steady/step, that are tried before the continuation. in_vain: see find_steady(); the last of these searches does not
+  // end early, because it can converge after many iterations without a better iterate.
   constexpr double least_step = 1. / 512, coarse = 1e-6, far = 0.5;
-  constexpr int few = 25, most_searches = 60, most_polishes = 3, most_short_searches = 2;
+  constexpr int few = 25, most_searches = 60, most_polishes = 3, most_short_searches = 2, in_vain = 20;
   Approach way;
   const std::shared_ptr<SteadyEquations> full = family(1);
   SteadyEquations shorter = full->with_step(0.1 * full->step());
   Net found = x;
-  for (int k = 0; k < most_short_searches && !way.last.converged; ++k) way.last = find_steady(shorter, options, solvers, found);
+  for (int k = 0; k < most_short_searches && !way.last.converged; ++k)
+    way.last = find_steady(shorter, options, solvers, found, k + 1 < most_short_searches ? in_vain : options.iterations);
   if (way.last.converged && full->dynamics().norm(full->residual(found)) < largest_motion) {
     x = std::move(found);
     way.amplitudes = {1}, way.by_shorter_steps = true;
     return way;
   }
+  if (!way.last.why.empty()) return way;
   bool exhausted = false;  // true if the full flow was solved to the coarse tolerance but not to Steady/tolerance
   const auto found_at = [&](double amplitude, Net& y) {
     SteadyOptions here = options;

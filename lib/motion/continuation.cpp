@@ -84,6 +84,7 @@ std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& 
   Net found = x;
   SteadyReport report = find_steady(*family_(parameter, second_), steady_, solvers_, found);
   if (!report.converged && !(report.rest < noise * steady_.tolerance) && last_.empty() && search_) report = search_(found, report);
+  why_ = report.why.empty() ? "" : ", because " + report.why;
   if (!report.converged && !(report.rest < noise * steady_.tolerance)) return {};
   return Solved{{std::move(found), parameter / unit_}, 0, report.iterations, report.rest};
 }
@@ -257,7 +258,7 @@ void Branch::begin() {
     parameter = start_ + std::copysign(step, way);
     solved = at_parameter(parameter, x_);
     if (!solved && (last_.empty() || halvings == most_halvings))
-      throw RunFailure(formatted("no steady shape was found at %s = %.8g", options_.parameter.c_str(), parameter));
+      throw RunFailure(formatted("no steady shape was found at %s = %.8g", options_.parameter.c_str(), parameter) + why_);
   }
   if (last_.empty()) {
     x_ = solved->place.x;

@@ -128,6 +128,7 @@ class Branch {
   Family family_;
   Remesh remesh_;
   Search search_;
+  std::string why_;  // reason for which the latest search at a given parameter failed, as part of a message; empty if not known
   ContinuationOptions options_;
   SteadyOptions steady_;
   const coupling::SolverOptions& solvers_;

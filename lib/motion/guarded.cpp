@@ -4,43 +4,43 @@
 
 #include "base/errors.hpp"
 #include "system/parallel/agreement.hpp"
+#include "system/parallel/stop_together.hpp"
 
 namespace tanktread::motion {
 
 namespace {
 
 // outcomes of a call on one rank, from best to worst; the worst outcome of all ranks is the common outcome
-enum Outcome { fine, stop_requested, failed, exhausted };
+enum Outcome { fine, failed, exhausted };
 
 }  // namespace
 
-/// Calls `act` and returns whether it succeeded on all ranks. `act` returns true if its result is finite. `stop`: true if this rank received a stop
-/// signal.
-bool GuardedDynamics::done(bool stop, const std::function<bool()>& act) {
-  int mine = stop ? stop_requested : fine;
+/// Calls `act` and returns whether it succeeded on all ranks. `act` returns true if its result is finite.
+bool GuardedDynamics::done(const std::function<bool()>& act) {
+  int mine = fine;
   std::string reason;
   try {
-    if (!act()) mine = failed, reason = "it is not a number";
+    if (!act()) mine = failed, reason = motion_.why_undefined();
   } catch (const std::bad_alloc&) {
     mine = exhausted, reason = "there is not enough memory";
   } catch (const std::exception& error) {
     mine = failed, reason = error.what();
   }
   const auto [worst, why] = coupling::worst_of_all(mine, reason);
-  if (worst == stop_requested) throw Stopped();
   if (worst >= failed) failure_ = why;
   if (worst == exhausted) throw RunFailure(failure_);
   return worst == fine;
 }
 
-Net GuardedDynamics::tried(const Net& like, const std::function<Net()>& evaluate, bool stop) {
+Net GuardedDynamics::tried(const Net& like, const std::function<Net()>& evaluate) {
   Net result;
-  const bool had = coupling::finite(like) && done(stop, [&] { return (result = evaluate()).allFinite(); });
+  const bool had = coupling::finite(like) && done([&] { return (result = evaluate()).allFinite(); });
   return had ? result : coupling::not_a_number(like);
 }
 
 Net GuardedDynamics::velocity(const Net& x) {
-  return tried(x, [&] { return motion_.velocity(x); }, stop_requested_());
+  coupling::stop_together();
+  return tried(x, [&] { return motion_.velocity(x); });
 }
 
 void GuardedDynamics::freeze(const Net& x) {
@@ -48,11 +48,11 @@ void GuardedDynamics::freeze(const Net& x) {
     motion_.freeze(x);
     return true;
   };
-  if (!done(false, freeze)) throw RunFailure("the Jacobian's operators cannot be assembled: " + failure_);
+  if (!done(freeze)) throw RunFailure("the Jacobian's operators cannot be assembled: " + failure_);
 }
 
 void GuardedDynamics::linearise(const Net& x) {
-  linearised_ = done(false, [&] {
+  linearised_ = done([&] {
     motion_.linearise(x);
     return true;
   });
@@ -64,7 +64,8 @@ Net GuardedDynamics::solve(double shift, const Net& r, double tolerance, const c
 }
 
 Net GuardedDynamics::defect(const Net& x, const Net& u) {
-  return tried(x, [&] { return motion_.defect(x, u); }, stop_requested_());
+  coupling::stop_together();
+  return tried(x, [&] { return motion_.defect(x, u); });
 }
 
 Net GuardedDynamics::correction(double shift, const Net& defect, double tolerance, const coupling::Secants& secants) {

@@ -8,22 +8,18 @@
 
 namespace tanktread::motion {
 
-/// Thrown by a velocity evaluation after a stop signal or a time limit. It does not derive from std::exception, so no scheme treats it as an error.
-struct Stopped {};
-
 /// Wraps another motion for the integrators. An evaluation at a trial shape may fail on some ranks, because a solver does not converge, the surface
 /// is folded or open, or values are not finite. The result is then NaN on all ranks, and every scheme shortens its step. If memory runs out, all
-/// ranks throw RunFailure. The decisions of a scheme depend on norms. Every rank uses the norms of the first rank, so that all decisions are equal.
-/// Collective, like the motion.
+/// ranks throw RunFailure. If a rank is to stop, all ranks throw Stopped at the next velocity evaluation. The decisions of a scheme depend on norms.
+/// Every rank uses the norms of the first rank, so that all decisions are equal. Collective, like the motion.
 class GuardedDynamics : public coupling::Dynamics {
  public:
-  /// `stop_requested`: function that returns whether this rank is to stop, because of a signal or a limit. If so, the next velocity evaluation throws
-  /// Stopped on every rank.
-  GuardedDynamics(coupling::Dynamics& motion, std::function<bool()> stop_requested) : motion_(motion), stop_requested_(std::move(stop_requested)) {}
+  explicit GuardedDynamics(coupling::Dynamics& motion) : motion_(motion) {}
 
   void set_time(double time, double start) override { motion_.set_time(time, start); }
   double next_kink(double time) const override { return motion_.next_kink(time); }
   Net velocity(const Net& x) override;
+  std::string why_undefined() const override { return motion_.why_undefined(); }
   void freeze(const Net& x) override;
   bool lattice_moves() const override { return motion_.lattice_moves(); }
   double frozen_bytes() const override { return motion_.frozen_bytes(); }
@@ -48,11 +44,10 @@ class GuardedDynamics : public coupling::Dynamics {
   const std::string& failure() const { return failure_; }
 
  private:
-  bool done(bool stop, const std::function<bool()>& act);
-  Net tried(const Net& like, const std::function<Net()>& evaluate, bool stop = false);
+  bool done(const std::function<bool()>& act);
+  Net tried(const Net& like, const std::function<Net()>& evaluate);
 
   coupling::Dynamics& motion_;
-  std::function<bool()> stop_requested_;
   std::string failure_;
   bool linearised_ = false;
 };

@@ -40,8 +40,8 @@ void join(std::vector<Net>& all, Net field, double least) {
 
 }  // namespace
 
-SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start)
-    : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)) {}
+SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start, Obstacle obstacle)
+    : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)), obstacle_(std::move(obstacle)) {}
 
 std::vector<Net> SteadyEquations::neutral(const Net& x) {
   // Thresholds of the orthogonalisation: a field is dropped if its component orthogonal to the previous fields is smaller than this fraction of its
@@ -126,7 +126,7 @@ bool approach(SteadyEquations& equations, Net& x) {
 
 }  // namespace
 
-SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x) {
+SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x, int most_in_vain) {
   coupling::Dynamics& dynamics = equations.dynamics();
   dynamics.freeze(x);
   if (approach(equations, x)) dynamics.freeze(x);
@@ -135,12 +135,15 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   const bool bare = options.method == "newton-krylov" && solvers.steady.preconditioner == "none";
   const int depth = coupling::FixedPoint::deep(x.size());
   FixedPointError error(depth);
+  int in_vain = 0;  // number of iterations since the best iterate
   const auto corrected = [&](const Net& y) -> Net {
     const Net r = equations.residual(y), delta = equations.precondition(y, r);
     latest = dynamics.norm(delta);
     if (delta.allFinite()) latest = std::max(latest, dynamics.norm(error(y, delta)));
     if (const double moved = dynamics.norm(r); !(moved < largest_motion)) latest = std::max(latest, moved);
-    if (latest < rest) rest = latest, best = y;
+    ++in_vain;
+    if (latest < rest) rest = latest, best = y, in_vain = 0;
+    if (in_vain == most_in_vain && !equations.obstacle(best).empty()) return coupling::not_a_number(y);  // ends the iteration
     return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
@@ -152,7 +155,7 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, error_norm);
   x = std::move(best);
   dynamics.restore_constraints(x);
-  return {found.iterations, found.converged, rest};
+  return {found.iterations, found.converged, rest, found.converged ? "" : equations.obstacle(x)};
 }
 
 }  // namespace tanktread::motion

@@ -2,6 +2,7 @@
 // Steady shapes.
 
 #include <deque>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -38,6 +39,7 @@ struct SteadyReport {
   int iterations = 0;
   bool converged = false;
   double rest = 0;  ///< estimated error of the shape
+  std::string why;  ///< reason for which the shape was not found, if SteadyEquations::obstacle() knows one
 };
 
 /// Equations of the steady shape x in a search that starts from the shape x0. Q is the projection onto the neutral directions, along which steady
@@ -47,8 +49,11 @@ struct SteadyReport {
 ///   G(x) = (1 - Q) v(x) + (x_V - x)/s - Q (x - x0)/s = 0                                                           (4.17)
 class SteadyEquations {
  public:
+  /// Function that returns why searches that come to the shape x rarely find a steady shape, and what to do; empty if it knows no reason.
+  using Obstacle = std::function<std::string(const Net& x)>;
+
   /// `step`: implicit step s of the preconditioner in (4.17), a time. `start`: the shape x0. `dynamics` must outlive this object.
-  SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start);
+  SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start, Obstacle obstacle = {});
 
   /// Returns G(x) (4.17) times the implicit step s; not finite if the evaluation fails. Collective.
   Net residual(const Net& x);
@@ -58,15 +63,17 @@ class SteadyEquations {
   std::vector<Net> neutral(const Net& x);  ///< returns an orthonormal basis of the neutral directions, the range of Q in (4.17). Collective
   coupling::Dynamics& dynamics() { return dynamics_; }
   double step() const { return step_; }
+  std::string obstacle(const Net& x) const { return obstacle_ ? obstacle_(x) : std::string(); }  ///< see Obstacle
 
   /// Returns these equations with another step s of (4.17).
-  SteadyEquations with_step(double step) const { return {dynamics_, free_, step, start_}; }
+  SteadyEquations with_step(double step) const { return {dynamics_, free_, step, start_, obstacle_}; }
 
  private:
   coupling::Dynamics& dynamics_;
   std::vector<coupling::RigidMotion> free_;
   double step_;
   Net start_;
+  Obstacle obstacle_;
 };
 
 /// Estimates the error of an iterate x_k of a fixed-point iteration from the corrections f_j = g(x_j) - x_j of the last m iterates:
@@ -95,7 +102,9 @@ class FixedPointError {
 
 /// Solves G(x) = 0 (4.17) by NOX, as the fixed-point equation x = x + s (1 - s J)^{-1} G(x) with the implicit step s and the frozen Jacobian J (4.3).
 /// The method is Anderson acceleration (`anderson`) or Newton's method (`newton-krylov`). If one iteration would change x by 0.2 R_C or more,
-/// implicit time steps shorter than s are made first. If the iteration does not converge, x is the best iterate. Collective.
-SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x);
+/// implicit time steps shorter than s are made first. If the iteration does not converge, x is the best iterate. If there is an obstacle at the best
+/// iterate (SteadyEquations::obstacle), ends after `most_in_vain` iterations that find no better one. Collective.
+SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x,
+                         int most_in_vain = 20);
 
 }  // namespace tanktread::motion

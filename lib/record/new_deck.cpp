@@ -11,32 +11,35 @@ namespace tanktread {
 
 namespace {
 
-/// Example deck: its title, and its sections as YAML.
+/// Example deck: its title, and its sections besides Units as YAML.
 struct Example {
   std::string_view name, title, sections;
 };
 
 constexpr std::array<Example, 6> examples{{
     {"capsule", "A capsule in simple shear.",
-     "Flow: {type: simple shear, shear rate: 1.0, viscosity: 1.0}, Particle: {shape: sphere, radius: 1.0, viscosity ratio: 1.0}, "
-     "Membrane: {law: neo-Hookean, capillary number: 0.3}, Surface: {elements per side: 6}, Time: {final time: 5.0}, Output: {interval: 0.5}"},
+     "Flow: {type: simple shear, shear rate: 100 1/s, viscosity: 30 mPa s}, Particle: {shape: sphere, radius: 50 um, viscosity ratio: 1.0}, "
+     "Membrane: {law: neo-Hookean, shear modulus: 0.5 mN/m}, Surface: {elements per side: 6}, Time: {final time: 50 ms}, Output: {interval: 5 ms}"},
     {"drop", "A drop in uniaxial extension.",
-     "Flow: {type: uniaxial extension, shear rate: 1.0}, Particle: {shape: sphere, radius: 1.0, viscosity ratio: 1.0}, "
-     "Membrane: {law: surface tension, capillary number: 0.05}, Surface: {elements per side: 6}, Time: {final time: 5.0}, Output: {interval: 0.5}"},
+     "Flow: {type: uniaxial extension, shear rate: 100 1/s, viscosity: 10 mPa s}, Particle: {shape: sphere, radius: 50 um, viscosity ratio: 1.0}, "
+     "Membrane: {law: surface tension, surface tension: 1 mN/m}, Surface: {elements per side: 6}, Time: {final time: 50 ms}, "
+     "Output: {interval: 5 ms}"},
     {"tube", "A capsule that is carried along a circular tube.",
-     "Flow: {type: duct, mean velocity: 1.0, viscosity: 1.0}, Tube: {section: circle, radius: 1.0}, Particle: {shape: sphere, radius: 0.8}, "
-     "Membrane: {law: neo-Hookean, shear modulus: 20.0, pre-inflation: 0.1}, Surface: {elements per side: 6}, "
-     "Time: {final time: 6.0, steady tolerance: 2.0e-4}, Output: {interval: 0.5}"},
-    {"red-cell", "A red cell in simple shear; lengths in micrometres, times in seconds, forces in piconewtons.",
-     "Flow: {type: simple shear, shear rate: 40.0, viscosity: 0.022}, Particle: {shape: red cell, radius: 3.91, viscosity ratio: 0.27}, "
-     "Membrane: {law: Skalak, shear modulus: 5.0, area dilatation: 10.0, bending modulus: 0.2, bending reference: flat}, "
-     "Surface: {elements per side: 8}, Time: {final time: 0.1}, Output: {interval: 0.01}"},
+     "Flow: {type: duct, mean velocity: 5 mm/s, viscosity: 10 mPa s}, Tube: {section: circle, radius: 50 um}, "
+     "Particle: {shape: sphere, radius: 40 um}, Membrane: {law: neo-Hookean, shear modulus: 1 mN/m, pre-inflation: 0.1}, "
+     "Surface: {elements per side: 6}, Time: {final time: 60 ms, steady tolerance: 2.0e-4}, Output: {interval: 5 ms}"},
+    {"red-cell", "A red cell in simple shear.",
+     "Flow: {type: simple shear, shear rate: 40 1/s, viscosity: 22 mPa s}, Particle: {shape: red cell, radius: 3.91 um, viscosity ratio: 0.27}, "
+     "Membrane: {law: Skalak, shear modulus: 5 uN/m, area dilatation: 10.0, bending modulus: 2e-19 J}, "
+     "Surface: {elements per side: 8}, Time: {final time: 100 ms}, Output: {interval: 10 ms}"},
     {"rigid", "A free rigid spheroid in simple shear.",
-     "Flow: {type: simple shear}, Particle: {shape: spheroid, semi-axes: [1.0, 1.0, 2.0], motion: free}, Surface: {elements per side: 6}, "
-     "Time: {final time: 20.0}, Output: {interval: 0.5}"},
+     "Flow: {type: simple shear, shear rate: 10 1/s, viscosity: 1 mPa s}, "
+     "Particle: {shape: spheroid, semi-axes: [1 um, 1 um, 2 um], motion: free}, Surface: {elements per side: 6}, "
+     "Time: {final time: 2 s}, Output: {interval: 50 ms}"},
     {"several", "Two capsules that meet in simple shear.",
-     "Flow: {type: simple shear}, Particles: {defaults: {Membrane: {law: neo-Hookean, capillary number: 0.3}, Surface: {elements per side: 6}}, "
-     "left: {center: [-3.0, 0.0, 0.5]}, right: {center: [3.0, 0.0, -0.5]}}, Time: {final time: 10.0}, Output: {interval: 0.5}"},
+     "Flow: {type: simple shear, shear rate: 100 1/s, viscosity: 30 mPa s}, Particles: {"
+     "defaults: {radius: 50 um, Membrane: {law: neo-Hookean, shear modulus: 0.5 mN/m}, Surface: {elements per side: 6}}, "
+     "left: {center: [-150 um, 0 um, 25 um]}, right: {center: [150 um, 0 um, -25 um]}}, Time: {final time: 100 ms}, Output: {interval: 5 ms}"},
 }};
 
 }  // namespace
@@ -50,7 +53,7 @@ std::vector<std::string> kinds_of_decks() {
 std::string new_deck(const std::string& kind) {
   const Example& one = *std::ranges::find(examples, kind, &Example::name);
   Scene scene;
-  deck::Document document = deck::read_text("Tanktread: {" + std::string(one.sections) + "}");
+  deck::Document document = deck::read_text("Tanktread: {Units: {}, " + std::string(one.sections) + "}");
   document.declare(scene);
   return "# " + std::string(one.title) + " Every key: tanktread --reference\n" + document.commented();
 }

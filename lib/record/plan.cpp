@@ -11,6 +11,7 @@
 #include "record/plan_particles.hpp"
 #include "scene/member.hpp"
 #include "scene/particles/gaps.hpp"
+#include "scene/particles/warnings.hpp"
 #include "scene/solids.hpp"
 #include "scene/tube.hpp"
 #include "stokes/layer_surface.hpp"
@@ -54,8 +55,25 @@ void add_duct(Lines& lines, const Scene& scene, const Body& body) {
   }
 }
 
+/// Returns the sentences about values of the deck and capillary numbers whose size is unusual; empty if there are none.
+std::string unusual_values(const Scene& scene) {
+  std::string text;
+  const auto add = [&text](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
+  for (const std::string& sentence : scene.unusual_values) add(sentence);
+  for (const ParticleScene& one : scene.particle_scenes()) {
+    if (scene.only_solids || one.particle.rigid()) continue;
+    const double number = one.flow.viscosity * one.speed() / one.modulus();
+    if (number <= 100 && (number >= 1e-7 || number == 0)) continue;
+    add("The capillary number" + (one.name.empty() ? "" : " of " + one.path()) +
+        formatted(" is %.4g, but values of 1e-07 to 100 are usual: check viscosity, velocity, size and modulus.", number));
+    break;
+  }
+  return text;
+}
+
 void add_fluid(Lines& lines, const Scene& scene, const VelocityUnknowns& of_velocity, const Body& body, int ranks) {
   if (scene.units) lines.emplace_back("units", scene.units->description());
+  if (const std::string all = unusual_values(scene); !all.empty()) lines.emplace_back("unusual", all);
   if (!body.wall) {
     const std::string history = scene.varies_in_time() ? ", changing in time" : "";
     if (const auto cell = scene.domain.cell()) {
@@ -268,7 +286,9 @@ output::Entries<std::string> plan(const Scene& scene, int ranks) {
   arrange(all);
   const std::unique_ptr<Body> stacked = make_stacked_body(all);
   if (stacked && scene.tube.present) stacked->wall = make_wall(scene, *stacked);
-  return plan(scene, stacked ? *stacked : *all.front().body, ranks);
+  Lines lines = plan(scene, stacked ? *stacked : *all.front().body, ranks);
+  for (const Warning& warning : first_warnings(scene)) lines.emplace_back("warning", warning.sentence);
+  return lines;
 }
 
 std::string plan_text(const output::Entries<std::string>& plan) {

@@ -39,16 +39,20 @@ std::string identifier() {
   return sum.digits();
 }
 
-UserError another_version(const std::filesystem::path& directory) {
-  return UserError(
-      "--resume " + directory.string() +
-      ": its newest checkpoint was written by another version of tanktread and lacks data that this version needs to continue");
-}
-
-Resumed stored_run(const output::Checkpoint& checkpoint, const std::filesystem::path& directory) try {
-  return {output::stored_state(checkpoint), stored_totals(checkpoint), checkpoint};
-} catch (const std::out_of_range&) {
-  throw another_version(directory);
+/// Returns the result of `act`, which reads a checkpoint. If act() finds that the run cannot be continued, adds to its UserError what can be done.
+template <class Act>
+auto resuming(const std::filesystem::path& directory, const Act& act) {
+  const auto refuse = [&](const std::string& why) {
+    return UserError("--resume " + directory.string() + ": " + why + "; run the deck again with --output " + directory.string() +
+                     " --overwrite");
+  };
+  try {
+    return act();
+  } catch (const UserError& error) {
+    throw refuse(error.what());
+  } catch (const std::out_of_range&) {
+    throw refuse(output::another_version);
+  }
 }
 
 }  // namespace
@@ -80,7 +84,7 @@ output::Saved newest_checkpoint(const std::filesystem::path& directory, const co
   std::optional<output::Saved> saved;
   coupling::together(chooses, [&] { saved = output::newest_checkpoint(directory); });
   const auto step = static_cast<int>(coupling::of_first(saved ? static_cast<double>(saved->file.step) : -1.));
-  if (step < 0) throw UserError("--resume " + directory.string() + ": there is no checkpoint in this directory");
+  if (step < 0) throw UserError("there is no checkpoint in this directory");
   coupling::together(!chooses, [&] {
     const std::filesystem::path path = directory / output::snapshot_name(step);
     saved = {{path, step}, output::read_checkpoint(path), {}};
@@ -153,40 +157,26 @@ void Results::remesh(const Body& body, const surface::BezierMap& map) {
 
 std::optional<Resumed> Results::resumed() {
   if (!request_.resume) return {};
+  return resuming(directory_, [this] { return read_run(); });
+}
+
+/// Reads the newest checkpoint and the rows of `run.h5` up to it. Throws UserError if the run cannot be continued from it.
+Resumed Results::read_run() {
   const output::Saved saved = newest_checkpoint(directory_, ranks_);
   const std::string chosen = saved.file.path.filename();
-  Resumed resumed = stored_run(saved.checkpoint, directory_);
+  Resumed resumed{output::stored_state(saved.checkpoint), stored_totals(saved.checkpoint), saved.checkpoint};
   last_saved_ = resumed.totals.step;
-  if (saved.file.step != last_saved_)
-    throw UserError("--resume " + directory_.string() + ": " + chosen +
-                    formatted(" contains step %d, but its name states another step", last_saved_));
   for (const Warning& warning : resumed.totals.warnings.shown) warnings_.push_back(warning.sentence), add_obstacle(warning.kind);
   coupling::together(writes_, [&] {
-    load_record(saved.checkpoint, chosen);
+    record_.emplace(output::RunRecord::up_to(saved));
+    run_ = saved.checkpoint.texts.at("run");
+    record_->describe(request_.deck_text, origin());
+    declare_series();
     set_aside(saved.damaged, chosen);
     snapshots_.emplace(output::SnapshotSeries::resumed(directory_, last_saved_, run_));
   });
   if (writes_ && !request_.quiet) std::printf("  resumed     from %s\n", chosen.c_str());
   return resumed;
-}
-
-/// Loads the rows of `run.h5` up to a checkpoint. Throws UserError if the rows differ from the rows that existed when the checkpoint was saved.
-void Results::load_record(const output::Checkpoint& checkpoint, const std::string& chosen) {
-  if (!checkpoint.texts.contains("run") || !checkpoint.texts.contains("record")) throw another_version(directory_);
-  run_ = checkpoint.texts.at("run");
-  record_.emplace(output::RunRecord::load(directory_ / output::record_file));
-  const auto rows = static_cast<std::size_t>(last_saved_) + 1;
-  const auto& origin_of_record = record_->provenance();
-  if (const auto run = origin_of_record.find("run"); run == origin_of_record.end() || run->second != run_)
-    throw UserError("--resume " + directory_.string() + ": " + chosen +
-                    " and run.h5 belong to different runs: remove the file that does not belong here.");
-  const auto matches = [&](bool with_undefined) { return record_->checksum(rows, with_undefined) == checkpoint.texts.at("record"); };
-  if (record_->rows() < rows || (!matches(false) && !matches(true)))
-    throw UserError("--resume " + directory_.string() + ": the rows of run.h5 up to " + chosen +
-                    " are damaged: they differ from what was written.");
-  record_->truncate(rows);
-  record_->describe(request_.deck_text, origin());
-  declare_series();
 }
 
 /// Renames damaged snapshots that are newer than the chosen checkpoint, and warns about them.
@@ -276,6 +266,7 @@ void Results::complete(output::Checkpoint& checkpoint, const motion::State& stat
   checkpoint.numbers["picture time"] = picture_time;
   checkpoint.texts["deck"] = request_.deck_text;
   checkpoint.texts["run"] = run_;
+  if (!scene_.has_time()) checkpoint.texts[output::not_resumed] = "it makes no time steps";
   checkpoint.texts["record"] = record_->checksum(static_cast<std::size_t>(totals.step) + 1);
 }
 
@@ -356,10 +347,8 @@ std::vector<std::string> check_expectations(const Scene& scene) {
   return deck::too_late(scene.expect.all, scene.has_time() ? scene.time.final_time : last);
 }
 
-std::string stored_deck(const std::string& directory) try {
-  return newest_checkpoint(directory, coupling::Ranks()).checkpoint.texts.at("deck");
-} catch (const std::out_of_range&) {
-  throw another_version(directory);
+std::string stored_deck(const std::string& directory) {
+  return resuming(directory, [&] { return newest_checkpoint(directory, coupling::Ranks()).checkpoint.texts.at("deck"); });
 }
 
 }  // namespace tanktread

@@ -130,7 +130,7 @@ class Results {
   void declare_series();
   void complete(output::Checkpoint& checkpoint, const motion::State& state, const RunTotals& totals, double picture_time) const;
   void set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen);
-  void load_record(const output::Checkpoint& checkpoint, const std::string& chosen);
+  Resumed read_run();
   void add_obstacle(const std::string& kind);
   void write_files();
   bool young() const { return Clock::now() - process_start_ < std::chrono::seconds(1); }

@@ -12,6 +12,7 @@
 #include "scene/initial_shape.hpp"
 #include "scene/member.hpp"
 #include "scene/plane_wall.hpp"
+#include "scene/room.hpp"
 #include "scene/tube.hpp"
 #include "spline/extraction.hpp"
 #include "surface/geometry.hpp"
@@ -71,7 +72,10 @@ Body make_body(const ParticleScene& particle_scene) {
   return body;
 }
 
-Body make_body_of_several(const ParticleScene& particle_scene, const Member* similar, std::shared_ptr<const stokes::DuctFlow> empty_duct) {
+namespace {
+
+/// Returns the body of make_body_of_several() without checks of its place.
+Body body_anywhere(const ParticleScene& particle_scene, const Member* similar, std::shared_ptr<const stokes::DuctFlow> empty_duct) {
   Body b;
   const int levels = particle_scene.adaptation.enabled ? particle_scene.adaptation.levels : 0;
   if (similar) {
@@ -107,19 +111,37 @@ Body make_body_of_several(const ParticleScene& particle_scene, const Member* sim
   b.radius = particle_scene.radius();
   b.modulus = particle_scene.modulus();
   b.law = law(particle_scene.membrane, b.modulus);
-  check_fit(particle_scene, b);
-  if (particle_scene.wall.present) check_in_front(particle_scene, b);
-  check_in_medium(particle_scene, b);
   b.symmetry = surface::Symmetry(b.space.n_points);
   const bool own = particle_scene.particle.shape.initial && particle_scene.particle.shape.initial->volume == "own";
   b.volume = surface::measures(b.space, own ? b.initial : b.rest).volume;
   return b;
 }
 
+/// Throws NoRoom if the body does not start inside of the fluid, at the smallest distance from walls that is allowed.
+void check_place(const ParticleScene& particle_scene, const Body& body) {
+  check_fit(particle_scene, body);
+  if (particle_scene.wall.present) check_in_front(particle_scene, body);
+  check_in_medium(particle_scene, body);
+}
+
+}  // namespace
+
+Body make_body_of_several(const ParticleScene& particle_scene, const Member* similar, std::shared_ptr<const stokes::DuctFlow> empty_duct) {
+  Body body = body_anywhere(particle_scene, similar, std::move(empty_duct));
+  check_room([&](int factor) {
+    if (factor == 1) return check_place(particle_scene, body);
+    ParticleScene finer = particle_scene;
+    refine(finer, factor);
+    check_place(finer, body_anywhere(finer, nullptr, body.duct));
+  });
+  return body;
+}
+
 void check_in_medium(const ParticleScene& particle_scene, const Body& body) {
   if (stokes::contains(particle_scene.domain.medium.get(), coupling::collocation_matrix(body.space) * body.initial)) return;
-  throw UserError((particle_scene.name.empty() ? "The particle" : particle_scene.path()) + " is not inside the fluid of Domain/kind `" +
-                  particle_scene.domain.kind + "` at the start.");
+  throw NoRoom((particle_scene.name.empty() ? "The particle" : particle_scene.path()) + " is not inside the fluid of Domain/kind `" +
+                   particle_scene.domain.kind + "` at the start.",
+               0);
 }
 
 std::string lacks_symmetry(const ParticleScene& particle_scene, const Body& body) {

@@ -62,7 +62,7 @@ Body make_body(const ParticleScene& particle_scene);
 
 /// Builds the body of one of several particles, without the wall of a tube and without symmetries. If the member `alike` is not null, its mesh and
 /// resting shape are used, and the shape is moved to the position of this particle. `empty_duct`: flow of the empty duct if another particle has it
-/// already; computed if null.
+/// already; computed if null. Throws UserError if walls leave no room for the particle (see check_room).
 Body make_body_of_several(const ParticleScene& particle_scene, const Member* alike, std::shared_ptr<const stokes::DuctFlow> empty_duct);
 
 /// Returns true if make_body_of_several() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
@@ -77,7 +77,7 @@ std::string lacks_symmetry(const ParticleScene& particle_scene, const Body& body
 /// Returns the common symmetry of the scene, the body and the current shape x, restricted to the symmetries that the deck allows the program to use.
 surface::Symmetry symmetry(const ParticleScene& particle_scene, const Body& body, const Net& x);
 
-/// Throws UserError if the body does not start inside the fluid of the medium that Domain/kind chooses (see SharedOptions::medium).
+/// Throws NoRoom if the body does not start inside the fluid of the medium that Domain/kind chooses (see SharedOptions::medium).
 void check_in_medium(const ParticleScene& particle_scene, const Body& body);
 
 /// Loads of a particle on its current mesh, except elasticity and bending.

@@ -59,6 +59,13 @@ void check_times(const Scene& scene) {
                     ", but is " + deck::number_text(scene.snapshot_interval()) + ".");
 }
 
+/// Throws UserError if the deck describes what surrounds a particle, but does not ask for a particle.
+void check_particle(const Scene& scene) {
+  if (!scene.particles.front().implied || !(scene.has_films_around_one() || scene.medium())) return;
+  throw UserError((scene.tube.present ? scene.tube.list() : scene.wall.present ? "Wall" : "Domain") +
+                  " needs a particle, and this deck asks for none: give the section Particle, for example `Particle: {radius: 0.5}`, or Particles.");
+}
+
 /// Throws UserError if options of the sections that all particles share contradict each other.
 void check_shared(const Scene& scene) {
   scene.flow.check();
@@ -123,6 +130,7 @@ void check_adaptation(const ParticleScene& particle_scene) {
 }  // namespace
 
 void Scene::check() const {
+  check_particle(*this);
   if (solvers.rigid_bodies == coupling::BodyEquation::first_kind) check_first_kind(*this);
   check_shared(*this);
   Rejections found;

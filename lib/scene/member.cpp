@@ -9,6 +9,7 @@
 #include "scene/exact_body.hpp"
 #include "scene/particles/drift.hpp"
 #include "scene/tube.hpp"
+#include "system/parallel/stop_together.hpp"
 
 namespace tanktread {
 
@@ -70,6 +71,7 @@ std::vector<Member> make_members(const Scene& scene) {
   std::vector<Member> all;
   std::vector<ParticleScene> scenes = scene.particle_scenes();
   for (ParticleScene& one : scenes) {
+    coupling::stop_together();
     const auto equal = std::ranges::find_if(all, [&](const Member& before) { return alike(before.scene, one); });
     Body body = scenes.size() == 1
                     ? make_body(one)
@@ -147,6 +149,7 @@ coupling::Particle particle(const Member& member) {
   const ParticleScene& particle_scene = member.scene;
   const Body& body = *member.body;
   coupling::Particle particle;
+  particle.path = particle_scene.path();
   particle.space = &body.space;
   particle.viscosity_ratio = particle_scene.particle.viscosity_ratio;
   particle.material = material(particle_scene, body);

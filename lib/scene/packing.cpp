@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "system/parallel/stop_together.hpp"
+
 namespace tanktread {
 
 double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
@@ -32,6 +34,7 @@ class Packing {
 
   bool push_apart() {
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+      coupling::stop_together();
       find_neighbours();
       bool apart = true;
       for (std::size_t i = 0; i < spheres_.size(); ++i)
@@ -45,6 +48,7 @@ class Packing {
   void shake() {
     double step = skin_ / 2;
     for (int sweep = 0; sweep < thermal_sweeps; ++sweep) {
+      coupling::stop_together();
       find_neighbours();
       int taken = 0;
       for (std::size_t i = 0; i < spheres_.size(); ++i) taken += stepped(i, step);

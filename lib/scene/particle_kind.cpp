@@ -72,7 +72,7 @@ void ParticleOptions::declare(deck::Section& section) {
               "fluid");
   section.key("velocity", velocity, deck::any(), "length/time",
               "velocity of the centre of a rigid particle with Particle/motion `prescribed`; zero if not given");
-  section.key("angular velocity", angular_velocity, deck::any(), "1/time",
+  section.key("angular velocity", angular_velocity, deck::any(), "radian/time",
               "angular velocity about the centre of a rigid particle with Particle/motion `prescribed`; zero if not given");
   section.key("force", force, deck::any(), "force",
               "external force on a rigid particle with Particle/motion `free`, three numbers; zero if not given");

@@ -57,6 +57,7 @@ struct ParticleKind {
   motion::AdaptationOptions adaptation;
   CopiesOptions copies;
   bool membrane_given = false;  ///< true if the deck has the section Membrane
+  bool implied = false;  ///< true if the deck gives none of the sections Particle, Particles and Membrane, which ask for a particle
   double duct_half_width = std::numeric_limits<double>::infinity();  ///< least distance of the axis of Tube or Channel from its wall, if known
   double field_length = 0;      ///< length by which values of surface fields are multiplied to become rows of a state x; 0: R_C of the particle
 

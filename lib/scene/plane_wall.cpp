@@ -1,7 +1,7 @@
 #include "scene/plane_wall.hpp"
 
-#include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "scene/room.hpp"
 #include "scene/series/diagnostics.hpp"
 #include "surface/geometry.hpp"
 
@@ -33,9 +33,10 @@ void check_in_front(const ParticleScene& particle_scene, const Body& body) {
   if (gap >= least) return;
   const std::string name = particle_scene.name.empty() ? "The particle" : particle_scene.path();
   const std::string where = formatted(" at [%.4g, %.4g, %.4g] ", place[0], place[1], place[2]);
-  if (gap <= 0) throw UserError(name + " crosses the wall at the start:" + where + formatted("it reaches %.4g behind it.", -gap));
-  throw UserError(name + " starts too close to the wall:" + where +
-                  formatted("the gap is %.4g, less than Wall/contact gap, %g R_C = %.4g.", gap, particle_scene.wall.contact_gap, least));
+  if (gap <= 0) throw NoRoom(name + " crosses the wall at the start:" + where + formatted("it reaches %.4g behind it.", -gap), gap);
+  throw NoRoom(name + " starts too close to the wall:" + where +
+                   formatted("the gap is %.4g, less than Wall/contact gap, %g R_C = %.4g.", gap, particle_scene.wall.contact_gap, least),
+               gap);
 }
 
 void WallRow::add_columns(const Scene& scene, Columns& to) const {

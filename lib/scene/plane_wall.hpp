@@ -10,7 +10,7 @@
 
 namespace tanktread {
 
-/// Throws UserError, with the distances, if the body does not start in front of the scene's wall with a gap of at least `Wall/contact gap`.
+/// Throws NoRoom, with the distances, if the body does not start in front of the scene's wall with a gap of at least `Wall/contact gap`.
 void check_in_front(const ParticleScene& particle_scene, const Body& body);
 
 /// Data of the plane walls for one row of the results: the smallest gap, the nearest particle (numbered from 1 in the order of the deck), and its

@@ -83,6 +83,7 @@ std::vector<ParticleKind> declare_particles(deck::Section& root, ParticleKind& o
     for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
       refuse(root.given(list), std::string(list), "Particles", unread::one_and_several);
   } else {
+    only.implied = !root.given("Particle") && !root.given("Membrane");
     root.section("Particle", only.particle, "resting shape, initial shape and motion of the particle");
     only.declare_sections(root, registry);
   }
@@ -147,7 +148,7 @@ void Scene::declare(deck::Section& root) {
   root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);
-  idle_keys = root.idle_keys();
+  idle_keys = root.idle_keys(), unusual_values = root.unusual_values();
   if (root.documenting()) return;
   complete_derived(*this);
   walls = std::make_shared<coupling::SharedWalls>();

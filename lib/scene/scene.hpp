@@ -163,6 +163,7 @@ struct Scene : SharedOptions {
   /// of posts only, a single particle represents the size of the posts.
   std::vector<ParticleKind> particles;
   std::vector<std::string> idle_keys;  ///< sentences about keys that the deck gives although they have no effect
+  std::vector<std::string> unusual_values;  ///< sentences about values whose size is unusual
 
   Scene() = default;
   explicit Scene(const Registry& parts) { registry = &parts; }

@@ -11,6 +11,7 @@
 #include "base/formatted.hpp"
 #include "quadrature/gauss.hpp"
 #include "scene/posts.hpp"
+#include "scene/room.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/closest_points.hpp"
 #include "surface/patch.hpp"
@@ -36,7 +37,7 @@ std::vector<PlatesAndPosts::Solid> plates(const Scene& scene, const stokes::Peri
     const Vec3 middle = wall.normal().dot(wall.point()) * wall.normal();
     const std::array<int, 2> elements = scene.wall.elements(cell, scene.least_radius());
     all.push_back({surface::plate(middle, lattice_vector(cell, 0), lattice_vector(cell, 1), elements), flow.velocity(wall.point()),
-                   [wall](const Vec3& x) { return wall.contains(x); }});
+                   [wall](const Vec3& x) { return wall.contains(x); }, all.empty() ? "the wall" : "the second wall"});
   }
   return all;
 }
@@ -91,7 +92,7 @@ std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phas
   // Between plates, the pressure gradient is part of the ambient flow: it is mu times the Laplacian of the ambient velocity (2.20).
   const Vec3 pressure_gradient = scene.wall.solid ? Vec3(2 * scene.flow.viscosity * flow.curvature().trace() * flow.quadratic_direction())
                                                   : scene.flow.pressure_gradient.value_or(Vec3::Zero());
-  for (const Post& post : scene.posts) all.push_back({surface_of(post, cell), Vec3::Zero(), outside_of(post, cell)});
+  for (const Post& post : scene.posts) all.push_back({surface_of(post, cell), Vec3::Zero(), outside_of(post, cell), post.path()});
   const PlatesAndPosts::Parameters parameters{cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature};
   return coupling::SolidScene{
       scene.walls->solids.of([&](const PlatesAndPosts& one) { return one.is_for(all, parameters); },
@@ -99,13 +100,11 @@ std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phas
       scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(), pressure_gradient, scene.quadrature};
 }
 
-void check_outside_of_posts(const Scene& scene, const std::vector<Member>& members) {
+void check_outside_of_posts(const Scene& scene, const Member& member) {
   for (const Post& post : scene.posts) {
     const stokes::PeriodicCell cell = *scene.domain.cell();
-    const auto outside = outside_of(post, cell);
-    for (const Member& member : members)
-      if (!outside(surface::value(member.body->space, member.body->initial, {0, 0.5, 0.5})) || intersects(*member.body, post, cell))
-        throw UserError(member.scene.path() + " crosses " + (post.name.empty() ? "a post" : post.path()) + " at the start: give it another center.");
+    if (!outside_of(post, cell)(surface::value(member.body->space, member.body->initial, {0, 0.5, 0.5})) || intersects(*member.body, post, cell))
+      throw NoRoom(member.scene.path() + " crosses " + post.path() + " at the start: give it another center.", 0);
   }
 }
 

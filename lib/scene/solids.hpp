@@ -17,8 +17,8 @@ namespace tanktread {
 /// Returns the plates and posts of a scene with the factored operator of their tractions; nothing if the scene has no plates and posts. Collective.
 std::optional<coupling::SolidScene> make_solids(const Scene& scene, Phases& phases);
 
-/// Throws UserError if a particle crosses a post at the start.
-void check_outside_of_posts(const Scene& scene, const std::vector<Member>& members);
+/// Throws NoRoom if the particle crosses a post at the start.
+void check_outside_of_posts(const Scene& scene, const Member& member);
 
 /// Returns the number of collocation points of all plates and posts.
 double solid_points(const Scene& scene);

@@ -8,6 +8,7 @@
 #include "base/formatted.hpp"
 #include "deck/words.hpp"
 #include "scene/memory.hpp"
+#include "scene/room.hpp"
 #include "surface/clearance.hpp"
 #include "surface/closest_points.hpp"
 #include "surface/geometry.hpp"
@@ -16,7 +17,7 @@ namespace tanktread {
 
 namespace {
 
-/// Throws UserError if the particle does not fit into the channel: if a sample point of its surface is in the wall or too close to an end, or if the
+/// Throws NoRoom if the particle does not fit into the channel: if a sample point of its surface is in the wall or too close to an end, or if the
 /// gap to the wall is too small.
 void check_fits_channel(const ParticleScene& particle_scene, const Body& body, const surface::TubeWall& wall) {
   const surface::Channel& channel = *wall.channel;
@@ -27,42 +28,46 @@ void check_fits_channel(const ParticleScene& particle_scene, const Body& body, c
       for (const Vec3& x : line) {
         const Vec3 at = channel.coordinates(x);
         if (!channel.outline().inside(at.tail<2>()))
-          throw UserError(formatted("The particle does not fit into the channel: at [%.4g, %.4g, %.4g] it is in the wall; R_C = %.4g, half the "
-                                    "channel's width is %.4g where it is narrowest.",
-                                    x[0], x[1], x[2], body.radius, channel.smallest_radius()));
+          throw NoRoom(formatted("The particle does not fit into the channel: at [%.4g, %.4g, %.4g] it is in the wall; R_C = %.4g, half the "
+                                 "channel's width is %.4g where it is narrowest.",
+                                 x[0], x[1], x[2], body.radius, channel.smallest_radius()),
+                       0);
         first = std::min(first, at[0]), last = std::max(last, at[0]);
       }
   const double margin = 1.7 * wall.radius();
   if (!channel.repeats() && (first < channel.start() + margin || last > channel.end() - margin))
-    throw UserError(formatted("The particle, from s = %.4g to %.4g, is too close to an end of the channel: 1.7 R_T = %.4g must be left to "
-                              "Channel/start = %.4g and Channel/end = %.4g.",
-                              first, last, margin, channel.start(), channel.end()));
+    throw NoRoom(formatted("The particle, from s = %.4g to %.4g, is too close to an end of the channel: 1.7 R_T = %.4g must be left to "
+                           "Channel/start = %.4g and Channel/end = %.4g.",
+                           first, last, margin, channel.start(), channel.end()),
+                 margin);
   const surface::ElementBoxes walls(around);
   const double least = particle_scene.contact_length(particle_scene.tube.contact_gap);
   const double gap = surface::gap_to_wall(surface::BezierMap(body.space), body.initial, {}, walls, wall.period, 1e-5 * wall.radius(), least);
   if (gap < least)
-    throw UserError(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
-                              gap, particle_scene.tube.contact_gap, least));
+    throw NoRoom(formatted("The particle starts too close to the channel's wall: the gap is %.4g, less than Channel/contact gap, %g R_C = %.4g.",
+                           gap, particle_scene.tube.contact_gap, least),
+                 gap);
 }
 
-/// Throws UserError if the particle does not fit into the straight tube, or if the gap to the wall is too small.
+/// Throws NoRoom if the particle does not fit into the straight tube, or if the gap to the wall is too small.
 void check_fits_tube(const ParticleScene& particle_scene, const Body& body) {
   const surface::Outline& outline = body.duct->outline();
   const Vec3& centre = particle_scene.particle.shape.center;
   const double from_axis = outline.distance({centre[1], centre[2]});
   if (from_axis <= 0)
-    throw UserError(
-        formatted("Particle/center [%g, %g, %g] is outside of the tube, %g beyond its wall.", centre[0], centre[1], centre[2], -from_axis));
+    throw NoRoom(formatted("Particle/center [%g, %g, %g] is outside of the tube, %g beyond its wall.", centre[0], centre[1], centre[2], -from_axis),
+                 from_axis);
   const surface::Clearance nearest = surface::clearance(surface::Patches(surface::BezierMap(body.space), body.initial), outline);
   const std::string where = formatted("at (x2, x3) = (%.4g, %.4g)", nearest.x[1], nearest.x[2]);
   if (nearest.gap <= 0)
-    throw UserError(formatted("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.",
-                              where.c_str(), -nearest.gap, body.radius, outline.radius()));
+    throw NoRoom(formatted("The particle does not fit into the tube: %s it reaches %.4g beyond the wall; R_C = %.4g, R_T = %.4g.", where.c_str(),
+                           -nearest.gap, body.radius, outline.radius()),
+                 nearest.gap);
   const double least = particle_scene.contact_length(particle_scene.tube.contact_gap);
   if (nearest.gap < least)
-    throw UserError(
-        formatted("The particle starts too close to the tube's wall: %s the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g.",
-                  where.c_str(), nearest.gap, particle_scene.tube.contact_gap, least));
+    throw NoRoom(formatted("The particle starts too close to the tube's wall: %s the gap is %.4g, less than Tube/contact gap, %g R_C = %.4g.",
+                           where.c_str(), nearest.gap, particle_scene.tube.contact_gap, least),
+                 nearest.gap);
 }
 
 void check_fits(const ParticleScene& particle_scene, const Body& body) {
@@ -108,9 +113,9 @@ void check_fit(const ParticleScene& particle_scene, const Body& body) {
   if (!particle_scene.tube.present) return;
   try {
     check_fits(particle_scene, body);
-  } catch (const UserError& error) {
+  } catch (const NoRoom& error) {
     if (particle_scene.name.empty()) throw;
-    throw UserError(particle_scene.path() + ": " + error.what());
+    throw NoRoom(particle_scene.path() + ": " + error.what(), error.gap);
   }
 }
 
@@ -255,6 +260,22 @@ double least_axial_position(const Scene& scene, const Body& body, const Columns&
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t p = 0; p < x1.size(); ++p) least = std::min(least, body.wall ? body.wall->axial_position({x1[p], x2[p], x3[p]}) : x1[p]);
   return least;
+}
+
+std::string nearest_to_wall(const Scene& scene, const Body& body, std::span<const coupling::Particle> particles, const Net& x) {
+  const auto distance = [&](const Vec3& at) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const stokes::PlaneWall& wall : scene.wall.planes()) least = std::min(least, wall.height(at));
+    if (!body.wall) return least;
+    const auto& channel = body.wall->channel;
+    return channel ? channel->outline().distance(channel->coordinates(at).tail<2>()) : body.duct->outline().distance(at.tail<2>());
+  };
+  const auto gap = [&](const coupling::Particle& one) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto row : one.block.rows(x).rowwise()) least = std::min(least, distance(row.transpose()));
+    return least;
+  };
+  return particles.empty() ? scene.particles.front().path() : std::ranges::min(particles, {}, gap).path;
 }
 
 std::string coarse_wall(const SharedOptions& shared, const Body& body, const Columns& row) {

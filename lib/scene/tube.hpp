@@ -2,6 +2,7 @@
 // Tube of a scene: construction, checks that the particle fits, and recorded data.
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "scene/body.hpp"
@@ -17,8 +18,12 @@ std::shared_ptr<const stokes::DuctFlow> make_duct(const ParticleScene& particle_
 /// Adds to `to` the combinations of keys that are not allowed with a tube or channel.
 void reject_with_tube(const ParticleScene& particle_scene, Rejections& to);
 
-/// If the scene has a tube and the particle does not fit into it, throws UserError with the lengths concerned.
+/// If the scene has a tube and the particle does not fit into it, throws NoRoom with the lengths concerned.
 void check_fit(const ParticleScene& particle_scene, const Body& body);
+
+/// Returns the section of the particle with the control point that is nearest to the walls of the scene, for messages. `x`: net of all particles.
+/// `particles`: empty for a lone body.
+std::string nearest_to_wall(const Scene& scene, const Body& body, std::span<const coupling::Particle> particles, const Net& x);
 
 /// Returns the wall around the resting shapes of all particles in `body`. Throws UserError, with the lengths, if the tube is too short for the
 /// particles or its period is too long.

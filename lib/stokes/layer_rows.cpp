@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "base/indices.hpp"
+#include "base/stop.hpp"
 #include "stokes/closed_surface_identities.hpp"
 #include "stokes/kernels/assembly_kernel.hpp"
 #include "stokes/layer.hpp"
@@ -211,6 +212,7 @@ void add_medium_rows(LayerSources& sources, LayerMedium& medium, std::span<const
   const LayerSurface& surface = sources.surface;
   std::vector<Mat3> block;
   for (std::size_t k = 0; k < targets.size(); ++k) {
+    stop_here();
     block.assign(static_cast<std::size_t>(surface.n_points), Mat3::Zero());
     if (!medium.add_row(sources, at ? Vec3(at->row(targets[k]).transpose()) : surface.site(targets[k]), block)) return;
     if (properties(sources.kernel()).subtracts_density && !at) {
@@ -237,6 +239,7 @@ void assemble_copies(LayerSources& sources, const LayerMedium& medium, std::span
   for (int e = 0; e < panels.size(); ++e) rows.basis.add(panels, e, row_of_point, sources.surface.n_points);
   a.resize(3 * static_cast<Eigen::Index>(targets.size()), 3 * sources.surface.n_points);
   for (std::size_t first = 0; first < targets.size(); first += block) {
+    stop_here();
     const std::span<const int> some = targets.subspan(first, std::min(block, targets.size() - first));
     rows.add(some, sources.surface.n_points);
     for (std::size_t l = 0; l < some.size(); ++l) {
@@ -295,6 +298,7 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
   std::vector<int> row_of_point;
   entries.resize(kernel_entries * near.point.size());
   for (std::size_t first = 0; first < sites.size(); first += block) {
+    stop_here();
     const std::span<const int> some = sites.subspan(first, std::min(block, sites.size() - first));
     std::vector<int> wanted(near.point.begin() + static_cast<std::ptrdiff_t>(near.first[first]),
                             near.point.begin() + static_cast<std::ptrdiff_t>(near.first[first + some.size()]));

@@ -1,6 +1,7 @@
 #include "surface/quality.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -18,7 +19,7 @@ constexpr int most = (spline::most_polynomial_degree + 1) * (spline::most_polyno
 using Tangents = Eigen::Array<double, points, 3>;
 
 struct Worst {
-  double jacobian_ratio, aspect_ratio;
+  double jacobian_ratio, aspect_ratio, tilt;
   int point;
 };
 
@@ -31,8 +32,10 @@ Worst worst(const Tangents& a1, const Tangents& a2) {
   const auto lengths = [](const Tangents& a) { return a.matrix().rowwise().norm().sum(); };
   const Vec3 direction = n.colwise().sum().matrix().transpose().normalized();
   int least;
-  const double smallest = (n.matrix() * direction).minCoeff(&least), ratio = lengths(a1) / lengths(a2);
-  return {points * smallest / lengths(n), std::max(ratio, 1 / ratio), least};
+  const Eigen::VectorXd along = n.matrix() * direction;
+  const double smallest = along.minCoeff(&least), ratio = lengths(a1) / lengths(a2);
+  const double cosine = along.cwiseQuotient(n.matrix().rowwise().norm()).minCoeff();
+  return {points * smallest / lengths(n), std::max(ratio, 1 / ratio), std::acos(std::clamp(cosine, -1., 1.)), least};
 }
 
 }  // namespace
@@ -41,6 +44,7 @@ Quality worse(const Quality& a, const Quality& b) {
   Quality result = a.jacobian_ratio <= b.jacobian_ratio ? a : b;
   const Quality& stretched = a.aspect_ratio >= b.aspect_ratio ? a : b;
   result.aspect_ratio = stretched.aspect_ratio, result.stretched_element = stretched.stretched_element;
+  result.tilt = std::max(a.tilt, b.tilt);
   return result;
 }
 
@@ -60,6 +64,7 @@ Quality quality(const BezierMap& map, const Net& net, std::span<const int> eleme
       three_sums(points, n_b, polynomials.s.data(), bezier, a1.data());
       three_sums(points, n_b, polynomials.t.data(), bezier, a2.data());
       const Worst here = worst(a1, a2);
+      result.tilt = std::max(result.tilt, here.tilt);
       if (here.jacobian_ratio < result.jacobian_ratio) {
         result.jacobian_ratio = here.jacobian_ratio;
         result.folded_element = e;

@@ -21,13 +21,17 @@ struct Quality {
   /// straight element this is L_alpha/L_beta of (1.4).
   double aspect_ratio = 1;
   int stretched_element = 0;
+
+  /// Largest angle between the normal at a point and the vector m of its element, in radians: half the angle through which the surface turns within
+  /// an element. On a sphere with n elements per side it is about 0.95/n.
+  double tilt = 0;
 };
 
 /// Computes the quality of the given elements of a surface. Throws RunFailure, naming the control point, if a control point is
 /// not finite.
 Quality quality(const BezierMap& map, const Net& net, std::span<const int> elements);
 
-/// Returns the worse value of each of the two ratios in a and b, with its element.
+/// Returns the worse value of each measure in a and b, with the elements of the two ratios.
 Quality worse(const Quality& a, const Quality& b);
 
 /// Throws RunFailure, naming element and position, if an element is folded: if its jacobian_ratio is not above `least`.

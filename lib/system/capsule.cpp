@@ -40,6 +40,11 @@ void Capsule::set_forces(Net Forces::* of, Net work) {
   if (solver_.set_forces(of, std::move(work))) latest_.reset();
 }
 
+void Capsule::forget() {
+  latest_.reset();
+  solver_.walls().forget();
+}
+
 Net Capsule::response(Evaluation& at, const Net& work) {
   const Net base = at.velocity(), before = solver_.forces().contacts;
   set_forces(&Forces::contacts, before.size() > 0 ? Net(before + work) : work);

@@ -38,6 +38,7 @@ class Capsule : public Dynamics {
   std::shared_ptr<Evaluation> evaluate_on_demand(const Net& x, const Net& velocity, double distance);
 
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
+  std::string why_undefined() const override { return solver_.crossing().empty() ? Dynamics::why_undefined() : solver_.crossing(); }
   void set_time(double time, double start) override;
   double next_kink(double time) const override { return flow().next_kink(time); }
   void freeze(const Net& x) override;
@@ -63,6 +64,10 @@ class Capsule : public Dynamics {
 
   /// Returns the change of the velocity at the shape of `at` due to additional forces with the virtual work `work`. Linear in `work`.
   Net response(Evaluation& at, const Net& work);
+
+  /// Discards the evaluation and the shape of the walls that are kept for the next call. A run discards them after each checkpoint, because a
+  /// checkpoint does not contain them.
+  void forget();
 
   /// Returns whether the shape evaluated last is within `distance` of x (in `norm`), apart from a translation along a straight tube that
   /// changes no load.
@@ -103,7 +108,7 @@ class Capsule : public Dynamics {
   VelocitySolver solver_;
   FrozenLayers frozen_;                 // set by freeze()
   CapsuleJacobian jacobian_;            // set by linearise()
-  std::shared_ptr<Evaluation> latest_;  // set by evaluate(); reset by set_time() and set_forces() if they change something
+  std::shared_ptr<Evaluation> latest_;  // set by evaluate(); reset by forget(), and by set_time() and set_forces() if they change something
 };
 
 }  // namespace tanktread::coupling

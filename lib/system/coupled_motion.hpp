@@ -58,6 +58,7 @@ class CoupledMotion : public Dynamics {
   void set_state(const Net& y);
 
   Net velocity(const Net& y) override;
+  std::string why_undefined() const override { return capsule_.why_undefined(); }
   void set_time(double time, double start) override { capsule_.set_time(time, start); }
   double next_kink(double time) const override { return capsule_.next_kink(time); }
   void freeze(const Net& y) override;

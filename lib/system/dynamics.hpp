@@ -2,6 +2,7 @@
 // Interface between a time integrator and the coupled system: dx/dt = v(x) and its quasi-Newton Jacobian.
 
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "base/types.hpp"
@@ -24,6 +25,9 @@ class Dynamics {
 
   /// Evaluates the velocity (4.2) at the control net x, including the volume constraint. Not finite if the shape is degenerate.
   virtual Net velocity(const Net& x) = 0;
+
+  /// Returns why the latest velocity or defect() is not finite, for messages.
+  virtual std::string why_undefined() const { return "it is not a number"; }
 
   /// Corrects x so that it satisfies the constraints again that a step satisfies only approximately: rigid bodies keep their shape, quaternions have
   /// the norm 1, and particles have the prescribed volumes if the volume constraint is `exact`. If the iteration fails, x becomes NaN.

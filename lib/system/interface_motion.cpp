@@ -7,6 +7,7 @@
 #include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
 #include "system/motion_of_shape.hpp"
+#include "system/parallel/stop_together.hpp"
 
 namespace tanktread::coupling {
 
@@ -44,7 +45,7 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
     for (const int i : drop.points) own.push_back(i - block.first_point);
     stokes::Layer layer(stokes::Layer::Kernel::single_layer, *particle.space, particle.space->collocation, parameters.quadrature);
     layer.set_shape(block.rows(initial));
-    layer.assemble(own, drop.layer);
+    stop_together([&] { layer.assemble(own, drop.layer); });
   }
 }
 

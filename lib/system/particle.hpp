@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/types.hpp"
@@ -26,6 +27,7 @@ struct RigidDrive {
 
 /// Material and discretisation of a particle. `block` gives its rows in the control nets that stack the points of all particles.
 struct Particle {
+  std::string path;  ///< section of the particle in the deck, for messages
   const spline::Space* space = nullptr;  ///< space of this particle; outlives the system
   spline::Block block;
   double viscosity_ratio = 1;                 ///< lambda, viscosity of the inner fluid divided by mu

@@ -1,6 +1,7 @@
 #include "system/power_balance.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
@@ -26,6 +27,8 @@ stokes::Sites gauss_points(const spline::Space& space) {
 
 }  // namespace
 
+constexpr double noise = 1e-5;  // quotient of the powers and Powers::scale below which the powers are errors of quadrature
+
 double turnover(double flow, double forces, double fluids) {
   return (std::abs(flow) + std::abs(forces) + std::abs(fluids) + std::abs(flow + forces - fluids)) / 2;
 }
@@ -39,8 +42,10 @@ void Powers::add_columns(Columns& to) const {
   to.add(fluids,
          {"fluid_dissipation", "force length/time",
           "viscous dissipation in the fluids due to the particles, in addition to the dissipation without particles (6.12)"});
-  to.add(all > 0 ? residual / all : 0,
-         {"power_residual", "1", "residual of the power balance (6.13), divided by half the sum of the magnitudes of its terms"});
+  to.add(all > noise * scale ? residual / all : std::numeric_limits<double>::quiet_NaN(),
+         {"power_residual", "1", "residual of the power balance (6.13), divided by half the sum of the magnitudes of its terms",
+          "half the sum of the magnitudes is less than 1e-5 of the integral of (|load| + viscosity x speed/radius) x speed over the surfaces: all "
+          "powers are then zero up to errors of quadrature"});
 }
 
 PowerBalance::PowerBalance(Capsule& capsule, const Ranks& ranks)
@@ -55,7 +60,8 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const Net load = e->load(), v = e->fluid_velocity();
   const RigidParticles rigid = capsule_.rigid_at(x);
   const Net measured = capsule_.solver().membranes().measured_net(x);
-  const Net work = mass_.update(measured) * load, inside = density(v, rigid);
+  const auto& mass = mass_.update(measured);
+  const Net work = mass * load, drag = capsule_.parameters().viscosity * mass * v, inside = density(v, rigid);
   Powers powers;
   powers.flow = flow_power(*e, work, inside);
   Net stored = Net::Zero(x.rows(), 3);
@@ -64,6 +70,8 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   capsule_.solver().membranes().loads().add_stored_work(x, stored);
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p) {
     const Particle& particle = capsule_.particles()[p];
+    const auto sizes = [&](const Net& of) { return particle.block.rows(of).rowwise().norm().eval(); };
+    powers.scale += (sizes(work) + sizes(drag) / particle.radius).dot(sizes(v));
     if (particle.rigid) continue;
     powers.membranes += e->membrane_dissipation(p);
     powers.storing += dot(particle.block.rows(v), particle.block.rows(stored));

@@ -21,6 +21,9 @@ struct Powers {
   double storing = 0;      ///< rate of change of the energy stored in the membranes
   double membranes = 0;    ///< dissipation in the membranes
   double fluids = 0;       ///< dissipation in the fluids minus dissipation in the ambient flow, computed as the remainder of the balance (6.12)
+  /// integral of |Df| |v| + viscosity x |v|^2/R_C over all surfaces, with the load Df and the velocity v: the powers are sums of contributions of
+  /// this size, which may cancel
+  double scale = 0;
   double residual = 0;     ///< power of the residual velocity of the boundary integral equation at 2 x 2 Gauss points per element (6.13)
 
   void add_columns(Columns& to) const;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/formatted.hpp"
 #include "system/dynamics.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
 
@@ -191,10 +192,21 @@ Net VelocitySolver::explicit_velocity(const Net& x, const Net& f, const Net& par
   return v;
 }
 
-/// Returns whether all collocation sites are in the medium, inside the tube, in front of plates and outside posts, if there are any.
-bool VelocitySolver::in_fluid(const Net& x) const {
+/// Returns whether all collocation sites are in the medium, inside the tube, in front of plates and outside posts, if there are any. Sets crossing().
+/// Collective.
+bool VelocitySolver::in_fluid(const Net& x) {
   const Net at_sites = targets_.at_sites() * x;
-  return walls_.contain(at_sites, layout_) && stokes::contains(parameters_.medium.get(), at_sites);
+  FluidWalls::Crossing found = walls_.crossing(at_sites, layout_);
+  if (found.site < 0) found = {stokes::first_outside(parameters_.medium.get(), at_sites), "the wall"};
+  const auto crosses = [&](const Particle& one) { return one.block.contains(static_cast<int>(found.site)); };
+  crossing_.clear();
+  if (found.site >= 0) {
+    const auto row = at_sites.row(found.site);
+    crossing_ = std::ranges::find_if(particles(), crosses)->path + " would cross " + found.solid +
+                formatted(" near [%.4g, %.4g, %.4g]", row[0], row[1], row[2]);
+  }
+  if (walls_.tube) crossing_ = layout_.text_of_any(crossing_);
+  return crossing_.empty();
 }
 
 Net VelocitySolver::defect(const Net& shape, const Net& given) {

@@ -151,6 +151,8 @@ class VelocitySolver {
   const stokes::AmbientFlow& flow() const { return flow_; }                  ///< flow at the time set by `set_time`
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }  ///< cell at the time set by `set_time`; not set without a lattice
   const FluidWalls& walls() const { return walls_; }
+  /// Returns which particle crosses which wall or post in the latest shape; empty if all are in the fluid.
+  const std::string& crossing() const { return crossing_; }
   const Layout& layout() const { return layout_; }
   const Targets& targets() const { return targets_; }
   Membranes& membranes() { return membranes_; }
@@ -182,7 +184,7 @@ class VelocitySolver {
   Net solve_second_kind(const Net& x, const Net& guess, VolumeProjection& volume, SolvedShape& found);
   Net solve_first_kind(const Net& x, VolumeProjection& volume, SolvedShape& found);
   Net load_and_projection(const Net& x, WorkOfLoads& known, VolumeProjection* volume);
-  bool in_fluid(const Net& x) const;
+  bool in_fluid(const Net& x);
   void push_bodies(const Net& x);
   Net explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer);
   // Cells of lattices, tubes, plates and posts.
@@ -225,6 +227,7 @@ class VelocitySolver {
   std::unique_ptr<Tube> tube_;             // tube or channel
   std::unique_ptr<SolidResponse> solids_;  // plates and posts
   FluidWalls walls_;                       // refers to tube_ and solids_
+  std::string crossing_;                   // see crossing(); set by in_fluid()
   Bodies bodies_;
   std::unique_ptr<InterfaceMotion> interface_;  // set if any control points slide along an interface
   Krylov krylov_;

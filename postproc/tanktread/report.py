@@ -15,6 +15,7 @@ import pathlib
 
 import numpy
 
+from .figures.scene import flow_plane, quads, surrounded
 from .files import opened, parsed
 from .mistakes import command_line, expect, log
 from .runs import run as run_of
@@ -37,7 +38,8 @@ def packed(values, largest, kind):
 
 def shapes(run, field):
     """Returns snapshots as grids of cells: positions in 16 bits, relative to the bounding box of all snapshots, and
-    normals and the magnitude of the field in 8 bits."""
+    normals and the magnitude of the field in 8 bits; posts and walls as quadrilaterals with normals, and the edges of
+    walls and of the periodic cell as lines. The first two directions on the page are in the plane of the flow."""
     shots = evenly(run.snapshots(), FRAMES)
     if not shots:
         return None
@@ -48,7 +50,9 @@ def shapes(run, field):
     cells = max(len(shot.cells) for shot in shots)
     k = next((k for k in (6, 5, 4, 3) if 10 * cells * (k + 1) ** 2 * len(shots) < BYTES), 2)
     shots = evenly(shots, max(2, int(BYTES / (10 * cells * (k + 1) ** 2))))
-    low, high = (numpy.array([edge(shot.points, axis=0) for shot in shots]) for edge in (numpy.min, numpy.max))
+    shots, axes = [surrounded(run, shot) for shot in shots], flow_plane(run)
+    seen = [numpy.concatenate([shot.frame, shot.positions]) @ axes.T for shot in shots]
+    low, high = (numpy.array([edge(points, axis=0) for points in seen]) for edge in (numpy.min, numpy.max))
     middles = (low + high) / 2  # centre of the view of each snapshot; it moves with the particle in a duct
     if run.several and run.value("Flow/type") != "duct":
         middles[:] = (low.min(0) + high.max(0)) / 2
@@ -58,22 +62,32 @@ def shapes(run, field):
     bottom, top = min(v.min() for v in values), max(v.max() for v in values)
     frames = []
     for shot, middle, value in zip(shots, middles, values):
-        places = (shot.sampled(shot.points, k) - middle) / size
+        def placed(points):
+            return packed((points @ axes.T - middle) / size, 32767, "<i2")
+
+        posts = [quads(shot.posts.sampled(shot.posts.points, 6))] if shot.posts else []
+        walls = numpy.concatenate([shot.walls, *posts])
+        facing = numpy.cross(walls[:, 1, 1] - walls[:, 0, 0], walls[:, 1, 0] - walls[:, 0, 1])
+        facing = numpy.repeat(facing / numpy.linalg.norm(facing, axis=1)[:, None].clip(1e-300), 4, axis=0)
+        lines = numpy.concatenate([shot.edges, *(numpy.stack([rim[:-1], rim[1:]], axis=1) for rim in shot.rims)])
         normals = shot.sampled(shot.fields["Normals"], k)
         normals = normals / numpy.linalg.norm(normals, axis=-1, keepdims=True)
         colours = (value - bottom) / max(top - bottom, 1e-300)
-        frames.append({"time": shot.time, "cells": len(shot.cells), "places": packed(places, 32767, "<i2"),
-                       "normals": packed(normals, 127, "i1"), "colours": packed(colours, 255, "u1")})
-    scale, label = run.scale(DIMENSIONS.get(field))[0], run.label(field)
+        frames.append({"time": shot.time, "moment": run.moment(shot.time, ".5g"), "cells": len(shot.cells),
+                       "places": placed(shot.sampled(shot.positions, k)), "colours": packed(colours, 255, "u1"),
+                       "normals": packed(normals @ axes.T, 127, "i1"), "facing": packed(facing @ axes.T, 127, "i1"),
+                       "walls": placed(walls), "lines": placed(lines)})
+    label = run.label(field)
     for formatted, plain in ("$_s$", "ₛ"), ("R$_C$", "R_C"), ("$", ""):
         label = label.replace(formatted, plain)
-    return {"k": k, "size": float(size), "field": label, "low": float(bottom / scale), "high": float(top / scale),
+    return {"k": k, "size": float(size * run.radius), "field": label, "low": float(bottom), "high": float(top),
             "frames": frames}
 
 
 def curves(run):
     """Returns all series, the most important ones first. Long series are thinned to every second, third … row."""
-    defined = {name: run.defined(name)[1] for name in FIRST if name in run.series}
+    first = [name for key in FIRST for name in (key, *(f"{one}/{key}" for one in run.bodies)) if name in run.series]
+    defined = {name: run.defined(name)[1] for name in first}
     first = [name for name, values in defined.items() if len(values) and numpy.ptp(values) > 1e-9]
     names = first + sorted(name for name in run.series if name not in first and name != "time")
     step = max(1, len(run.time) // 600)
@@ -149,7 +163,8 @@ def of_fit(directory):
                                                    for fit in fits.values()), f"{directory}/fit.yaml is damaged")
     for law, fit in fits.items():
         for name, one in fit["unknown"].items():
-            found = [one["value"], one["error"]] if numpy.isfinite(one["error"]) else ["not determined", ""]
+            missing = "no value: runs fail" if "edge" in one else "not determined"
+            found = [one["value"], one["error"]] if numpy.isfinite(one["error"]) else [missing, ""]
             label = f"{name}, {one['unit']}" if "unit" in one else name
             rows.append([law, label, *found, one.get("at bound", ""), *(fit[key] for key in of_law)])
     picture = base64.b64encode((directory / "fit.png").read_bytes()).decode()

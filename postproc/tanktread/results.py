@@ -15,7 +15,7 @@ RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic":
 # Series of one particle; the others belong to the scene. A deck with several particles states it by /series/<particle>.
 OF_PARTICLE = re.compile(
     r"area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|intrinsic_viscosity|length_x\d|phase|"
-    r"gap|local_area_change|n_control_points|(normal|shape)_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|"
+    r"gap|(local|rms)_area_change|n_control_points|(normal|shape)_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|"
     r"taylor_\w+|((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|\w*concentration|"
     r"surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|(fluid|membrane)_dissipation|power_residual")
 
@@ -25,10 +25,12 @@ class Run:
 
     `series`: {name: values (rows,)}, one row per recorded step. If there are several particles, the series of a
     particle is named `<particle>/<name>`. A value is NaN where the series is undefined (see its description). An
-    unknown name raises Mistake. `units`, `descriptions`: {name: text}. `errors`: {name: estimated error (rows,)} if an
-    accuracy was requested, otherwise empty; NaN where no error can be estimated. `untrusted`: {name: reason why it
-    cannot be estimated}. `deck`: the effective deck as nested dicts; `deck_text`: the same as YAML text. `provenance`:
-    version, compiler, ranks. `summary`: the content of summary.yaml, or None if the run has not ended."""
+    unknown name raises Mistake. `units`, `descriptions`: {name: text}. `si`: {name: what the value 1 stands for, such
+    as "1e-06 m"}; "" if it is dimensionless or the deck has no section Units. `errors`: {name: estimated error (rows,)}
+    if an accuracy was requested, otherwise empty; NaN where no error can be estimated. `untrusted`: {name: reason why
+    it cannot be estimated}. `deck`: the effective deck as nested dicts; `deck_text`: the same as YAML text.
+    `provenance`: version, compiler, ranks. `summary`: the content of summary.yaml, or None if the run has not
+    ended."""
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)
@@ -38,6 +40,7 @@ class Run:
             found = datasets(file["series"])
             self.series = Named({name: data[:] for name, data in found.items()}, f"{directory} holds no series")
             self.units = {name: text_of_hdf(data.attrs["unit"]) for name, data in found.items()}
+            self.si = {name: text_of_hdf(data.attrs.get("SI", "")) for name, data in found.items()}
             self.descriptions = {name: text_of_hdf(data.attrs["description"]) for name, data in found.items()}
             errors = datasets(file["error"]) if "error" in file else {}
             self.errors = {name: data[:] for name, data in errors.items()}
@@ -70,9 +73,9 @@ class Run:
     def particles(self):
         """The names of the particles in the order of the deck, without posts; ["particle"] if the deck has the section
         Particle."""
-        return [name for name in self.bodies if self._kind(name).get("shape") != "cylinder"]
+        return [name for name in self.bodies if self.kind(name).get("shape") != "cylinder"]
 
-    def _kind(self, name):
+    def kind(self, name):
         """Returns the section of the deck that describes a body: `cell` for `cell 3`."""
         if not self.several:
             return self.deck.get("Particle", {})
@@ -207,8 +210,10 @@ class Run:
         return f"time · {name}" if name else f"time{self.in_units('time') or ', in the unit of the deck'}"
 
     def moment(self, time, form="g"):
-        """Returns "t = 0.5", or "point 5" on a branch, for titles of figures. `form`: format of the time."""
-        return f"point {time:.0f}" if "Continuation" in self.deck else f"t = {time:{form}}"
+        """Returns "t = 0.5", with the unit if the deck has units, or "point 5" on a branch, for titles of figures.
+        `form`: format of the time."""
+        unit = self.in_units("time").replace(",", "")
+        return f"point {time:.0f}" if "Continuation" in self.deck else f"t = {time:{form}}{unit}"
 
     @property
     def radius(self):

@@ -181,6 +181,8 @@ class Outcome:
 
     status = property(lambda self: "done" if self.done else "refused" if self.refused else "stopped" if self.slow
                       else "failed", doc="`done`, `refused`, `stopped` or `failed`.")
+    ended = property(lambda self: self.run.summary["status"] if self.done else self.status,
+                     doc="As `status`, but `steady` or `past` if a completed run ended so before its final time.")
     kernel_evaluations = property(lambda self: sum(value for name, value in self.counts.items()
                                                    if name.startswith("kernel_evaluations")))
 
@@ -312,14 +314,15 @@ class Study:
         text = json.dumps([texts, {key: text_of(value) for key, value in sorted(settings.items())}, ranks, *files])
         return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]
 
-    def all(self, jobs, told=lambda outcome: None):
+    def all(self, jobs, told=lambda k, outcome: None):
         """Returns the Outcomes of a list of (decks, settings[, ranks]) in its order. `self.jobs` runs are made at a
-        time. Calls told(outcome) when a run has ended. An interrupt stops all runs; they write checkpoints."""
+        time. Calls told(k, outcome) when run k, from 0, has ended. An interrupt stops all runs; they write
+        checkpoints."""
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-            futures = [pool.submit(self.run, *job) for job in jobs]
+            futures = {pool.submit(self.run, *job): k for k, job in enumerate(jobs)}
             try:
                 for future in concurrent.futures.as_completed(futures):
-                    told(future.result())
+                    told(futures[future], future.result())
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
                 for process in list(self._running):

@@ -30,6 +30,17 @@ class Snapshot:
     def __init__(self, path, time, particles=("particle",)):
         self.path, self.time, self.particles = pathlib.Path(path), time, list(particles)
         self.cell = None  # vectors of the periodic cell divided by R_C, as rows (3, 3); set by `scaled` for a lattice
+        self.origin = numpy.zeros(3)  # middle of this cell
+        # Surroundings in pictures, set by figures.scene.surrounded: the posts, a Snapshot without fields; corners
+        # (n, 2, 2, 3) of quadrilaterals of the walls, whose normals point into the fluid; lines (m, 3) at their edges
+        self.posts, self.walls, self.rims = None, numpy.zeros((0, 2, 2, 3)), []
+
+    @classmethod
+    def of(cls, cells):
+        """Returns a Snapshot without a file and without fields. `cells` (m, (p + 1)^2, 3): positions of the nodes."""
+        made, cells = cls("", 0), numpy.asarray(cells)
+        made._content = cells.reshape(-1, 3), list(numpy.arange(cells[..., 0].size).reshape(cells.shape[:2])), {}
+        return made
 
     @functools.cached_property
     def _content(self):
@@ -48,8 +59,22 @@ class Snapshot:
 
     @property
     def frame(self):
-        """Points (m, 3) that a picture must contain: `points` or, in a lattice, the eight corners of the cell."""
-        return self.points if self.cell is None else (numpy.indices((2, 2, 2)).reshape(3, -1).T - 0.5) @ self.cell
+        """Points (m, 3) that a picture must contain: `points` or, in a lattice, the eight corners of the cell; and the
+        corners of the walls."""
+        inside = self.points if self.cell is None else self.corners
+        return numpy.concatenate([inside, self.walls.reshape(-1, 3)])
+
+    @property
+    def corners(self):
+        """The corners (8, 3) of the periodic cell."""
+        return self.origin + (numpy.indices((2, 2, 2)).reshape(3, -1).T - 0.5) @ self.cell
+
+    @property
+    def edges(self):
+        """Lines (m, 2, 3) along the edges of the periodic cell; none without a cell, and in a duct."""
+        if self.cell is None or self.rims:
+            return numpy.zeros((0, 2, 3))
+        return numpy.array([self.corners[[i, i + k]] for k in (1, 2, 4) for i in range(8) if not i & k])
 
     def cells_of(self, particle):
         """Returns the indices of the cells of one particle. `particle`: its name in `run.particles`."""

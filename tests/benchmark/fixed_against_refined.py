@@ -33,7 +33,7 @@ def main():
     norm, colours, pattern = field_of(shots, arguments.field)
     for k, (shot, name) in enumerate(zip(shots, names)):
         axis = figure.add_subplot(grid[0, k], title=name)
-        draw.draw_surface(axis, shot, arguments.field, norm, colours, *draw.VIEW)
+        draw.draw_surface(axis, shot, arguments.field, norm, colours, draw.view_axes(*draw.VIEW))
     words = tanktread.field_label(runs, arguments.field, pattern)
     figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal",
                     label=words)

@@ -39,7 +39,7 @@ def left_over(outcome):
     power = (abs(flow) + abs(forces) + abs(fluids) + abs(flow + forces - fluids)) / 2
     if not power.max() > 0:
         return None
-    share = abs(series["power_residual"]) * power / numpy.maximum(power, 0.01 * power.max())
+    share = abs(numpy.nan_to_num(series["power_residual"])) * power / numpy.maximum(power, 0.01 * power.max())
     return share.max(), series["time"][share.argmax()], numpy.sqrt((share**2).mean()), len(share)
 
 

@@ -51,9 +51,10 @@ def radii(curve):
 class Emulator:
     """Replaces fit_model.Runs. Interpolates the outlines of a law over the logarithm of the capillary number."""
 
-    messages, count = ["beyond the emulator"], 0
+    count, name = 0, staticmethod(fit_model.Runs.name)
 
     def __init__(self, study, law):
+        self.failures = {}
         self._low, self._high = SPANS[law]
         low, high = numpy.log(SPANS[law])
         nodes = (low + high) / 2 + (high - low) / 2 * numpy.cos(numpy.pi * (numpy.arange(NODES) + 0.5) / NODES)
@@ -70,7 +71,10 @@ class Emulator:
 
     def all(self, jobs):
         numbers = [settings["Flow/mean velocity"] / settings["Membrane/shear modulus"] for _, settings in jobs]
-        return [[self.curve(number)] if self._low < number < self._high else None for number in numbers]
+        beyond = {self.name(*job): fit_model.Failure(job[0].name, job[1], "none", "beyond the emulator")
+                  for job, number in zip(jobs, numbers) if not self._low < number < self._high}
+        self.failures |= beyond
+        return [None if self.name(*job) in beyond else [self.curve(number)] for job, number in zip(jobs, numbers)]
 
 
 def experiments(outlines):
@@ -80,9 +84,9 @@ def experiments(outlines):
     for speed, (points, error) in zip(SPEEDS, outlines):
         datum = fit_data.OutlineData.__new__(fit_data.OutlineData)  # not by its constructor, which reads a file
         vars(datum).update(name=f"speed {speed}", at=None, axis=1, scale=1.0, error=error, points=points,
-                           count=len(points), places=2, free_scale=False, scale_error=0)
+                           count=len(points), places=2, free_scale=False, scale_error=0, cases=[{}])
         found.append(types.SimpleNamespace(name=datum.name, settings={"Flow/mean velocity": speed}, unknowns=[],
-                                           data=[datum]))
+                                           data=[datum], cases=[{}]))
     return found
 
 

@@ -76,7 +76,6 @@ RANK = {factor: k for k, factor in enumerate(FACTORS)}
 # Known defects: cases in which a resumed run is not bitwise equal. A function of the choices, the differences and the
 # names of the counters returns true if the defect explains the differences.
 OPEN = {
-    "a resumed run counts an evaluation less": lambda c, off, counts: off and len(counts) == len(off),
     "a resumed run differs by rounding": lambda c, off, counts: off and (c["medium"] != "unbounded" or c["adaptation"] == "yes") and
                                          (c["ratio"] != "1" or c["kind"] in RIGID or c["viscosity"] == "yes" or c["number"] == "2") and
                                          all(value < 1e-9 for name, value in off.items() if name not in counts and name != "power_residual"),

@@ -172,7 +172,7 @@ def cite_names_the_publications_of_the_features_a_deck_uses():
 
 def the_version_is_the_same_everywhere():
     version = re.search(r"project\(tanktread VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
-    places = {"CITATION.cff": r"^version: (\S+)", "postproc/tanktread/__init__.py": r'^__version__ = "(.*)"', "CHANGELOG.md": r"^## (\S+)"}
+    places = {"CITATION.cff": r"^version: (\S+)", "postproc/tanktread/__init__.py": r'^__version__ = "(.*)"', "CHANGELOG.md": r"^## (\d\S*)"}
     for name, pattern in places.items():
         found = re.search(pattern, (SOURCE / name).read_text(), re.MULTILINE)[1]
         check(found == version, f"{name} has version {found}, CMakeLists.txt {version}")

@@ -82,6 +82,43 @@ def changed_files_and_files_of_another_run_are_rejected():
     _refused("flipped", "run.h5", "differ from what was written")
 
 
+def the_advice_for_what_an_interrupted_run_leaves_works():
+    """Each kind of directory that an interrupted run can leave is made from a complete one. A new run names the way
+    that works: --resume if and only if it continues the run."""
+    run(deck(DECK), "--output", "whole", "--quiet")
+    search = deck("Tanktread: {Membrane: {law: surface tension}, Surface: {elements per side: 3}, Spectrum: {number: 1}}", "search.yaml")
+    run(search, "--output", "search", "--quiet")
+
+    def cut(path):
+        path.write_bytes(path.read_bytes()[:-1000])
+
+    def leave(*kept):
+        return lambda files: [path.unlink() for path in files if not path.name.startswith(kept)]
+
+    def snapshots(files):
+        return [path for path in files if path.name.startswith("snapshot_")]
+
+    kinds = {"whole": leave(""), "nothing": leave("none"), "record": leave("run.h5"), "snapshots": leave("snapshot_"), "summary": leave("summary"),
+             "no checkpoint": leave("run", "summary"), "no list": leave("run.h5", "snapshot_"),
+             "newest cut": lambda files: cut(snapshots(files)[-1]), "all cut": lambda files: [cut(one) for one in snapshots(files)],
+             "record cut": lambda files: cut(pathlib.Path("out/run.h5")), "search": leave("")}
+    continued = set()
+    for kind, spoil in kinds.items():
+        for option in "--output", "--resume":
+            shutil.rmtree("out", ignore_errors=True)
+            shutil.copytree("search" if kind == "search" else "whole", "out")
+            spoil(sorted(pathlib.Path("out").iterdir()))
+            if option == "--output":
+                said = run("deck.yaml", "--output", "out", "--quiet", code=0 if kind == "nothing" else 2).stderr
+                check("--overwrite deletes" in said or kind == "nothing", kind, said)
+                advised = "--resume out continues it" in said
+        result = run("--resume", "out", "--quiet", code=0 if advised else 2)
+        check(advised or "run the deck again with --output out --overwrite" in result.stderr or kind == "search", kind, result.stderr)
+        run("deck.yaml", "--output", "out", "--overwrite", "--quiet")
+        continued |= {kind} if advised else set()
+    check(continued == {"whole", "no list", "newest cut"}, continued)
+
+
 def a_failed_write_to_standard_output_is_an_error():
     import subprocess
 

@@ -104,6 +104,14 @@ def a_signal_before_the_first_step_ends_the_run_with_one_sentence():
     check(code == 4 and said == "tanktread: stopped by a signal before any results were written\n", code, said)
 
 
+def a_signal_before_the_first_step_of_a_resumed_run_says_that_it_continues():
+    run(deck(DECK), "--set", "Time/final time=0.1", "--output", "out", "--quiet")
+    times = series("out", "time")
+    code, said = _told(signal.SIGTERM, "--resume", "out", "--set", "Time/final time=50", "--set", "Time/tolerance=1e-9", "--quiet")
+    check(code == 4 and "--resume out continues the run" in said, code, said)
+    check((series("out", "time")[:len(times)] == times).all(), "rows are lost")
+
+
 def a_closed_standard_output_does_not_end_the_run():
     words = command(deck(DECK), "--output", "out")
     reader, writer = os.pipe()

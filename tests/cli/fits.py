@@ -1,10 +1,13 @@
 #!/usr/bin/python3
 # Tests of fits: they return the parameters that produced the data, report undetermined unknowns, and reject wrong
 # studies in one sentence. Tests of outlines and edge detection.
+import copy
 import os
 import pathlib
 import re
 import sys
+import types
+from unittest import mock
 
 import numpy
 import yaml
@@ -14,7 +17,8 @@ from harness import PROGRAM, SOURCE, check, close, deck, main, package
 os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
-from tanktread.studies import fit_data, fit_report, outline, silhouette
+from tanktread.mistakes import Mistake
+from tanktread.studies import fit, fit_data, fit_report, outline, phases, silhouette, sweep
 
 SHEAR = """
 Tanktread:
@@ -192,6 +196,182 @@ def an_edge_in_an_image_is_found_to_a_twentieth_of_a_pixel():
     check(said.returncode == 2 and "does not close" in said.stderr and said.stderr.count("\n") == 1, said)
 
 
+def _offline(text, model):
+    """Fits without the program. model(settings) returns {series: last value}, or the message of a failed run. Returns the fit, the text of the report, and
+    the settings of all runs."""
+    made = []
+
+    def outcomes(jobs):
+        for number, (_, settings) in enumerate(jobs, len(made)):
+            made.append(settings)
+            found = model(settings)
+            series = {"time": numpy.array([0.0, 1.0]), **{name: numpy.array([0.0, value]) for name, value in found.items()}} if isinstance(found, dict) else {}
+            yield types.SimpleNamespace(done=bool(series), refused=False, message=found, directory=pathlib.Path(f"run_{number}"), run=types.SimpleNamespace(
+                series=series, errors={}, untrusted={}, band=lambda name: None, in_units=lambda dimension: ""))
+
+    deck("Tanktread: {}")
+    pathlib.Path("experiment.yaml").write_text(yaml.safe_dump(text, sort_keys=False))
+    study = types.SimpleNamespace(all=lambda jobs: list(outcomes(jobs)), dimension=lambda key: "", limit=None)
+    with mock.patch.object(fit, "Study", lambda **given: study):
+        pathlib.Path("made").mkdir(exist_ok=True)
+        fits = fit.run("experiment.yaml", "made")
+    return fits, pathlib.Path("made/fit.txt").read_text(), made
+
+
+def _hyperbola(settings):
+    """not a test"""
+    return {"D": settings["F/rate"] / (settings["F/rate"] + settings["M/G"])}
+
+
+def _curve(path, law, noise, offset=0.0):
+    """Writes a table of D against the rate, with two rows per rate, in the format of a German spreadsheet."""
+    generator, rates = numpy.random.default_rng(3), numpy.repeat([40.0, 1.0, 2.0, 5.0, 10.0, 20.0], 2)
+    rows = (f"{rate};{law(rate) + offset + noise * generator.standard_normal():.6f};{max(noise, 0.005)}" for rate in rates)
+    pathlib.Path(path).write_text("\ufeffrate;D;error\r\n" + "".join(row.replace(".", ",") + "\r\n" for row in rows), encoding="utf-8")
+
+
+RATES = {"deck": "deck.yaml", "unknown": {"M/G": 30.0}, "experiments": {"e": {"data": [{"series": "D", "curve": "curve.csv", "against": "F/rate"}]}}}
+
+
+def a_curve_against_a_key_has_a_run_for_each_value_of_the_key():
+    _curve("curve.csv", lambda rate: rate / (rate + 8), 0.005)
+    (found,), said, made = _offline(RATES | {"next": {"F/rate": [8.0, 800.0]}}, _hyperbola)
+    value, error = found.values["M/G"]
+    check(abs(value - 8) < 2 * error < 0.2, value, error)
+    check(len({(one["F/rate"], one["M/G"]) for one in made}) == len(made) and {one["F/rate"] for one in made} == {1, 2, 5, 10, 20, 40, 8, 800}, "a run is repeated")
+    rises = [float(one) for one in re.findall(r"further experiment, F/rate [\d.]+: ± ([\d.]+)", said)]
+    check(len(rises) == 2 and rises[0] < error and rises[0] < rises[1], "a rate near the modulus tells more about it", said)
+    # factors: the same curve as a function of other keys
+    one = {"series": "D", "curve": "curve.csv", "against": {"F/rate": 0.5, "F/vector": [1, 0, -2]}}
+    (other,), _, made = _offline(RATES | {"experiments": {"e": {"data": [one]}}}, lambda settings: _hyperbola(settings | {"F/rate": settings["F/vector"][2] / -2}))
+    close(other.values["M/G"][0], value, 1e-3 * error, "with factors")  # equal residuals and derivatives
+    check(all(one["F/vector"] == [2 * one["F/rate"], 0, -4 * one["F/rate"]] for one in made), made[0])
+
+
+def a_force_extension_curve_with_units_recovers_the_modulus():
+    """The table is in nN and nm, the deck in pN and um. Two beads pull a capsule with a shear modulus of 6 uN/m."""
+    deck("""
+Tanktread:
+  Units: {}
+  Flow: {type: quiescent, viscosity: 1 mPa s}
+  Particle: {shape: sphere, radius: 3 um}
+  Membrane:
+    law: Skalak
+    shear modulus: 6 uN/m
+    forces: {left: {direction: [-1, 0, 0], radius: 1.5 um, force: [0, 0, 0]}, right: {direction: [1, 0, 0], radius: 1.5 um, force: [0, 0, 0]}}
+  Surface: {elements per side: 3}
+  Steady: {tolerance: 1.0e-6}
+""")
+    forces, sides = (2.0, 5.0, 9.0), {"Membrane/forces/left/force": [-1, 0, 0], "Membrane/forces/right/force": [1, 0, 0]}
+    found = tanktread.Study(directory="truth").all([(["deck.yaml"], {key: [one * force for one in side] for key, side in sides.items()}) for force in forces])
+    lengths = [one.series["length_x1"][-1] for one in found] + 0.01 * numpy.random.default_rng(2).standard_normal(3)
+    rows = "".join(f"{force / 1000};{1000 * length:.1f};10\n" for force, length in zip(forces, lengths)).replace(".", ",")
+    pathlib.Path("forces.csv").write_text("force [nN];extension [nm];error\n" + rows)
+    text = {"deck": "deck.yaml", "unknown": {"Membrane/shear modulus": 9.0}, "experiments": {"pulled": {"data": [{"series": "length_x1", "curve": "forces.csv", "against": sides}]}}}
+    said = _fit(text)
+    value, error = _found()["Membrane/shear modulus"]
+    check(abs(value - 6) < 2 * error < 0.5, value, error)
+    check(yaml.safe_load(open("results/experiment/fit.yaml"))["the deck's law"]["runs"] % 3 == 0 and " pN/µm (" in said, said)  # a run for each force
+    pathlib.Path("forces.csv").write_text("force [nN];extension [s];error\n" + rows)
+    check("the table is in s, which does not fit the unit of length_x1, 1e-06 m" in _fit(text, code=2), "a unit of another dimension")
+    pathlib.Path("forces.csv").write_text("force [nm];extension [nm];error\n" + rows)
+    check("pulled: the deck is refused: " in _fit(text, code=2), "a key with a unit of another dimension")
+
+
+def residuals_of_one_sign_are_reported():
+    """The offset of the data is six standard errors, and the bound keeps the model below them."""
+    _curve("curve.csv", lambda rate: rate / (rate + 8), 0.002, 0.03)
+    _, said, _ = _offline(RATES | {"unknown": {"M/G": {"start": 9.0, "from": 8.0}}}, _hyperbola)
+    check("12 of 12 positive in e: data (binomial test, probability 0.00049): the model is below the data" in said, said)  # 2 / 2**12
+    # ten single values of a series beside a curve that is met
+    single = {f"rate {rate}": {"set": {"F/rate": rate}, "data": [{"series": "E", "value": rate / (rate + 8.0) + 0.03, "error": 0.005}]} for rate in range(1, 11)}
+    _curve("curve.csv", lambda rate: rate / (rate + 8), 0.005)
+    _, said, _ = _offline(RATES | {"unknown": {"M/G": {"start": 9.0, "from": 8.0}}, "experiments": RATES["experiments"] | single},
+                          lambda settings: _hyperbola(settings) | {"E": settings["F/rate"] / (settings["F/rate"] + 8)})
+    check("10 of 10 positive in E (binomial test, probability 0.0059): the model is below the data" in said, said)  # 3 tests: 3 x 2 / 2**10
+    _curve("curve.csv", lambda rate: rate / (rate + 8), 0.005)
+    _, said, _ = _offline(RATES, _hyperbola)
+    check(re.search(r"positive in e: data .*as by chance", said), said)
+
+
+def a_fit_that_ends_where_runs_fail_reports_no_value():
+    _curve("curve.csv", lambda rate: rate / (rate + 8), 0.005)
+    experiments = RATES["experiments"] | {"fine": {"set": {"F/rate": 3.0}, "data": [{"series": "D", "value": 3 / 11, "error": 0.005}]}}
+
+    def model(settings):
+        fails = settings["M/G"] < 10 and settings["F/rate"] > 15 and "A/b" not in settings
+        return "the shape is hollow as it is seen" if fails else _hyperbola(settings)
+
+    (fitted, edge), said, made = _offline(RATES | {"experiments": experiments, "laws": {"one": {}, "two": {"A/b": 1}}, "next": {"F/rate": [8.0]}}, model)
+    close(fitted.values["M/G"][0], 8, 0.2, "a law of which no run fails")
+    check(edge.law == "one" and numpy.isnan(edge.values["M/G"][0]) and numpy.isinf(edge.values["M/G"][1]), edge.values)
+    record = yaml.safe_load(pathlib.Path("made/fit.yaml").read_text())["one"]
+    check(list(record["failed runs"]) == ["e"] and set(record["failed runs"]["e"].values()) == {"the shape is hollow as it is seen"}, record)
+    check(10 <= record["unknown"]["M/G"]["edge"] < 10.3 and numpy.isnan(record["unknown"]["M/G"]["value"]), record)
+    check("no value, because the fit ended at an edge beyond which runs of e fail" in said and "not compared, because they ended at an edge: one" in said, said)
+    check("runs of e failed or gave no outline or no value; the first one, run_" in said and "(AIC" not in said, said)
+
+
+PARTS = {
+    fit.load: {"deck": ["deck.yaml"], "set": {"A/b": [1, 2.0]}, "unknown": {"M/g": {"start": 1, "from": 0.1}, "M/k": {"known": 1, "error": 0.1, "spacing": "linear"}},
+               "laws": {"a": {"M/law": "x", "unknown": {"Q/r": 1}}}, "limit": 10, "next": {"F/s": ["2 1/s"]},
+               "experiments": {"e": {"set": {"F/z": "1 1/s"}, "unknown": {"W/w": 1}, "data": [
+                   {"series": "y", "curve": "curve.csv", "against": {"F/r": 2, "F/v": [1, -1]}, "at": 3, "columns": ["rate", 2, 3]},
+                   {"outline": "circle.csv", "scale": 1, "error": 0.1, "plane": ["x1", "x3"], "at": 1, "scale error": "free", "open": True},
+                   {"series": "q", "over": "b", "curve": "curve.csv", "origin": "free"}]}}},
+    sweep.Sweep: {"deck": "deck.yaml", "set": {"A/b": 1}, "grid": {"C/a": {"from": 1, "to": 2, "number": 3, "spacing": "logarithmic"}, "C/b": [1, 2]},
+                  "together": {"D/a": [1, 2]}, "random": {"number": 2, "seed": 3, "keys": {"R/a": [1, 2], "R/b": {"from": 1, "to": 2}}},
+                  "record": {"D": "taylor", "E": {"series": "x", "take": "all"}, "F": {"series": "q", "at": 3}}, "limit": 3, "ranks": 1},
+    phases.Diagram: {"deck": "deck.yaml", "motion": "shear", "set": {"A/b": 1}, "along": {"key": "A/k", "from": 1, "to": 2, "within": 1.1}, "across": {"P/q": [1, 2]},
+                     "curves": {"one": {}, "two": {"A/z": [1, 2], "A/y": "u"}}, "begin": 0.3, "literature": {"p": [[1, 2, 3]]}}}
+WRONG = [None, True, -3, 10**400, float("nan"), "a\0b", [], [[1]], {"a": 1}, {"from": 1, "to": 2, "number": 10**9}]
+
+
+def _parts(node, at=()):
+    yield at
+    for key, one in node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ():
+        yield from _parts(one, (*at, key))
+
+
+def every_part_of_a_study_file_is_checked():
+    """Each part of each kind of file is replaced by values of another type: the file is read or refused in one sentence."""
+    deck("Tanktread: {}")
+    _curve("curve.csv", lambda rate: rate, 0.005)
+    numpy.savetxt("circle.csv", _ellipse(1, 1), delimiter=",", header="x1,x3", comments="")
+    for read, whole in PARTS.items():
+        refused = []
+        for at in _parts(whole):
+            for wrong in WRONG:
+                text, part = copy.deepcopy({"study": whole}), ("study", *at)
+                node = text
+                for key in part[:-1]:
+                    node = node[key]
+                node[part[-1]] = wrong
+                pathlib.Path("study.yaml").write_text(yaml.dump(text["study"], Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper)))
+                try:
+                    read("study.yaml", types.SimpleNamespace())
+                except Mistake as mistake:
+                    check(len(str(mistake)) < 900, "too long:", mistake)
+                    refused.append(at)
+        check(set(refused) == set(_parts(whole)), read, "accepts anything as", set(_parts(whole)) - set(refused))
+
+
+def names_are_texts_and_occur_once():
+    deck("Tanktread: {}")
+    value = "{data: [{series: a, value: 1, error: 1}]}"
+    pathlib.Path("study.yaml").write_text(f"deck: deck.yaml\nunknown: {{A/b: 1}}\nexperiments: {{1: {value}, no: {value}, 2024-01-01: {value}}}\n")
+    (found,), _ = fit.load("study.yaml", types.SimpleNamespace())
+    check([one.name for one in found.experiments] == ["1", "no", "2024-01-01"], "names as they are written")
+    for text, words in ((f"unknown: {{A/b: 1}}\nexperiments:\n  e: {value}\n  e: {value}", "line 5: the key e is already in line 4"),
+                        (f"unknown: {{A/b: 1, A/b: 2}}\nexperiments: {{e: {value}}}", "line 2: the key A/b is already in line 2"),
+                        (f"set: {{3: 1}}\nunknown: {{A/b: 1}}\nexperiments: {{e: {value}}}", "set: 3 is not a key of a deck"),
+                        (f"set: {{A/b: &one {{c: *one}}}}\nunknown: {{A/b: 1}}\nexperiments: {{e: {value}}}", "within each other without end"),
+                        (f"unknown: {{? [1] : 1}}\nexperiments: {{e: {value}}}", "a name is a text")):
+        pathlib.Path("study.yaml").write_text(f"deck: deck.yaml\n{text}\n")
+        said = package("fit", "study.yaml")
+        check(said.returncode == 2 and words in said.stderr and said.stderr.count("\n") == 1, words, said.stderr)
+
+
 def mistakes_are_reported_in_one_sentence():
     deck(SHEAR)
     numpy.savetxt("arc.csv", _ellipse(1, 1)[:40], delimiter=",")
@@ -199,21 +379,33 @@ def mistakes_are_reported_in_one_sentence():
     datum, bare = {"series": "taylor_inertia", "value": 0.3, "error": 0.01}, {"series": "taylor_inertia", "value": 0.3}
     curve = {"series": "taylor_inertia", "curve": "curve.csv", "error": 0.01}
     numpy.savetxt("curve.csv", [[-1, 0.1], [0.5, 0.2]], delimiter=",")
+    pathlib.Path("units.csv").write_text("rate,length [um]\n1,2.1\n")
     for change, words in (({"unknown": {}}, "nothing is unknown"), ({"deck": "other.yaml"}, "no deck other.yaml"), ({"models": 1}, "models is not known"),
                           ({"unknown": {"Membrane/capillary number": 0.3, "Particle/viscosity ratio": 1.0}}, "2 numbers are unknown"),
                           ({"experiments": {"a": {"data": [{"outline": "arc.csv", "scale": 1, "error": 0.1}]}}}, "does not close"),
                           ({"experiments": {"a": {"data": [{"outline": "circle.csv", "error": 0.1}]}}}, "has no scale"),
-                          ({"experiments": {"a": {"data": [{"outline": "circle.csv", "scale": 1, "errors": 0.1}]}}}, "an outline has"),
+                          ({"experiments": {"a": {"data": [{"outline": "circle.csv", "scale": 1, "errors": 0.1}]}}}, "errors is not known"),
                           ({"experiments": {"a": {"data": [datum | {"series": "tailor"}]}}}, "no series tailor"),
                           ({"experiments": {"a": {"data": [datum | {"at": 9.0}]}}}, "before its data"),
                           ({"experiments": {"a": {"data": [datum | {"origin": "free"}]}}}, "is of a curve"),
                           ({"experiments": {"a": {"data": [curve | {"at": 1}]}}}, "`at` is of a value"), ({"experiments": {"a": {"data": [curve]}}}, "begin before"),
                           ({"experiments": {"a": {"set": {"Membrane/capillary number": 0.2}, "data": [datum]}}}, "is in `set`, but it is unknown"),
+                          ({"set": {"Membrane/capillary number": 0.2}}, "in `set` or in the law the deck's law, but it is unknown in all runs"),
+                          ({"laws": {"one": {"Membrane/capillary number": 0.2}}}, "or in the law one, but it is unknown"),
+                          ({"next": {"Membrane/capillary number": [0.2]}}, "next: Membrane/capillary number is unknown"),
+                          ({"experiments": {"a": {"data": [curve | {"against": "Membrane/capillary number"}]}}}, "is unknown, but it has the values of a table"),
+                          ({"experiments": {"a": {"set": {"Flow/shear rate": 1}, "data": [curve | {"against": "Flow/shear rate"}]}}}, "but it has the values of a table"),
+                          ({"experiments": {"a": {"data": [datum | {"against": "Flow/shear rate"}]}}}, "`against` is of a curve"),
+                          ({"experiments": {"a": {"data": [curve | {"against": 3}]}}}, "against must be a section"),
+                          ({"experiments": {"a": {"data": [curve | {"against": "Flow/shear rat"}]}}}, "a: the deck is refused: "),
+                          ({"experiments": {"a": {"data": [curve | {"series": "length_x1", "curve": "units.csv", "against": "Flow/shear rate"}]}}},
+                           "the table is in um, which does not fit the unit of length_x1, length; the deck has no section Units"),
+                          ({"experiments": {"a": {"data": [curve | {"columns": [1, "D"]}]}}}, "has no column D; there are: column 1, column 2"),
                           ({"experiments": {"a": {"data": [datum]}, "b": {"data": [bare]}}}, "missing for b: data, but other"),
                           ({"experiments": {"a": {"data": [bare]}}, "unknown": {"Membrane/capillary number": {"known": 0.3, "error": 0.1}}},
                            "Membrane/capillary number has an error, but the data have none"),
                           ({"experiments": {"a": {"data": [{"outline": "circle.csv", "scale": 1, "scale error": 0.1}]}}}, "the scale of a: data has an error"),
-                          ({"set": 3}, "set must be a section of keys"), ({"laws": {"one": 3}}, "the law one must be"), ({"next": {"A/b": 3}}, "a list of values"),
+                          ({"set": 3}, "set must be a section of keys"), ({"laws": {"one": 3}}, "laws: one must be a section"), ({"next": {"A/b": 3}}, "next: A/b must be a list"),
                           ({"experiments": {"a": {"data": [datum | {"value": "much"}]}}}, "much is not a number"),
                           ({"unknown": {"Membrane/capillary numbr": 0.3}}, "capillary number meant"),
                           ({"unknown": {"Membrane/capillary number": {"start": 0.3, "too": 1}}}, "too is not known"),

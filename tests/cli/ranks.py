@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # ranks: 3
 # Tests that the series and snapshots do not depend on the number of ranks (one, two, three).
+import os
 import pathlib
 import re
 import subprocess
@@ -126,6 +127,23 @@ def two_particles_are_timed_phase_by_phase():
     check(said.returncode == 0, said.stderr)
     found = re.search(r"difference of D +(\S+)", said.stdout)
     check("single layer" in said.stdout and found and float(found[1]) < 1e-10, said.stdout)
+
+
+def more_ranks_than_cores_are_reported():
+    """Ranks that may only run on one core share it. Other ranks of this test may run on all cores of the computer."""
+    cores = sorted(os.sched_getaffinity(0))[:2]
+
+    def said(*pinned):
+        parts = [["-n", "1", "taskset", "-c", str(core), PROGRAM, deck(DECK), "--check", "--quiet"] for core in pinned]
+        words = ["mpirun", *(str(word) for k, part in enumerate(parts) for word in [":"] * (k > 0) + part)]
+        return subprocess.run(words, capture_output=True, text=True, check=True).stderr
+
+    one = said(cores[0], cores[0])
+    check(one.count("tanktread: warning:") == 1 and "2 ranks share 1 core" in one and "mpirun -n 1" in one, one)
+    check("share" not in run(deck(DECK), "--check", "--quiet").stderr, "of one process")
+    if len(cores) > 1:
+        check("share" not in said(*cores), "a core for each rank")
+        check("2 ranks share 1 core" in said(cores[0], cores[1], cores[0]), "two of three ranks on one core")
 
 
 main()

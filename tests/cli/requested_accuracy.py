@@ -244,12 +244,17 @@ def the_wall_clock_limit_is_respected_and_reported():
 
 
 def a_level_of_a_rigid_body_continues():
-    deck("Tanktread:\n  Flow: {type: simple shear}\n  Particle: {motion: free, shape: spheroid, semi-axes: [1, 1, 2]}\n  Time: {final time: 50}\n"
-         "  Output: {wall-clock limit: 1.0e-6}\n  Accuracy: {requests: velocity_x1=1%}\n")
-    run("deck.yaml", "--quiet", "--output", "levels", code=4)
-    for _ in range(2):
-        run("--resume", "levels", "--quiet", code=4)
-    check(len(series("levels/level_0", "time")) == 4, series("levels/level_0", "time"))
+    deck("Tanktread:\n  Flow: {type: simple shear}\n  Particle: {motion: free, shape: spheroid, semi-axes: [1, 1, 2]}\n"
+         "  Time: {final time: 50000}\n  Output: {interval: 50}\n  Accuracy: {requests: velocity_x1=1%}\n")
+    record, times = pathlib.Path("levels/level_0/run.h5"), []
+    for words in ["deck.yaml", "--output", "levels"], ["--resume", "levels"]:
+        process = start(*words, "--quiet")
+        while process.poll() is None and not (record.exists() and len(series(record.parent, "time")) > len(times) + 1):
+            time.sleep(0.002)
+        process.send_signal(signal.SIGTERM)
+        check("--resume levels continues" in process.communicate()[1] and process.returncode == 4, process.returncode)
+        before, times = times, list(series(record.parent, "time"))
+        check(times[:len(before)] == before and len(times) > len(before), "did not continue", before[-3:], times[:3])
 
 
 def a_ladder_that_was_killed_gives_the_same_result():
@@ -373,6 +378,7 @@ def a_run_without_a_request_states_its_known_errors():
 def the_check_predicts_levels_and_seconds():
     deck(DROP)
     result = run("deck.yaml", "--accuracy", "taylor_inertia=0.1%", "--check")
+    check(result.stdout.count("pilot run of level") == 2, "no progress", result.stdout[-400:])
     check("is predicted to meet it" in result.stdout and "s in all, from a pilot run" in result.stdout, result.stdout[-400:])
     check(not pathlib.Path("results").exists(), "results were written")
     limited = run("deck.yaml", "--accuracy", "taylor_inertia=1e-6", "--set", "Accuracy/wall-clock limit=3", "--check").stdout

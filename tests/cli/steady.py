@@ -71,4 +71,31 @@ Tanktread:
     check(all(abs(a / b - 1) < 1e-4 for a, b in zip(*pairs)), pairs)  # ten times the steady tolerance
 
 
+SLACK = """
+Tanktread:
+  Flow: {type: duct}
+  Tube: {section: rectangle, sides: [3.3333333333, 3.3333333333], azimuthal elements: 16, axial elements: 16}
+  Membrane: {law: neo-Hookean, capillary number: 0.075}
+  Surface: {elements per side: 4}
+"""
+
+
+def the_message_of_a_slack_membrane_names_remedies_that_work():
+    said = run(deck(SLACK + "  Steady: {}\n"), "--output", "slack", "--quiet", code=3).stderr
+    check("75 % of the membrane is compressed (to -0.13 G_s) with no resistance to bending" in said, said)
+    check("pre-inflation" in said and "bending number" in said and "steady tolerance" in said, said)
+    count = summary("slack")["counts"]["evaluations"]
+    check(count <= 3 * 100, f"{count} velocities, more than in three searches of Steady/iterations")
+    for key in ("pre-inflation=0.05", "bending number=0.01"):
+        run(deck(SLACK + "  Steady: {}\n"), "--output", key, "--quiet", "--set", f"Membrane/{key}")
+    run(deck(SLACK + "  Time: {final time: 20, steady tolerance: 1.0e-4}\n"), "--output", "in_time", "--quiet")
+    check(summary("in_time")["status"] == "steady", summary("in_time")["status"])
+
+
+def the_message_of_a_branch_of_slack_membranes_says_so():
+    branch = "  Steady: {iterations: 30}\n  Continuation: {parameter: Membrane/capillary number, to: 0.1}\n"
+    said = run(deck(SLACK + branch), "--output", "branch", "--quiet", code=3).stderr
+    check("no steady shape was found at Membrane/capillary number = 0.075, because 75 % of the membrane is compressed" in said, said)
+
+
 main()

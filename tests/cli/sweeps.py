@@ -156,14 +156,14 @@ curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}
     made = [sum(key[0] == "one" and key[1] == x for key in diagram.made) for x in at]
     check(made[1] <= 6 < made[0], f"runs of each border: {made}")
     check(diagram.rows["other"] == [{"Particle/viscosity ratio": 1, "Membrane/law": "Skalak"}], diagram.rows)
-    deck("deck: deck.yaml\nalong: {key: a, from: 2, to: 1, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
+    deck("deck: deck.yaml\nalong: {key: A/a, from: 2, to: 1, within: 1.1}\nacross: {A/b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
     refused = package("phases", "wrong.yaml")
     check(refused.returncode == 2 and "ascend" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
-    deck("deck: deck.yaml\nmotion: rolling\nalong: {key: a, from: 1, to: 2, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
+    deck("deck: deck.yaml\nmotion: rolling\nalong: {key: A/a, from: 1, to: 2, within: 1.1}\nacross: {A/b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
     refused = package("phases", "wrong.yaml")
     check(refused.returncode == 2 and "shear or capillary, not rolling" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
-    for words, said in (("begin: half", "half is not a number"), ("begin: 2", "less than 1"), ("literature: {paper: [1, 2]}", "rows of"), ("set: 3", "section of keys")):
-        deck(f"deck: deck.yaml\nalong: {{key: a, from: 1, to: 2, within: 1.1}}\nacross: {{b: [1]}}\ncurves: {{one: {{}}}}\n{words}\n", "wrong.yaml")
+    for words, said in (("begin: half", "half is not a number"), ("begin: 2", "less than 1"), ("literature: {paper: [1, 2]}", "paper, 1 of the list must be a list"), ("set: 3", "section of keys")):
+        deck(f"deck: deck.yaml\nalong: {{key: A/a, from: 1, to: 2, within: 1.1}}\nacross: {{A/b: [1]}}\ncurves: {{one: {{}}}}\n{words}\n", "wrong.yaml")
         refused = package("phases", "wrong.yaml")
         check(refused.returncode == 2 and said in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
 
@@ -179,7 +179,7 @@ def a_phase_diagram_without_a_border_gives_a_table_and_a_sentence():
 def a_diagram_over_values_that_are_not_positive_is_drawn():
     from tanktread.studies import phases
     deck(DECK)
-    deck("deck: deck.yaml\nalong: {key: a, from: 1, to: 20, within: 1.1}\nacross: {b: [-1, 0, 1]}\ncurves: {one: {}}\n", "phases.yaml")
+    deck("deck: deck.yaml\nalong: {key: A/a, from: 1, to: 20, within: 1.1}\nacross: {A/b: [-1, 0, 1]}\ncurves: {one: {}}\n", "phases.yaml")
     diagram = phases.Diagram("phases.yaml", None)
     diagram.borders["one"] = [(b, 3.0 + b, 3.2 + b, "edge") for b in (-1, 0, 1)]
     axes = diagram.draw().axes[0]
@@ -358,24 +358,27 @@ def a_limit_is_not_rounded_to_seconds():
         finally:
             signal.setitimer(signal.ITIMER_PROF, 0)
         check(abs(left - limit) < 0.1, left)  # a limit in whole seconds would be 0.6 or 0.8 larger
-    for limit, words in ((-1, "but is -1"), (0, "but is 0"), (float("inf"), "but is inf")):
+    for limit, words in ((-1, "above 0, but is -1"), (0, "above 0, but is 0"), (float("inf"), "limit: inf is not a number")):
         deck(f"deck: deck.yaml\nrecord: [area]\nlimit: {str(limit).replace('inf', '.inf')}\n", "study.yaml")
         said = _sweep("study.yaml", code=2)
-        check("limit must be a number above 0" in said and words in said and said.count("\n") == 1, said)
+        check(words in said and said.count("\n") == 1, said)
 
 
 def a_killed_sweep_continues():
     deck(DECK.replace("per side: 3", "per side: 6").replace("final time: 0.5", "final time: 8.0"))
     deck(STUDY, "study.yaml")
-    for number in signal.SIGTERM, signal.SIGKILL:
+    for number in signal.SIGTERM, signal.SIGKILL:  # each keeps the table of the runs that have ended
         process = subprocess.Popen([SOURCE / "postproc/tanktread-sweep", "study.yaml", "--jobs", "2"], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                    start_new_session=True)
-        before = len(list(pathlib.Path("results/study/runs").glob("*/outcome.json"))) if pathlib.Path("results").exists() else 0
-        while process.poll() is None and len(list(pathlib.Path("results/study/runs").glob("*/outcome.json"))) < before + 1:
+        before = len(_rows()) if pathlib.Path("results/study/table.csv").exists() else 0
+        while process.poll() is None and (not pathlib.Path("results/study/table.csv").exists() or len(_rows()) in (0, before)):
             time.sleep(0.02)
         # sends the signal to the study and its runs, as a batch system does; the study sends it to its runs again
         os.killpg(process.pid, number)
         process.wait()
+        check(_rows() and all(row["status"] == "done" for row in _rows()), "the table of a killed sweep", _rows())
+        with h5py.File("results/study/table.h5") as file:
+            check(len(file["columns/D"]) == len(_rows()), "the other table")
     kept = {path: path.stat().st_mtime_ns for path in pathlib.Path("results/study/runs").glob("*/outcome.json") if '"code": 0' in path.read_text()}
     check(kept, "nothing was done before")
     _sweep("study.yaml", "--jobs", "2")
@@ -385,24 +388,40 @@ def a_killed_sweep_continues():
     check(all(path.stat().st_mtime_ns == when for path, when in kept.items()), "a run that was there is made again")
 
 
+def a_table_tells_steady_shapes_from_the_final_time():
+    deck(DECK.replace("final time: 0.5", "final time: 0.5, steady tolerance: 1.0e-9"))
+    pathlib.Path("study.yaml").write_text("deck: deck.yaml\ngrid: {Time/steady tolerance: [1.0e-9, 10.0], Membrane/law: [neo-Hookean, none]}\nrecord: [taylor_inertia]\n")
+    _sweep("study.yaml", "--jobs", "1")
+    check([(row["status"], row["ended"]) for row in _rows()] == [("done", "done"), ("refused", "refused"), ("done", "steady"), ("refused", "refused")], _rows())
+    with h5py.File("results/study/table.h5") as file:
+        check(file["ended"].asstr()[::2].tolist() == ["done", "steady"], "in HDF5")
+
+
 def mistakes_are_reported_in_one_sentence():
     deck(DECK)
     for text, words in (("deck: nowhere.yaml\nrecord: [a]", "no deck nowhere.yaml"), ("deck: deck.yaml", "records nothing"),
-                        ("deck: deck.yaml\nkeys: {}", "keys is not known"), ("deck: deck.yaml\nrecord: {D: {take: most}}", "take most"),
+                        ("deck: deck.yaml\nkeys: {}", "keys is not known"), ("deck: deck.yaml\nrecord: {D: {take: most}}", "D: take is last or smallest or largest or mean or all, not most"),
                         ("deck: deck.yaml\nrecord: {D: {series: a, take: mean, at: 1}}", "take or at"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1}}", "from, to and number"), ("a: [", "not YAML"),
-                        ("deck: 3", "but 3 is none"), ("deck: deck.yaml\nrecord: [a]\nset: 3", "set must be a section of keys"),
+                        ("deck: 3", "deck must be a text, but is 3"), ("deck: deck.yaml\nrecord: [a]\nset: 3", "set must be a section of keys"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: [A/b]", "grid must be a section of keys"), ("deck: deck.yaml\nrecord: D", "record must be"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: x, to: 2, number: 3}}", "x is not a number"),
-                        ("deck: deck.yaml\nrecord: [a]\nrandom: {number: -1, keys: {A/b: [1]}}", "a whole number above 0"),
+                        ("deck: deck.yaml\nrecord: [a]\nrandom: {number: -1, keys: {A/b: [1]}}", "a whole number, 1 or above"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1, to: 2, number: 2, spaceing: linear}}", "A/b: spaceing is not known"),
                         ("deck: deck.yaml\nrecord: [a]\nrandom: {number: 2, sede: 5, keys: {A/b: [1]}}", "random: sede is not known"),
                         ("deck: deck.yaml\nrecord: [a]\nrandom: {number: 2, keys: {A/b: {from: 1, to: 2, number: 2}}}", "A/b: number is not known"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1, to: 2, number: 1000000000}}",
+                         "A/b makes 1000000000 runs, and a study makes at most 100000"),
+                        ("deck: deck.yaml\nrecord: [a]\nrandom: {number: 1000000000, keys: {A/b: [1]}}", "the study makes 1000000000 runs"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: {from: 1, to: 2, number: 1000}, A/c: {from: 1, to: 2, number: 1000}}",
+                         "the study makes 1000000 runs, and a study makes at most 100000"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: {3: [1]}", "grid: 3 is not a key of a deck"),
+                        ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: [1]}\ngrid: {A/c: [1]}", "line 4: the key grid is already in line 3"),
                         ("deck: deck.yaml\nrecord: {A/b: a}\ngrid: {A/b: [1, 2]}", "A/b is already a column"),
                         ("deck: deck.yaml\nrecord: {status: a}\ngrid: {A/b: [1, 2]}", "status is already a column"),
                         ("deck: deck.yaml\nrecord: {all: {series: a, take: all}, time: time}", "time is already a column"),
                         ("deck: deck.yaml\nrecord: [a]\ngrid: {A/b: [1, 2]}\ntogether: {A/b: [3, 4]}", "A/b: a key is in one of"),
-                        ("deck: deck.yaml\nrecord: [a]\nranks: 0", "a whole number above 0"), ("deck: deck.yaml\nrecord: [a]\nlimit: x", "limit: x is not")):
+                        ("deck: deck.yaml\nrecord: [a]\nranks: 0", "a whole number, 1 or above"), ("deck: deck.yaml\nrecord: [a]\nlimit: x", "limit: x is not")):
         deck(text, "study.yaml")
         said = _sweep("study.yaml", code=2)
         check(words in said and said.count("\n") == 1, said)

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # Tests that results do not depend on units. If units differ by powers of two, the only difference is rounding in the
 # radius of equal volume.
+import math
 import re
 
-from harness import check, deck, main, refused, run, series, summary
+from harness import SOURCE, check, deck, main, refused, run, series, summary
 
 LENGTH, TIME, VISCOSITY = 2.0**-18, 2.0**-7, 2.0**-10  # about 4 micrometres, 8 ms, 1 mPa s
 STRESS = VISCOSITY / TIME
@@ -95,6 +96,48 @@ def values_with_units_give_the_same_as_their_numbers():
     refused(["Particle/center", "1e999"], deck(said.replace("[0, 0, 1 um]", "[1e999, 0, 1 um]") % ""))
     refused(["Units/force", "unit of force", "1 kg"], deck(said % "force: 1 kg"))
     refused(["Units/length", "unit of length", "..."], deck(said % f"length: {'7' * 1000} um"))
+
+
+def unusual_values_are_pointed_out():
+    """A value a thousand times off, and a capillary number above 100, is named in the plan in one sentence; the decks
+    with units have none."""
+    given = "Units: {}, Flow: {shear rate: 100 1/s, viscosity: %s}, Particle: {radius: %s}, Membrane: {%s}, Time: {final time: 4 ms}"
+    usual = ("1.2 mPa s", "4 um", "shear modulus: 5.3 uN/m, bending modulus: 2e-19 J")
+    for words, *values in ([], *usual), (["Flow/viscosity is 1.2 Pa s"], "1.2 Pa s", *usual[1:]), (["Particle/radius is 4e-12 m"], usual[0], "4e-6", usual[2]), \
+            (["Membrane/shear modulus is 5.3 N/m", "capillary number is"], *usual[:2], "shear modulus: 5.3 N/m"), \
+            (["Membrane/bending modulus is 2e-37 J"], *usual[:2], "shear modulus: 5.3 uN/m, bending modulus: 2e-19"), \
+            (["The capillary number is 200, but"], *usual[:2], "capillary number: 200"):
+        lines = [line for line in run(deck("Tanktread: {" + given % tuple(values) + "}"), "--check").stdout.splitlines() if line.startswith("  unusual")]
+        check(len(lines) == (words != []) and all(word in lines[0] for word in words), words, lines)
+        check(not words or lines[0].count(": check ") == len(words), lines)
+    for path in sorted((SOURCE / "inputs").glob("*.yaml")):
+        if "  Units:" in path.read_text():
+            check("  unusual" not in run(path, "--check").stdout, path)
+
+
+def a_flow_rate_replaces_the_mean_velocity():
+    """The flow rate divided by the area of the cross-section, in a channel at its inlet, is the mean velocity, with any
+    unit, in periodic ducts and with either quantity held."""
+    text = "Units: {}, Flow: {type: duct, viscosity: 1 mPa s, %s}, %s, Particle: {radius: 4 um}, Membrane: {shear modulus: 5 uN/m}, " \
+        "Surface: {elements per side: 3}, Time: {final time: 2 ms}"
+    area = math.pi * 10 * 10  # square micrometres
+    ducts = {"Tube: {radius: 10 um, azimuthal elements: 8, axial elements: 8}": area,
+             "Tube: {section: ellipse, semi-axes: [20 um, 5 um], periodic length: 30 um}": area,
+             "Channel: {radius: 10 um, profile: constriction, depth: 0.2, half length: 10 um}": area,
+             "Tube: {section: rectangle, sides: [20 um, 15 um]}": 300}
+    for duct, area in ducts.items():
+        for held in "flow rate", "pressure drop":
+            for rate, factor in ("0.0012 µl/min", 20_000.0), ("20000 um^3/s", 20_000.0):
+                plan = run(deck("Tanktread: {" + text % (f"flow rate: {rate}, held: {held}", duct) + "}"), "--check").stdout
+                check(f"mean velocity {factor / area:g}," in plan and "flow_rate 20000," in plan, duct, plan)
+                check("    flow rate: 20000.0\n" in plan and "mean velocity: " not in plan, plan)
+    tube = next(iter(ducts))
+    run(deck("Tanktread: {" + text % ("flow rate: 20000 um^3/s", tube) + "}"), "--output", "rate", "--quiet")
+    run(deck("Tanktread: {" + text % (f"mean velocity: {20_000 / (math.pi * 100)!r}", tube) + "}"), "--output", "speed", "--quiet")
+    check((series("rate", "velocity_x1") == series("speed", "velocity_x1")).all(), "another velocity")
+    refused(["Flow/flow rate", "Flow/mean velocity", "contradict"], deck("Tanktread: {" + text % ("flow rate: 1, mean velocity: 1", tube) + "}"))
+    refused(["Flow/flow rate", "duct", "simple shear"], "inputs/shear_neo_hookean.yaml", "--set", "Flow/flow rate=1")
+    refused(["Flow/Q", "was Flow/flow rate meant?"], deck("Tanktread: {" + text % ("Q: 1", tube) + "}"))
 
 
 main()

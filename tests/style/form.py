@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Checks the form of all files: C++ lines of at most 150 characters (aim: 140), #pragma once in headers, Debian's Python in scripts, scripts that are
-executable, and bash scripts that stop at the first error.
+executable, bash scripts that stop at the first error, and decks whose cost is stated equally in both places.
 
 Usage: form.py <source directory>
 """
 import os
 import pathlib
+import re
 import sys
 
 
@@ -38,9 +39,16 @@ def script_errors(path, text):
         yield f"{path}: no set -euo pipefail"
 
 
+def cost_errors(source):
+    """Yields the decks whose line `# Cost:` and row in inputs/README.md state different costs."""
+    for name, cost in re.findall(r"(?m)^\| \[(\w[\w.]*\.yaml)\].*\| ([^|]+) \|$", (source / "inputs/README.md").read_text()):
+        if f"\n# Cost: {cost} on one core.\n" not in (source / "inputs" / name).read_text():
+            yield f"inputs/README.md states the cost of {name} as `{cost}`, and its line `# Cost:` does not (tests/benchmark/deck_costs.py)"
+
+
 def main():
     source = pathlib.Path(sys.argv[1])
-    errors = []
+    errors = list(cost_errors(source))
     for folder in ("app", "lib", "tests", "postproc", ".ci"):
         for path in sorted(p for p in (source / folder).rglob("*") if p.is_file()):
             if path.suffix in (".cpp", ".hpp"):

@@ -14,6 +14,7 @@
 
 #include "base/errors.hpp"
 #include "record/files/hdf.hpp"
+#include "record/files/run_record.hpp"
 
 namespace tanktread::output {
 
@@ -132,9 +133,17 @@ void check_vacant(const fs::path& directory) {
   std::error_code absent;
   if (!fs::is_directory(directory, absent)) return;
   in_directory(directory, [&] {
-    if (fs::exists(directory / ladder_file) || !files_where(directory, is_of_run).empty())
-      throw UserError(directory.string() + " holds the results of a run: --resume " + directory.string() +
-                      " continues it, --overwrite deletes it first, --output chooses another directory.");
+    const bool ladder = fs::exists(directory / ladder_file);
+    if (!ladder && files_where(directory, is_of_run).empty()) return;
+    std::string name = directory.string(), why;
+    try {
+      if (!ladder) why = obstacle_to_resuming(directory);
+    } catch (const RunFailure& failure) {
+      why = failure.what();
+    }
+    throw UserError(name + " holds the results of a run" +
+                    (why.empty() ? ": --resume " + name + " continues it," : " that --resume cannot continue (" + why + "):") +
+                    " --overwrite deletes it first, --output chooses another directory.");
   });
 }
 

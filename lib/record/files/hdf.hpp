@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/versions.hpp"  // before hdf5.h
+
 #include <hdf5.h>
 
 namespace tanktread::output::hdf {

@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "record/files/checkpoint.hpp"
 #include "record/files/file.hpp"
 #include "record/files/hdf.hpp"
 
@@ -29,6 +31,36 @@ RunRecord RunRecord::load(const std::filesystem::path& path) try {
   return record;
 } catch (const std::runtime_error& error) {
   throw UserError("the record " + path.string() + " is missing or damaged (" + error.what() + ")");
+}
+
+RunRecord RunRecord::up_to(const Saved& saved) {
+  const auto& texts = saved.checkpoint.texts;
+  const std::string name = saved.file.path.filename();
+  if (!texts.contains("run") || !texts.contains("record")) throw UserError(another_version);
+  if (const double step = saved.checkpoint.numbers.at("steps"); step != saved.file.step)
+    throw UserError(name + formatted(" contains step %.0f, but its name states another step", step));
+  RunRecord record = load(saved.file.path.parent_path() / record_file);
+  const auto run = record.provenance_.find("run");
+  if (run == record.provenance_.end() || run->second != texts.at("run")) throw UserError(name + " and run.h5 belong to different runs");
+  const auto rows = static_cast<std::size_t>(saved.file.step) + 1;
+  const auto matches = [&](bool with_undefined) { return record.checksum(rows, with_undefined) == texts.at("record"); };
+  if (record.rows() < rows || (!matches(false) && !matches(true)))
+    throw UserError("the rows of run.h5 up to " + name + " are damaged: they differ from what was written");
+  record.truncate(rows);
+  return record;
+}
+
+std::string obstacle_to_resuming(const std::filesystem::path& directory) try {
+  const std::optional<Saved> saved = newest_checkpoint(directory);
+  if (!saved) return "there is no checkpoint in this directory";
+  if (const auto why = saved->checkpoint.texts.find(not_resumed); why != saved->checkpoint.texts.end()) return why->second;
+  RunRecord::up_to(*saved);
+  stored_state(saved->checkpoint);
+  return {};
+} catch (const UserError& error) {
+  return error.what();
+} catch (const std::out_of_range&) {
+  return another_version;
 }
 
 void RunRecord::declare(std::string name, std::string unit, std::string description, std::string si) {

@@ -12,6 +12,8 @@
 
 namespace tanktread::output {
 
+struct Saved;
+
 /// One quantity as a function of the step. Scripts outside the project rely on the names of series.
 struct Series {
   std::string name, unit, description;
@@ -35,6 +37,10 @@ class RunRecord {
 
   /// Reads the record at `path`. Throws UserError if it is missing or damaged.
   static RunRecord load(const std::filesystem::path& path);
+
+  /// Reads the record of the run with this checkpoint, without the rows after it. Throws UserError if the record is missing, is damaged, or differs
+  /// from the record that the run had when the checkpoint was saved.
+  static RunRecord up_to(const Saved& saved);
 
   /// Declares a series. All series must be declared before the first row, and again after `load`. A series that exists already keeps its values. A
   /// new series is NaN in the rows that exist already.
@@ -75,5 +81,16 @@ class RunRecord {
   std::map<std::string, std::string> provenance_;
   std::vector<Series> series_, errors_;
 };
+
+/// Entry of a checkpoint's texts that says why --resume cannot continue the run, as a clause. It is missing if the run makes time steps.
+constexpr const char* not_resumed = "not resumed, because";
+
+/// Reason why --resume refuses a checkpoint that lacks an entry.
+constexpr const char* another_version =
+    "its newest checkpoint was written by another version of tanktread and lacks data that this version needs to continue";
+
+/// Returns the reason why --resume cannot continue the run in this directory, as a clause; empty if it can. Throws RunFailure if the system cannot
+/// read a file.
+std::string obstacle_to_resuming(const std::filesystem::path& directory);
 
 }  // namespace tanktread::output

@@ -1,8 +1,10 @@
 // Coupled system of particles, deforming or rigid, in the time loop, on meshes that may change.
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -11,6 +13,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "base/indices.hpp"
 #include "scene/member.hpp"
 #include "scene/particles/adaptation.hpp"
 #include "scene/particles/drift.hpp"
@@ -59,7 +62,6 @@ class CoupledParticles : public ParticleSystem {
     const bool another_mesh = restore_mesh(resumed.checkpoint, resumed.state.x);
     require_fit(resumed.totals.phase_angle.size() == members_.size());
     motion::refreeze(dynamics(), resumed.state, resumed.state.time);
-    capsule_->counts() = resumed.totals.counts;
     for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle[p];
     set_contacts(resumed.totals.contacts);
     return another_mesh;
@@ -146,8 +148,36 @@ class CoupledParticles : public ParticleSystem {
     rebuild(x.topRows(n_points()));
   }
 
+  std::string slackness(const Net& state) const override {
+    const Net x = fields_->shape(state);
+    std::string found;
+    double worst = 0.01;  // a smaller part of the membrane does not count, nor does a tension above -0.01 G_s
+    for (const Member& member : members_) {
+      if (!member.scene.elastic()) continue;
+      const Net own = member.own(x);
+      const auto n = static_cast<int>(member.body->space.elements.size());
+      const membrane::ElementTensions tensions =
+          member.membrane->element_tensions(own, indices(n), global_tension(member.scene, *member.body, own));
+      const auto sum = [](const std::vector<double>& areas) { return std::accumulate(areas.begin(), areas.end(), 0.); };
+      const double area = sum(tensions.area), compressed = sum(tensions.compressed) / area;
+      const double bending = member.scene.bending_modulus(), wave_number = std::numbers::pi * std::sqrt(n / area) / 2;
+      // Waves of the wave number sqrt(T/(3 B)) grow fastest under the tension -T with the bending modulus B; the mesh resolves half of its largest.
+      const double resisted = 3 * bending * wave_number * wave_number / member.scene.modulus();
+      if (compressed <= worst || -tensions.smallest <= std::max(0.01, resisted)) continue;
+      worst = compressed;
+      found = formatted("%.0f %% of the membrane%s is compressed (to %.2g G_s) with %s: set Membrane/pre-inflation%s (0.05, for example) or "
+                        "Membrane/bending number%s (0.01), or replace Steady by Time/final time and Time/steady tolerance",
+                        100 * compressed, member.name.empty() ? "" : (" of " + member.scene.path()).c_str(), tensions.smallest,
+                        bending > 0 ? "too little resistance to bending for its mesh" : "no resistance to bending",
+                        member.scene.membrane.pre_inflation > 0 ? " higher" : "", bending > 0 ? " higher" : "");
+    }
+    return found;
+  }
+
   std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
   coupling::OperationCounts counts() const override { return capsule_->counts(); }
+  void set_counts(const coupling::OperationCounts& counts) override { capsule_->counts() = counts; }
+  void forget() override { capsule_->forget(); }
 
   std::vector<PhaseAngle> phase_angle() const override {
     std::vector<PhaseAngle> all;

@@ -24,13 +24,7 @@ class Free : public ParticleSystem {
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
   Net start() const override { return coupling::placed(free_->centre()); }
-  /// Restores the counts of work of the run. Subtracts the work of the repeated set-up, because the counts already include the first set-up.
   bool resume(Resumed& resumed) override {
-    const coupling::OperationCounts again = counts();
-    before_ = resumed.totals.counts;
-    before_.assemblies -= again.assemblies;
-    before_.solves -= again.solves;
-    before_.solver_iterations -= again.solver_iterations;
     phase_angle_ = resumed.totals.phase_angle.at(0);
     if (const auto start = resumed.checkpoint.arrays.find("start unknowns"); start != resumed.checkpoint.arrays.end())
       free_->start_from(start->second);
@@ -52,6 +46,16 @@ class Free : public ParticleSystem {
     sum.solves += free_->linear_solves();
     sum.solver_iterations += free_->solver_iterations();
     return sum;
+  }
+
+  void set_counts(const coupling::OperationCounts& all) override {
+    before_ = {};
+    const coupling::OperationCounts here = counts();
+    before_ = all;
+    before_.evaluations -= here.evaluations;
+    before_.assemblies -= here.assemblies;
+    before_.solves -= here.solves;
+    before_.solver_iterations -= here.solver_iterations;
   }
 
   std::vector<PhaseAngle> phase_angle() const override { return {phase_angle_}; }

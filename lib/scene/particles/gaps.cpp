@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "scene/room.hpp"
 #include "scene/solids.hpp"
 #include "surface/closest_points.hpp"
 
@@ -223,29 +224,70 @@ void check_not_nested(const std::vector<Member>& members, const std::vector<Net>
   }
 }
 
-/// Throws UserError if two particles overlap in their initial shapes, or if one is inside another.
-void check_apart(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell) {
-  if (members.size() == 1 && !cell) return;
+/// Returns the two particles with the smallest gap at the start.
+Nearest nearest_at_start(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<Net> x;
   for (const Member& member : members) x.push_back(member.body->initial);
   const Pairs pairs(members, x, cell);
   const NearestPair nearest(pairs, [](std::size_t) { return true; });
-  const Nearest found = nearest.of(nearest.with_gap(nearest.gap()));
-  if (found.gap > 10 * pairs.tolerance()) return check_not_nested(members, x, cell);
-  const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].scene.path(); };
-  if (found.first == found.second)
-    throw UserError("Domain is smaller than " + name(found.first) +
-                    formatted(", which overlaps its own image near [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
-  throw UserError(name(found.first) + " and " + name(found.second) +
-                  formatted(" overlap at the start, near [%.4g, %.4g, %.4g].", found.place[0], found.place[1], found.place[2]));
+  Nearest found = nearest.of(nearest.with_gap(nearest.gap()));
+  if (found.gap > 10 * pairs.tolerance()) check_not_nested(members, x, cell);
+  else found.gap = 0;
+  return found;
+}
+
+/// Throws NoRoom if the particles `nearest` overlap, or if their gap is smaller than `least`, a length.
+void check_gap(const std::vector<Member>& members, const Nearest& nearest, double least) {
+  const double gap = nearest.gap;
+  if (gap > 0 && gap >= least) return;
+  const auto scene = [&](int number) -> const ParticleScene& { return members[static_cast<std::size_t>(number) - 1].scene; };
+  const bool own = nearest.first == nearest.second;
+  const std::string first = scene(nearest.first).path(), second = own ? "its own image" : scene(nearest.second).path();
+  const std::string where = formatted("near [%.4g, %.4g, %.4g]", nearest.place[0], nearest.place[1], nearest.place[2]);
+  if (gap > 0)
+    throw NoRoom(first + " and " + second + " start too close to each other: " + where +
+                     formatted(" the gap is %.4g, less than %.4g; Contact/limit is %g R_C: move them apart, or set a smaller limit.", gap, least,
+                               scene(nearest.first).contact.limit),
+                 gap);
+  if (own) throw NoRoom("Domain is smaller than " + first + ", which overlaps " + second + " " + where + ".", gap);
+  throw NoRoom(first + " and " + second + " overlap at the start, " + where + ".", gap);
+}
+
+/// Returns particles of these kinds, with meshes refined by `factor`.
+std::vector<Member> refined(Scene scene, std::vector<ParticleKind> kinds, int factor) {
+  for (ParticleKind& kind : kinds) refine(kind, factor);
+  scene.particles = std::move(kinds);
+  return make_members(scene);
+}
+
+/// Throws UserError if two particles overlap in their initial shapes, if one is inside another, or if they are closer than a run in time allows.
+void check_apart(const Scene& scene, const std::vector<Member>& members) {
+  const std::optional<stokes::PeriodicCell> cell = scene.domain.cell();
+  if (members.size() == 1 && !cell) return;
+  const Nearest nearest = nearest_at_start(members, cell);
+  const double least = scene.has_time() && scene.time.final_time > 0 ? scene.contact.start() * scene.least_radius() : 0;
+  std::vector<ParticleKind> kinds{scene.particles[static_cast<std::size_t>(nearest.first) - 1]};
+  if (nearest.second != nearest.first) kinds.push_back(scene.particles[static_cast<std::size_t>(nearest.second) - 1]);
+  const auto fits_its_shape = [](const ParticleKind& kind) { return kind.particle.rigid() && kind.adaptation.enabled; };
+  check_room(
+      [&](int factor) {
+        if (factor == 1) return check_gap(members, nearest, least);
+        const std::vector<Member> finer = refined(scene, kinds, factor);
+        check_gap(finer, nearest_at_start(finer, cell), least);
+      },
+      std::ranges::any_of(kinds, fits_its_shape));
 }
 
 }  // namespace
 
 std::vector<Member> checked_members(const Scene& scene) {
   std::vector<Member> members = make_members(scene);
-  check_apart(members, scene.domain.cell());
-  check_outside_of_posts(scene, members);
+  check_apart(scene, members);
+  for (std::size_t p = 0; p < members.size(); ++p)
+    check_room([&](int factor) {
+      if (factor == 1) check_outside_of_posts(scene, members[p]);
+      else check_outside_of_posts(scene, refined(scene, {scene.particles[p]}, factor).front());
+    });
   return members;
 }
 

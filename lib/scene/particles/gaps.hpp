@@ -22,8 +22,8 @@ struct Nearest {
   void add_columns(Columns& to) const;
 };
 
-/// Returns the particles of the scene. Throws UserError if two of them overlap in their initial shapes, if one is inside another, or if one crosses a
-/// post. The message names the particles and, if they overlap, the position.
+/// Returns the particles of the scene. Throws UserError if two of them overlap in their initial shapes, if they are closer than a run in time allows,
+/// if one is inside another, or if one crosses a post. The message names the particles and the position, and says if only their meshes overlap.
 std::vector<Member> checked_members(const Scene& scene);
 
 /// Pair of particles close to each other: their contact (the two nearest points and the normal), without a force, and their gap.

@@ -57,11 +57,11 @@ Limiter::Held Limiter::held(const Approach& found, double target) const {
 
 /// Updates the gaps of known contacts in the shape x. Adds a contact at every other position where the gap is below (1 - slack/10) times the limit.
 /// Near a known contact, adds one only if the gap is smaller than at that contact and below (1 - slack) times its required gap, because the contact
-/// force dents a soft drop. Returns false if a gap is below half of the limit.
+/// force dents a soft drop. Returns false if a gap is below ContactOptions::reach times the limit.
 bool Limiter::find(const Net& x) {
   for (Held& one : held_) one.gap = approach(members_, x, one.contact).gap;
   for (Approach found : approaches(members_, x, limit_, ranks_, capsule_.cell())) {
-    if (!(found.gap >= limit_ / 2)) return false;
+    if (!(found.gap >= ContactOptions::reach * limit_)) return false;
     Held* const known = known_near(found.contact, x);
     if (known && known->response.size() == 0) {
       if (found.gap >= known->gap) continue;

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "motion/integrator.hpp"
@@ -58,8 +59,14 @@ class ParticleSystem {
   /// Moves the centroid back if it is held, then adapts meshes after a step; returns true if this has changed the mesh of body().
   virtual bool adapt(motion::State& state, RunTotals& totals) = 0;
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
+  /// Returns a sentence about the membrane that is compressed most at the state x although its resistance to bending is too small for its mesh, and
+  /// what to do about it in a search for a steady shape; empty if there is none.
+  virtual std::string slackness(const Net& /*x*/) const { return {}; }
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::OperationCounts counts() const = 0;
+  virtual void set_counts(const coupling::OperationCounts& counts) = 0;  ///< sets the counts of the operations so far
+  /// Discards what evaluations keep for later ones and checkpoints do not contain, so that a resumed run makes the same evaluations.
+  virtual void forget() {}
   /// Returns the phase angle of each particle when the series were last computed.
   virtual std::vector<PhaseAngle> phase_angle() const = 0;
   /// Returns the number of kernel evaluations on this rank, without the evaluations that SharedOptions::walls counts.
@@ -68,13 +75,15 @@ class ParticleSystem {
   /// `progress`, with the time and the work of the run. To be called once per row, in the order of times.
   virtual Columns next_row(const motion::State& state, const ProgressRow& progress) = 0;
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
-  /// Returns the surface and the fields of a snapshot. At the state of the last row, it must neither solve systems nor evaluate kernels: a run does
-  /// not collect the counts of operations again before it stores them in the checkpoint.
+  /// Returns the surface and the fields of a snapshot.
   virtual SurfaceSnapshot snapshot(const motion::State& state) = 0;
 };
 
 /// Builds the system for the particles of the scene: a coupled system, or a free rigid body.
 std::unique_ptr<ParticleSystem> make_particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
+
+/// Throws UserError if particles overlap walls, posts or each other at their start, or are closer than a run allows.
+void check_room(const Scene& scene);
 
 /// Builds the particles of the scene at their start, and discards them. Throws UserError if they cannot start there. Collective.
 void check_start(const Scene& scene);

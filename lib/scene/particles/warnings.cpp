@@ -7,6 +7,7 @@
 
 #include "accuracy/obstacles.hpp"
 #include "base/formatted.hpp"
+#include "membrane/strain_energy.hpp"
 #include "scene/series/diagnostics.hpp"
 
 namespace tanktread {
@@ -19,9 +20,13 @@ constexpr double grown = 5;
 constexpr int limited_steps = 10;
 constexpr double folding = 0.05;    // warning threshold of jacobian_ratio, which is at least 0.5 on uniform elements and 0.1 at a degenerate pole
 constexpr double slenderness = 10;  // threshold of aspect_ratio
+// threshold of surface::Quality::tilt, radians: two elements across a rounded tip. Lengths err by 1 % to 4 % above it, by less than 0.5 % below it
+constexpr double sharpness = 0.65;
 constexpr double lost_volume = 1e-3;
 // threshold of K/G_s and K R_C^2/E_b, with the modulus K of the total area. If both are above it, time steps become very small
 constexpr double stiff_area = 3e4;
+// thresholds of locking(): errors of 1 % of the length of a red cell pulled by tweezers (6 elements per side); tensions that oscillate between points
+constexpr double locked = 20, oscillating = 5;
 
 /// Returns the largest wave number that a mesh of element size h can represent.
 double wave_number(double h) { return std::numbers::pi / h; }
@@ -31,6 +36,20 @@ double mean_viscosity(const ParticleScene& particle_scene) {
   return particle_scene.flow.viscosity * (1 + particle_scene.particle.viscosity_ratio) / 2;
 }
 
+/// Returns the area dilatation C, for which area modulus / shear modulus = 1 + 2 C, of a membrane whose area is resisted at all points of an element,
+/// so that the mesh locks if C is large. Returns 0 if the area is resisted at one point per element, for a drop and for a rigid body.
+double locking(const ParticleScene& particle_scene) {
+  if (!particle_scene.elastic()) return 0;
+  const membrane::Options& given = particle_scene.membrane;
+  if (const auto own = given.strain_energy()) return (own->area_modulus() / own->shear_modulus() - 1) / 2;
+  return given.area_order == 1 ? 0 : given.area_dilatation.value_or(0);
+}
+
+/// Returns the advice to the user for a membrane whose mesh locks, as a part of a sentence.
+std::string area_points(const ParticleScene& particle_scene) {
+  return std::string("set Membrane/area points to 1") + (particle_scene.membrane.dilates() ? "" : ", with Membrane/law Skalak or Evans-Skalak");
+}
+
 /// Returns the advice to the user for elements that are too coarse, as a part of a sentence.
 std::string finer_mesh(const ParticleScene& particle_scene) {
   return particle_scene.adaptation.enabled ? "set a finer mesh, or smaller limits in Adaptation" : "set a finer mesh, or Adaptation/enabled";
@@ -38,12 +57,38 @@ std::string finer_mesh(const ParticleScene& particle_scene) {
 
 /// Returns the worst mesh quality over all ranks, from the quality `mine` of this rank's elements.
 surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& ranks) {
-  const std::array<double, 7> own{mine.jacobian_ratio,  double(mine.folded_element), mine.folded_place[0], mine.folded_place[1],
-                                  mine.folded_place[2], mine.aspect_ratio,           double(mine.stretched_element)};
+  const std::array<double, 8> own{mine.jacobian_ratio,  double(mine.folded_element), mine.folded_place[0], mine.folded_place[1],
+                                  mine.folded_place[2], mine.aspect_ratio,           double(mine.stretched_element), mine.tilt};
   surface::Quality result;
-  for (const auto& [jacobian, folded, x1, x2, x3, aspect, stretched] : ranks.gathered(own))
-    result = surface::worse(result, {jacobian, static_cast<int>(folded), {x1, x2, x3}, aspect, static_cast<int>(stretched)});
+  for (const auto& [jacobian, folded, x1, x2, x3, aspect, stretched, tilt] : ranks.gathered(own))
+    result = surface::worse(result, {jacobian, static_cast<int>(folded), {x1, x2, x3}, aspect, static_cast<int>(stretched), tilt});
   return result;
+}
+
+/// Returns the warnings about choices of the deck for a deforming particle.
+std::vector<Warning> choices(const ParticleScene& one) {
+  std::vector<Warning> found;
+  const auto add = [&found](bool applies, const char* kind, const std::string& sentence) {
+    if (applies) found.push_back({kind, sentence});
+  };
+  const membrane::Options& given = one.membrane;
+  add(one.elastic() && given.load == "strong", "strong load",
+      "the load is computed in the strong form, which amplifies errors of the shape until the time step vanishes: set Membrane/load to weak");
+  add(!one.surface.has_normal_at_poles() && one.quadrature.rule == quadrature::LayerRule::fixed, "poles",
+      "a fixed Gauss rule does not converge on elements of plain poles: set Surface/poles to bezier transform, or Quadrature/rule to adaptive");
+  const double k = given.global_area_dilatation;
+  add(!one.particle.rigid() && k > stiff_area && k * one.modulus() > stiff_area * one.bending_modulus() / (one.radius() * one.radius()), "total area",
+      "the total area is so stiff that many time steps are needed: a Membrane/global area dilatation of 1e4 conserves it nearly as well");
+  add(locking(one) >= locked, "locking",
+      formatted("the mesh locks, because the area, with a modulus of %.3g G_s, is resisted at all points of an element: many steps are needed, and "
+                "deformations err by 1 %% or more; ",
+                1 + 2 * locking(one)) +
+          area_points(one));
+  add(!one.particle.rigid() && given.fluid_interface() && k > 0 && one.flow.type != "quiescent", "vesicle",
+      "of a vesicle only the total area is kept, not that of each part, which is exact at rest only: in shear its inclination is 2 to 4 degrees too "
+      "small (reduced volume 0.9); set Membrane/law to Skalak, with capillary number 5 (instead of surface tension), area dilatation 1000 and area "
+      "points 1");
+  return found;
 }
 
 }  // namespace
@@ -61,7 +106,8 @@ StepFindings::StepFindings(const ParticleScene& particle_scene, const Columns& r
       compressed_area(row.of_particles("compressed_area")),
       volume_error(std::max(row.largest("volume_error"), -row.smallest("volume_error"))),
       jacobian_ratio(quality.jacobian_ratio),
-      aspect_ratio(quality.aspect_ratio) {
+      aspect_ratio(quality.aspect_ratio),
+      tilt(quality.tilt) {
   if (particle_scene.tube.present || (particle_scene.wall.present && !particle_scene.adaptation.enabled)) gap = row.value("gap");
   const std::vector<double> areas = row.of_particles("area");
   element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
@@ -69,6 +115,9 @@ StepFindings::StepFindings(const ParticleScene& particle_scene, const Columns& r
 
 std::vector<Warning> first_warnings(const Scene& scene) {
   std::vector<Warning> found;
+  for (const ParticleScene& one : scene.particle_scenes())
+    for (const Warning& choice : choices(one))
+      if (std::ranges::find(found, choice.kind, &Warning::kind) == found.end()) found.push_back(choice);
   const auto forgets = [](const ParticleScene& one) {
     return one.particle.shape.initial && one.particle.shape.initial->run && (one.surfactant || one.maxwell_membrane() || !one.fields.empty());
   };
@@ -99,40 +148,14 @@ std::vector<Warning> Warnings::of_step(const StepFindings& signs) {
     const Warning warning{kind, formatted("at time %.4g ", signs.time) + sentence};
     if (!sentence.empty() && fresh(warning)) all.push_back(warning);
   };
-  add("choice", choice());
   add(accuracy::wrinkles, compression(signs));
   add("stiffness", stiffness(signs));
   add("fold", fold(signs));
   add("stretch", stretch(signs));
+  add("tip", tip(signs));
   add("gap", gap(signs));
   add("volume", volume(signs));
   return all;
-}
-
-namespace {
-
-/// Returns the warning about choices of the deck for a particle; empty if there is none.
-std::string choice_of(const ParticleScene& one) {
-  if (one.elastic() && one.membrane.load == "strong")
-    return "the load is computed in the strong form, which amplifies errors of the shape until the time step vanishes: set Membrane/load "
-           "to weak";
-  if (!one.surface.has_normal_at_poles() && one.quadrature.rule == quadrature::LayerRule::fixed)
-    return "a fixed Gauss rule does not converge on elements of plain poles: set Surface/poles to bezier transform, or Quadrature/rule to "
-           "adaptive";
-  if (const double k = one.membrane.global_area_dilatation;
-      k > stiff_area && k * one.modulus() > stiff_area * one.bending_modulus() / (one.radius() * one.radius()))
-    return "the total area is so stiff that many time steps are needed: a Membrane/global area dilatation of 1e4 conserves it nearly as "
-           "well";
-  return {};
-}
-
-}  // namespace
-
-std::string Warnings::choice() const {
-  if (deforming_.empty()) return choice_of(scene_);
-  for (const ParticleScene& one : deforming_)
-    if (std::string sentence = choice_of(one); !sentence.empty()) return sentence;
-  return {};
 }
 
 /// Returns a warning when waves on a compressed membrane have grown. On a flat membrane under the tension -T with bending modulus B, waves of wave
@@ -155,11 +178,15 @@ std::string Warnings::compression(const StepFindings& signs) {
   if (!worst) return {};
   memory_.waves = std::max(0.0, memory_.waves + fastest_growth * signs.step);
   if (memory_.waves < grown) return {};
-  const bool bends = deforming_[*worst].bending_modulus() > 0;
-  return formatted("%.0f %% of the membrane is compressed (to %.2g G_s) with %s: waves as short as its elements can have grown a hundredfold; set "
-                   "Membrane/bending modulus%s or Membrane/pre-inflation",
+  const ParticleScene& one = deforming_[*worst];
+  const bool bends = one.bending_modulus() > 0;
+  const std::string cure = locking(one) >= oscillating ? area_points(one) + ", because its mesh locks"
+                           : bends ? finer_mesh(one) + "; a higher Membrane/bending modulus or Membrane/pre-inflation changes the membrane"
+                                   : "set Membrane/bending modulus or Membrane/pre-inflation";
+  return formatted("%.0f %% of the membrane is compressed (to %.2g G_s) with %s: waves as short as its elements can have grown a hundredfold; ",
                    100 * signs.compressed_area.at(*worst), signs.smallest_tension[*worst],
-                   bends ? "too little resistance to bending for its mesh" : "no resistance to bending", bends ? " higher" : "");
+                   bends ? "too little resistance to bending for its mesh" : "no resistance to bending") +
+         cure;
 }
 
 std::string Warnings::stiffness(const StepFindings& signs) {
@@ -191,6 +218,13 @@ std::string Warnings::stretch(const StepFindings& signs) const {
   if (signs.aspect_ratio < slenderness) return {};
   return formatted("an element is %.0f times as long as wide: ", signs.aspect_ratio) +
          (scene_.elastic() || scene_.interface_motion() == coupling::MeshMotion::relaxed ? "" : "set Interface/motion to relaxed, or ") +
+         finer_mesh(scene_);
+}
+
+std::string Warnings::tip(const StepFindings& signs) const {
+  if (signs.tilt < sharpness) return {};
+  return formatted("the surface turns by %.0f degrees within an element, so that lengths and tractions there depend on the mesh: ",
+                   360 / std::numbers::pi * signs.tilt) +
          finer_mesh(scene_);
 }
 

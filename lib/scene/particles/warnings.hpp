@@ -19,7 +19,7 @@ struct StepFindings {
   double time = 0, step = 0;
   std::vector<double> smallest_tension, compressed_area;  ///< columns of the same names, one value per deforming particle, in the order of the deck
   double volume_error = 0;
-  double jacobian_ratio = 1, aspect_ratio = 1;  ///< surface::Quality
+  double jacobian_ratio = 1, aspect_ratio = 1, tilt = 0;  ///< surface::Quality
   double element = 1;                           ///< mean element size: the square root of (area divided by number of elements)
   std::optional<double> gap;                    ///< gap to a wall
 
@@ -34,7 +34,8 @@ struct Warning {
   std::string kind, sentence;
 };
 
-/// Returns the warnings at the start of a run or a search, about surface fields of an earlier run that are not used and snapshots that are left out.
+/// Returns the warnings that follow from the deck, at the start of a run or a search: about choices with known errors or costs, surface fields of an
+/// earlier run that are not used and snapshots that are left out.
 std::vector<Warning> first_warnings(const Scene& scene);
 
 class Warnings {
@@ -60,11 +61,11 @@ class Warnings {
   void remember(Memory memory) { memory_ = std::move(memory); }
 
  private:
-  std::string choice() const;
   std::string compression(const StepFindings& signs);
   std::string stiffness(const StepFindings& signs);
   std::string fold(const StepFindings& signs) const;
   std::string stretch(const StepFindings& signs) const;
+  std::string tip(const StepFindings& signs) const;
   std::string gap(const StepFindings& signs) const;
   std::string volume(const StepFindings& signs) const;
 

@@ -14,6 +14,7 @@
 #include "base/small_matrices.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"
+#include "scene/series/surface_fields.hpp"
 
 namespace tanktread {
 
@@ -202,11 +203,21 @@ double number_of(const Scene& scene, const std::string& deck, const std::string&
 
 }  // namespace
 
-Parameters first_parameters(const Scene& scene, const std::string& deck) {
+Scene scene_of_branch(const Scene& scene, const ChangedScene& changed, const Parameters& parameters) {
+  const motion::ContinuationOptions& branch = scene.continuation;
+  std::vector<std::string> settings{branch.parameter + "=" + deck::real_text(parameters[0])};
+  if (branch.second_parameter) settings.push_back(*branch.second_parameter + "=" + deck::real_text(parameters[1]));
+  return with_field_lengths_of(scene, changed(settings));
+}
+
+Parameters first_parameters(const Scene& scene, const std::string& deck, const ChangedScene& changed) {
   const motion::ContinuationOptions& branch = scene.continuation;
   const double first = number_of(scene, deck, branch.parameter, "Continuation/parameter");
   if (first == branch.to) throw UserError("Continuation/to must differ from " + branch.parameter + ", where the branch begins.");
-  return {first, branch.second_parameter ? number_of(scene, deck, *branch.second_parameter, "Continuation/second parameter") : 0};
+  const double second = branch.second_parameter ? number_of(scene, deck, *branch.second_parameter, "Continuation/second parameter") : 0;
+  scene_of_branch(scene, changed, {branch.to, second});
+  for (const double last : branch.second_values.value_or(std::vector<double>())) scene_of_branch(scene, changed, {first, last});
+  return {first, second};
 }
 
 }  // namespace tanktread

@@ -3,6 +3,7 @@
 // implicit step of the search, the conserved quantities, and the parameters of a branch.
 
 #include <array>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,8 +40,14 @@ std::vector<motion::Conserved> conserved_quantities(const coupling::Capsule& cap
 /// Values of the parameters Continuation/parameter and Continuation/second parameter; the second is 0 if there is none.
 using Parameters = std::array<double, 2>;
 
+/// Function that returns the scene of the deck with some keys changed by settings `Section/key=value`, or throws UserError.
+using ChangedScene = std::function<Scene(const std::vector<std::string>& settings)>;
+
+/// Returns the scene of a branch for these values of its parameters. Throws UserError if the deck does not allow them.
+Scene scene_of_branch(const Scene& scene, const ChangedScene& changed, const Parameters& parameters);
+
 /// Returns the parameter values at the start of the branch, which are the values in the deck. Throws UserError if the deck does not give a number for
-/// a parameter, or if the first parameter already equals Continuation/to.
-Parameters first_parameters(const Scene& scene, const std::string& deck);
+/// a parameter, if the first parameter already equals Continuation/to, or if the deck does not allow the values at which the branch ends.
+Parameters first_parameters(const Scene& scene, const std::string& deck, const ChangedScene& changed);
 
 }  // namespace tanktread

@@ -2,7 +2,6 @@
 // A scene whose steady or periodic shapes are searched for.
 
 #include <algorithm>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -18,18 +17,18 @@ namespace tanktread {
 
 /// A scene and the motion of its particles. A branch of steady shapes has one system per value of its parameters (see SystemPool).
 struct SteadySystem {
-  /// `stops`: function that returns true if this rank is to stop because of a signal or a limit (see GuardedDynamics).
-  SteadySystem(Scene of, coupling::Ranks& ranks, Phases& phases, std::function<bool()> stops)
-      : scene(std::move(of)), particles(make_coupled_particles(scene, ranks, phases)), is_to_stop(std::move(stops)) {
+  SteadySystem(Scene of, coupling::Ranks& ranks, Phases& phases)
+      : scene(std::move(of)), particles(make_coupled_particles(scene, ranks, phases)) {
     begin(particles->start());
   }
 
   /// Sets up the motion and the equations of steady shapes on the current mesh of the particle. `x`: shape on this mesh from which the search starts.
   void begin(const Net& x) {
-    motion.emplace(particles->dynamics(), is_to_stop);
+    motion.emplace(particles->dynamics());
     motion->set_time(0, 0);
     const Body& body = particles->body();
-    equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particles->capsule()->particles()), steady_step(scene), x);
+    equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particles->capsule()->particles()), steady_step(scene), x,
+                      [this](const Net& y) { return particles->slackness(y); });
   }
 
   /// Returns the mesh, for move_to().
@@ -73,7 +72,6 @@ struct SteadySystem {
 
   Scene scene;
   std::unique_ptr<ParticleSystem> particles;
-  std::function<bool()> is_to_stop;
   std::optional<motion::GuardedDynamics> motion;
   std::optional<motion::SteadyEquations> equations;
 };

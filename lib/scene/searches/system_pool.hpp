@@ -12,12 +12,10 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "deck/words.hpp"
 #include "record/files/checkpoint.hpp"
 #include "scene/searches/searches.hpp"
-#include "scene/series/run_totals.hpp"
-#include "scene/series/surface_fields.hpp"
 #include "scene/searches/steady_system.hpp"
+#include "scene/series/run_totals.hpp"
 #include "system/solids/shared_walls.hpp"
 
 namespace tanktread {
@@ -26,13 +24,10 @@ namespace tanktread {
 /// three systems of a branch that were used last, because one point of the branch needs several. All systems of a branch have the same mesh.
 class SystemPool {
  public:
-  /// Function that returns the scene of the deck with some keys changed by settings `Section/key=value`, or throws UserError.
-  using Changed = std::function<Scene(const std::vector<std::string>& settings)>;
-
-  /// Builds the system of `scene`. `stops`: see SteadySystem. `scene`, `ranks` and `phases` must outlive this object, and this object must outlive
-  /// the systems that it returns. Collective.
-  SystemPool(const Scene& scene, Changed changed, coupling::Ranks& ranks, Phases& phases, std::function<bool()> stops)
-      : scene_(scene), changed_(std::move(changed)), ranks_(ranks), phases_(phases), stops_(std::move(stops)) {
+  /// Builds the system of `scene`. `scene`, `ranks` and `phases` must outlive this object, and this object must outlive the systems that it returns.
+  /// Collective.
+  SystemPool(const Scene& scene, ChangedScene changed, coupling::Ranks& ranks, Phases& phases)
+      : scene_(scene), changed_(std::move(changed)), ranks_(ranks), phases_(phases) {
     systems_.emplace_front(Parameters(), make_system(scene));
   }
   SystemPool(const SystemPool&) = delete;
@@ -40,10 +35,8 @@ class SystemPool {
   /// Returns the system of the branch that was used last; at first, the system of the deck.
   const std::shared_ptr<SteadySystem>& latest() const { return systems_.front().second; }
 
-  /// Begins a branch. `first`: values of the parameters in the deck. Throws UserError if the deck does not allow the values at which the branch ends.
+  /// Begins a branch. `first`: values of the parameters in the deck, from first_parameters().
   void begin_branch(const Parameters& first) {
-    scene_at({scene_.continuation.to, first[1]});
-    for (const double second : scene_.continuation.second_values.value_or(std::vector<double>())) scene_at({first[0], second});
     systems_.front().first = first;
     rest_ = latest()->particles->body().rest, unstressed_ = latest()->particles->body().unstressed;
   }
@@ -58,7 +51,7 @@ class SystemPool {
       return latest();
     }
     const auto clock = phases_.time("set-up");
-    const std::shared_ptr<SteadySystem> made = make_system(scene_at(parameters));
+    const std::shared_ptr<SteadySystem> made = make_system(scene_of_branch(scene_, changed_, parameters));
     if (mesh_ && !(made->particles->body().rest == rest_ && made->particles->body().unstressed == unstressed_))
       throw UserError("the mesh has adapted, but the resting or unstressed shape depends on this key: set Adaptation/enabled to false");
     if (mesh_) made->move_to(*mesh_, x);
@@ -98,7 +91,7 @@ class SystemPool {
   /// Builds a system. When the system is deleted, its numbers of operations are added to `counts_` and `kernel_`.
   std::shared_ptr<SteadySystem> make_system(Scene scene) {
     scene.walls = walls_;
-    std::shared_ptr<SteadySystem> made(new SteadySystem(std::move(scene), ranks_, phases_, stops_), [this](SteadySystem* system) {
+    std::shared_ptr<SteadySystem> made(new SteadySystem(std::move(scene), ranks_, phases_), [this](SteadySystem* system) {
       counts_ = counts_ + system->particles->counts(), kernel_ += system->particles->kernel_evaluations();
       delete system;
     });
@@ -106,19 +99,12 @@ class SystemPool {
     return made;
   }
 
-  Scene scene_at(const Parameters& parameters) const {
-    const motion::ContinuationOptions& branch = scene_.continuation;
-    std::vector<std::string> settings{branch.parameter + "=" + deck::real_text(parameters[0])};
-    if (branch.second_parameter) settings.push_back(*branch.second_parameter + "=" + deck::real_text(parameters[1]));
-    return with_field_lengths_of(scene_, changed_(settings));
-  }
   std::string text(const Parameters& parameters) const { return scene_.continuation.text(parameters[0], parameters[1]); }
 
   const Scene& scene_;
-  Changed changed_;
+  ChangedScene changed_;
   coupling::Ranks& ranks_;
   Phases& phases_;
-  std::function<bool()> stops_;
   coupling::OperationCounts counts_;           // operation counts of deleted systems
   stokes::Evaluations kernel_;                 // kernel evaluations of deleted systems on this rank
   std::vector<std::weak_ptr<SteadySystem>> built_;   // all systems

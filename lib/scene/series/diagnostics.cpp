@@ -152,10 +152,14 @@ void DeformingRow::add_columns(const ParticleScene& particle_scene, Columns& to)
        "not the stresses of Membrane/relaxation time and of surface viscosity"});
   to.add(tension.compressed_area, {"compressed_area", "1", "fraction of the membrane's area where a principal tension is negative, so "
                                                            "that the membrane may wrinkle"});
-  if (to.when(!particle_scene.membrane.fluid_interface()))
+  if (to.when(!particle_scene.membrane.fluid_interface())) {
     to.add(tension.area_change,
            {"local_area_change", "1", "largest relative change of area anywhere on the membrane: maximum of |J - 1|, with J the current "
                                       "area divided by the unstressed area of the same material"});
+    to.add(tension.rms_area_change,
+           {"rms_area_change", "1", "root mean square of the relative change of area over the unstressed membrane: of J - 1, with J the current "
+                                    "area divided by the unstressed area of the same material"});
+  }
   to.add(normal_velocity,
          {"normal_velocity", "1",
           "largest normal velocity |v.n| on the surface relative to the mean velocity of the particle, divided by rate x R_C, or in a tube by the "
@@ -310,9 +314,10 @@ DeformingRow deforming_row(const ParticleScene& particle_scene, const Body& body
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
   const membrane::ElementTensions tensions = membrane.element_tensions(x, elements, global_tension(particle_scene, body, x));
-  const auto [moments, energy, area, compressed, shape] = ranks.of_all(std::array{
+  const auto [moments, energy, area, compressed, unstressed, squared_change, shape] = ranks.of_all(std::array{
       geometry.block_moments(x, blocks), surface::block_sums(membrane.element_energies(x, elements)), surface::block_sums(tensions.area),
-      surface::block_sums(tensions.compressed), surface::shape_velocity_sums(geometry.bezier(), x, slope, body.radius, elements)});
+      surface::block_sums(tensions.compressed), surface::block_sums(tensions.unstressed), surface::block_sums(tensions.squared_change),
+      surface::shape_velocity_sums(geometry.bezier(), x, slope, body.radius, elements)});
   const std::vector<Extremes> of_ranks = ranks.gathered(Extremes{elements.empty() ? std::numeric_limits<double>::infinity() : tensions.smallest,
                                                                  tensions.area_change,
                                                                  normal_velocity(particle_scene, body, geometry, x, slope, own)});
@@ -325,7 +330,8 @@ DeformingRow deforming_row(const ParticleScene& particle_scene, const Body& body
   now.axes = surface::principal_axes(now.measures);
   now.refit_error = body.refit_error;
   now.energy = sum(energy);
-  now.tension = {std::ranges::min(of_ranks, {}, value(0))[0], sum(compressed) / sum(area), largest(1)};
+  now.tension = {std::ranges::min(of_ranks, {}, value(0))[0], sum(compressed) / sum(area), largest(1),
+                 std::sqrt(sum(squared_change) / sum(unstressed))};
   now.normal_velocity = largest(2);
   now.shape_velocity = surface::shape_velocity(shape, particle_scene.tube.present) / particle_scene.unit_speed();
   now.centre = now.measures.centroid;

@@ -41,7 +41,7 @@ struct ParticleRow {
 struct DeformingRow : ParticleRow {
   double volume_error = not_set, refit_error = not_set, normal_velocity = not_set, shape_velocity = not_set;
   double dissipation = 0;  ///< 0 without surface viscosity
-  membrane::TensionSummary tension{not_set, not_set, not_set};
+  membrane::TensionSummary tension{not_set, not_set, not_set, not_set};
   void add_columns(const ParticleScene& particle_scene, Columns& to) const override;
 };
 

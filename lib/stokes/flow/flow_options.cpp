@@ -34,7 +34,7 @@ void FlowOptions::declare(deck::Section& section) {
               "extension`: velocity (-rate x1/2, -rate x2/2, rate x3). `four-roll`: planar flow between extension and rotation, chosen by "
               "Flow/roll parameter. `linear`: any velocity gradient Flow/gradient. `uniform`: constant Flow/velocity. `parabolic`: Poiseuille "
               "profile along x1 in unbounded fluid, with Flow/profile, Flow/maximum velocity and Flow/half width. `duct`: pressure-driven "
-              "flow along x1 through a Tube or Channel, with Flow/mean velocity. `quiescent`: fluid at rest");
+              "flow along x1 through a Tube or Channel, with Flow/mean velocity or Flow/flow rate. `quiescent`: fluid at rest");
   section.key("shear rate", shear_rate, deck::positive(), "1/time",
               "shear rate or extension rate of the ambient flow of Flow/type `simple shear`, `planar hyperbolic`, `uniaxial extension` or "
               "`four-roll`. Leave it out for all other types: they have no rate, or other keys define it");
@@ -51,13 +51,18 @@ void FlowOptions::declare(deck::Section& section) {
   section.key("gravity", gravity, deck::any(), "length/time^2",
               "gravitational acceleration, three numbers; no gravity if not given. It acts only on particles that have a "
               "Particle/density difference");
-  if (type == "duct") mean_velocity = 1;
+  const bool by_rate = section.given("flow rate");
+  refuse(by_rate && section.given("mean velocity"), section.path("flow rate"), section.path("mean velocity"), "both set the same velocity");
+  if (type == "duct" && !by_rate) mean_velocity = 1;
   section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
               "mean velocity of Flow/type `duct` in the empty tube or channel: flow rate divided by the area of the cross-section, in a "
-              "channel at its inlet; 1 if not given");
+              "channel at its inlet; 1 if neither it nor Flow/flow rate is given");
+  section.key("flow rate", flow_rate, deck::positive(), "length^3/time",
+              "flow rate of Flow/type `duct` through the whole cross-section of the empty tube or channel, instead of Flow/mean velocity: volume "
+              "per time, for example `2 ul/min`");
   section.key("held", held, deck::Choice{"flow rate", "pressure drop"},
               "quantity that stays constant in Flow/type `duct` when particles enter: the `flow rate`, or the `pressure drop` between the ends "
-              "of the computed part of the duct. It keeps the value that it has in the empty tube or channel with Flow/mean velocity");
+              "of the computed part of the duct. It keeps the value that it has in the empty tube or channel");
   if (type == "parabolic") profile = "round", maximum_velocity = 1;
   section.key("pressure gradient", pressure_gradient, deck::any(), "force/length^3",
               "gradient of the mean pressure, three numbers, in a periodic Domain with two plane walls or with posts (fixed cylinders). "
@@ -96,14 +101,14 @@ void FlowOptions::check() const {
   belongs("roll parameter", roll_parameter.has_value(), "four-roll");
   belongs("gradient", gradient.has_value(), "linear");
   belongs("velocity", velocity.has_value(), "uniform");
-  belongs("mean velocity", mean_velocity.has_value(), "duct");
+  belongs(flow_rate ? "flow rate" : "mean velocity", mean_velocity || flow_rate, "duct");
   belongs("profile", profile.has_value(), "parabolic");
   belongs("maximum velocity", maximum_velocity.has_value(), "parabolic");
   belongs("half width", half_width.has_value(), "parabolic");
   refuse(held != "flow rate" && type != "duct", "Flow/held `" + held + "`", choice(), "it belongs to `duct`");
   refuse(shear_rate != 1.0 && !has_shear_rate(type), "Flow/shear rate", choice(),
          user                  ? "the magnitude of that flow is set by its own keys, in Flow/" + type
-         : type == "duct"      ? "give Flow/mean velocity"
+         : type == "duct"      ? "give Flow/mean velocity or Flow/flow rate"
          : type == "parabolic" ? "give Flow/maximum velocity"
          : type == "linear"    ? "Flow/gradient already contains its rate"
                                : "that flow has no rate");

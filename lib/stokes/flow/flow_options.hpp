@@ -30,7 +30,8 @@ struct FlowOptions {
   std::optional<Mat3> gradient;          ///< velocity gradient L_ij = dv_i/dx_j of the flow type `linear`
   std::optional<Vec3> velocity;          ///< velocity of the flow type `uniform`
   std::optional<Vec3> gravity;           ///< gravitational acceleration, for particles with a density difference
-  std::optional<double> mean_velocity;   ///< flow rate divided by the area of the cross-section; set for `duct`
+  std::optional<double> mean_velocity;   ///< flow rate divided by the area of the cross-section; set for `duct`, see complete()
+  std::optional<double> flow_rate;       ///< flow rate of `duct`, units length^3/time, if the deck gives it instead of the mean velocity
   std::string held = "flow rate";        ///< quantity of `duct` that is held constant when particles disturb the flow: flow rate, pressure drop
   std::optional<std::string> profile;      ///< round (v_1 depends on x2 and x3) or plane (v_1 depends only on x3); set for `parabolic`
   std::optional<double> maximum_velocity;  ///< velocity of `parabolic` at x2 = x3 = 0, units length/time
@@ -42,6 +43,11 @@ struct FlowOptions {
   std::shared_ptr<const UserFlow> user;    ///< set if the type is user-defined
 
   void declare(deck::Section& section);
+
+  /// Sets the mean velocity if the deck gives the flow rate. `area`: area of the duct's cross-section, in a channel at its inlet.
+  void complete(double area) {
+    if (flow_rate) mean_velocity = *flow_rate / area;
+  }
 
   std::string choice() const { return "Flow/type `" + type + "`"; }  ///< name of the type for messages
 

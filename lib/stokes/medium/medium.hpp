@@ -35,11 +35,14 @@ class Medium {
 /// Media that a program adds, by name.
 using UserMedia = deck::Parts<std::shared_ptr<const Medium>()>;
 
-/// Returns whether the medium contains all rows of `at`. Without a medium (null), it does.
-inline bool contains(const Medium* medium, const Net& at) {
+/// Returns the first row of `at` that the medium does not contain; -1 if there is none. The medium may be null.
+inline Eigen::Index first_outside(const Medium* medium, const Net& at) {
   for (Eigen::Index i = 0; medium && i < at.rows(); ++i)
-    if (!medium->contains(at.row(i).transpose())) return false;
-  return true;
+    if (!medium->contains(at.row(i).transpose())) return i;
+  return -1;
 }
+
+/// Returns whether the medium contains all rows of `at`. Without a medium (null), it does.
+inline bool contains(const Medium* medium, const Net& at) { return first_outside(medium, at) < 0; }
 
 }  // namespace tanktread::stokes

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "system/parallel/stop_together.hpp"
+
 namespace tanktread::coupling {
 
 namespace {
@@ -23,17 +25,19 @@ void FrozenOperator::assemble(const std::vector<int>& targets, int n, const Asse
   const auto half = static_cast<float>(0.5 / unit);
   entries_.resize(6 * static_cast<size_t>(n) * targets.size());
   stokes::Rows<float> rows;
-  for (size_t first = 0; first < targets.size(); first += at_a_time) {
-    const std::span<const int> some(targets.data() + first, std::min(at_a_time, targets.size() - first));
-    assemble(some, rows);
-    for (size_t k = 0; k < some.size(); ++k) {
-      std::uint16_t* out = entries_.data() + 6 * static_cast<size_t>(n) * (first + k);
-      const auto first_row = 3 * static_cast<Eigen::Index>(k);
-      for (int i = 0; i < 3; ++i)
-        for (int j = i; j < 3; ++j, out += n)
-          for (int b = 0; b < n; ++b) out[b] = narrowed(half * (rows(first_row + i, 3 * b + j) + rows(first_row + j, 3 * b + i)));
+  stop_together([&] {
+    for (size_t first = 0; first < targets.size(); first += at_a_time) {
+      const std::span<const int> some(targets.data() + first, std::min(at_a_time, targets.size() - first));
+      assemble(some, rows);
+      for (size_t k = 0; k < some.size(); ++k) {
+        std::uint16_t* out = entries_.data() + 6 * static_cast<size_t>(n) * (first + k);
+        const auto first_row = 3 * static_cast<Eigen::Index>(k);
+        for (int i = 0; i < 3; ++i)
+          for (int j = i; j < 3; ++j, out += n)
+            for (int b = 0; b < n; ++b) out[b] = narrowed(half * (rows(first_row + i, 3 * b + j) + rows(first_row + j, 3 * b + i)));
+      }
     }
-  }
+  });
 }
 
 void FrozenOperator::apply(const Net& f, Net& u) const {

@@ -7,6 +7,7 @@
 #include "stokes/kernels/kernels.hpp"
 #include "stokes/sums/far_sums.hpp"
 #include "stokes/sums/vicinity.hpp"
+#include "system/parallel/stop_together.hpp"
 #include "system/solvers/options.hpp"
 
 namespace tanktread::coupling {
@@ -48,7 +49,7 @@ void NodalOperator::assemble(const std::vector<int>& targets, const Surface& sur
     force_[c].resize(static_cast<std::size_t>(n));
   }
   find_near(surface, reach);
-  assemble(targets_, near_, entries_);
+  stop_together([&] { assemble(targets_, near_, entries_); });
   subtract_rule(surface);
   tree_.reset();
   if (far_sum == "dense" || (far_sum == "auto" && n < SolverOptions::nodes_worth_a_tree)) return;

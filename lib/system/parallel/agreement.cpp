@@ -8,6 +8,7 @@
 #include <mpi.h>
 
 #include "base/errors.hpp"
+#include "base/stop.hpp"
 
 namespace tanktread::coupling {
 
@@ -50,7 +51,9 @@ void begin_agreements() {
   MPI_Initialized(&parallel);
   if (!parallel) return;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  if (ranks > 1) MPI_Comm_dup(MPI_COMM_WORLD, &everyone());
+  if (ranks == 1) return;
+  MPI_Comm_dup(MPI_COMM_WORLD, &everyone());
+  stop_rules().alone = false;
 }
 
 int largest(int mine, const std::string& error) {

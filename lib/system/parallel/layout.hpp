@@ -2,6 +2,7 @@
 // Division of control points and elements among the ranks, and exchange of nets.
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "membrane/symmetric_solver.hpp"
@@ -38,7 +39,8 @@ class Layout {
   void gather(bool shared, Net& net) const;
 
   void add(std::span<double> numbers) const { ranks_.add(numbers); }  ///< sums numbers over all ranks in place
-  bool any(bool mine) const { return ranks_.any(mine); }              ///< returns true if `mine` is true on any rank
+  /// Returns the text of one of the ranks whose text is not empty; empty if there is none.
+  std::string text_of_any(const std::string& mine) const { return error_of_any(mine); }
 
   /// Applies the inverse of the factored matrix a to each field in place. The columns of the fields are divided among the ranks.
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields) const;

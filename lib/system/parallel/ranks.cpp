@@ -5,15 +5,20 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <iterator>
 #include <string_view>
 #include <utility>
+
+#include <mpi.h>
+#include <sched.h>
 
 #include <Kokkos_Core.hpp>
 #include <Teuchos_CommHelpers.hpp>
 #include <Teuchos_DefaultSerialComm.hpp>
 #include <Tpetra_Core.hpp>
 
+#include "base/formatted.hpp"
 #include "surface/partition.hpp"
 #include "system/parallel/agreement.hpp"
 
@@ -73,6 +78,33 @@ Teuchos::RCP<const Teuchos::Comm<int>> communicator() {
 Session::Session(int* argc, char*** argv) : impl_(std::make_unique<Impl>(argc, argv)) {}
 Session::~Session() = default;
 int Session::rank() const { return communicator()->getRank(); }
+
+std::string crowding() {
+  if (communicator()->getSize() == 1) return {};
+  MPI_Comm node = MPI_COMM_NULL;
+  int ranks = 0, length = 0;
+  char name[MPI_MAX_PROCESSOR_NAME + 1] = {};
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+  MPI_Comm_size(node, &ranks);
+  MPI_Get_processor_name(name, &length);
+  cpu_set_t mine;  // cores on which this rank may run
+  if (sched_getaffinity(0, sizeof mine, &mine) != 0) std::memset(&mine, 0xff, sizeof mine);  // not known: no limit
+  std::vector<cpu_set_t> all(static_cast<std::size_t>(ranks));
+  MPI_Allgather(&mine, sizeof mine, MPI_BYTE, all.data(), sizeof mine, MPI_BYTE, node);
+  MPI_Comm_free(&node);
+  const auto is_within = [&mine](const cpu_set_t& other) {
+    cpu_set_t both;
+    CPU_AND(&both, &mine, &other);
+    return CPU_EQUAL(&both, &other) != 0;
+  };
+  const int cores = CPU_COUNT(&mine), sharing = static_cast<int>(std::ranges::count_if(all, is_within));
+  std::string sentence;
+  if (sharing > cores)
+    sentence = formatted("%d ranks share %d core%s of %s, so that the run is several times slower: start at most one rank per core "
+                         "(on one computer mpirun -n %d), or let the ranks use more cores.",
+                         sharing, cores, cores > 1 ? "s" : "", name, cores);
+  return error_of_any(sentence);
+}
 
 struct Ranks::Impl {
   Teuchos::RCP<const Teuchos::Comm<int>> comm = communicator();
@@ -165,11 +197,6 @@ std::vector<int> Ranks::share(int n) const {
   for (int k = 0; k < n; ++k)
     if (owner(k, n) == rank()) mine.push_back(k);
   return mine;
-}
-
-bool Ranks::any(bool mine) const {
-  const auto clock = impl_->time();
-  return largest(mine) > 0;
 }
 
 }  // namespace tanktread::coupling

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/timing.hpp"
@@ -28,6 +29,10 @@ class Session {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Returns a warning if more ranks than there are cores share the cores of a node; otherwise an empty text. A rank may run on the cores of its CPU
+/// affinity mask, which cpusets and the binding by the launcher limit. Ranks share the cores of a mask if their masks are subsets of it. Collective.
+std::string crowding();
 
 /// The ranks of the run. Control nets are replicated, and the work is divided by their rows. A rank computes the rows of its rank-owned control
 /// points, and `replicate` distributes them to all ranks. Only treecode sums (TreeSum) are divided in another way: every rank
@@ -121,9 +126,6 @@ class Ranks {
 
   /// Returns, in ascending order, the items k among 0 .. n - 1 that this rank processes, for which owner(k, n) is this rank.
   std::vector<int> share(int n) const;
-
-  /// Returns true if `mine` (for example a stop signal) is true on any rank. Collective.
-  bool any(bool mine) const;
 
   /// Returns the seconds since `start` by the clock of rank 0. Collective.
   double seconds_since(std::chrono::steady_clock::time_point start) const {

@@ -12,9 +12,14 @@ void FluidWalls::set_shape(const Net& x, const Targets& targets, std::optional<d
   if (solids) solids->set_shape(x, targets.values() * x, targets.own());
 }
 
-bool FluidWalls::contain(const Net& at, const Layout& layout) const {
-  if (tube && layout.any(!tube->inside(at, layout.points()))) return false;
-  return !solids || solids->scene().solids->outside(at);
+void FluidWalls::forget() const {
+  if (tube) tube->forget();
+  if (solids) solids->forget();
+}
+
+FluidWalls::Crossing FluidWalls::crossing(const Net& at, const Layout& layout) const {
+  if (tube) return {tube->first_outside(at, layout.points()), "the wall of the duct"};
+  return solids ? solids->scene().solids->crossing(at) : Crossing();
 }
 
 FluidWalls::Response FluidWalls::respond(const Net& f, const Net& v, bool with_empty) const {

@@ -28,8 +28,11 @@ struct FluidWalls {
   /// Collective.
   void set_shape(const Net& x, const Targets& targets, std::optional<double> origin) const;
 
-  /// Returns whether all points `at` are inside the tube, in front of plates and outside posts. Tests only the rank-owned points of a tube.
-  bool contain(const Net& at, const Layout& layout) const;
+  void forget() const;  ///< discards what the boundaries keep for the shape that was set last
+
+  /// Returns the first of the points `at` that is outside the tube, behind a plate or in a post. Tests only the rank-owned points of a tube.
+  using Crossing = PlatesAndPosts::Crossing;
+  Crossing crossing(const Net& at, const Layout& layout) const;
 
   /// Responses of the boundaries that exist.
   struct Response {

@@ -8,6 +8,7 @@
 #include <Thyra_DetachedVectorView.hpp>
 
 #include "system/parallel/agreement.hpp"
+#include "system/parallel/stop_together.hpp"
 
 namespace tanktread::coupling {
 
@@ -46,6 +47,7 @@ void FunctionOperator::applyImpl(Thyra::EOpTransp, const Thyra::MultiVectorBase<
     if (Eigen::Map<const Eigen::VectorXd>(in.values(), image.size()).isZero(0)) {
       image.setZero();
     } else {
+      stop_together();
       function(in.values(), image.data());
       take_first({image.data(), static_cast<std::size_t>(image.size())});
     }

@@ -29,7 +29,7 @@ void set(const Teuchos::RCP<ThyraVector>& vector, const Eigen::VectorXd& numbers
 Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, const Eigen::VectorXd& numbers);
 
 /// Linear operator on a vector of all blocks, defined by a function. A zero vector is mapped to zero without calling the function. Every rank uses
-/// the result of the first rank.
+/// the result of the first rank. Before each product, all ranks answer a stop request (stop_together).
 class FunctionOperator : public Thyra::LinearOpBase<double> {
  public:
   explicit FunctionOperator(Teuchos::RCP<const Space> space) : space_(std::move(space)) {}

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/indices.hpp"
+#include "system/parallel/stop_together.hpp"
 
 namespace tanktread::coupling {
 
@@ -47,8 +48,10 @@ void ParticleLayers::assemble(const Net& x, bool single, bool few) {
   const auto n = static_cast<double>(x.rows());
   constexpr double most_bytes = 1e9;
   const auto assemble_or_clear = [&](stokes::Layer& layer, bool cheap_products, stokes::Rows<double>& rows) {
-    if (!repeats_ && parameters_.solvers.assembled(cheap_products || few)) layer.assemble(targets_.own(), rows);
-    else rows.resize(0, 0);
+    if (!repeats_ && parameters_.solvers.assembled(cheap_products || few))
+      stop_together([&] { layer.assemble(targets_.own(), rows); });
+    else
+      rows.resize(0, 0);
   };
   // With rigid bodies, the solver may take many iterations, because films between them are thin. Assembling the matrix (72 n^2 bytes) is then faster.
   const bool many_iterations = parameters_.any_rigid() && 72 * n * n < most_bytes;

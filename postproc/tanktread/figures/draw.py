@@ -1,13 +1,13 @@
 """Functions that draw surfaces and their plane sections on axes."""
 
-import itertools
-
 import numpy
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
 
 from . import render, style
+from .scene import flow_plane, surrounded
 
 VIEW = (-85, 18)   # azimuth and elevation of the observer in degrees: x1 points to the right, x3 up, seen from above
+LIGHT, DARK = 0.9, 0.78  # grey values of walls that face the observer and that are parallel to the line of sight
 SECTION_GRID = 24  # intervals along a side of a cell in the grid from which a section is computed
 GRID = 12          # intervals along a side of a cell in the grid from which a field along a section is computed
 
@@ -29,23 +29,42 @@ def view_axes(azimuth, elevation):
     return numpy.array([right, numpy.cross(eye, right), eye])
 
 
-def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=640, triad=True):
-    """Draws the visible part of the surfaces with element edges, the edges of the periodic cell, and the coordinate
-    axes."""
-    view, paint = view_axes(azimuth, elevation), style.plt.get_cmap(colours)
+def draw_surface(axis, shot, field, norm, colours, view, pixels=640, triad=True):
+    """Draws the visible part of the surfaces with element edges, posts and walls, the edges of the periodic cell, and
+    the coordinate axes. `view` (3, 3): see view_axes."""
+    paint = style.plt.get_cmap(colours)
     image, extent = render.picture(shot, magnitude(shot.fields[field]), view, lambda seen: paint(norm(seen)), pixels)
     axis.imshow(image, extent=extent, aspect="equal", interpolation="antialiased", zorder=2)
-    if shot.cell is not None:
-        corners = shot.frame @ view.T
-        front = corners[:, 2].argmax()  # edges at the corner nearest to the observer are drawn over the particles
-        for edge in itertools.combinations(range(8), 2):
-            if edge[0] ^ edge[1] in (1, 2, 4):
-                axis.plot(*corners[[*edge], :2].T, color=style.INK, linewidth=0.8, zorder=3 if front in edge else 1)
+    draw_walls(axis, shot, view)
+    edges = shot.edges @ view.T
+    front = edges[..., 2].max(initial=-numpy.inf)  # edges at the nearest corner are drawn over the particles
+    for edge in edges:
+        axis.plot(*edge[:, :2].T, color=style.INK, linewidth=0.8, zorder=3 if edge[:, 2].max() == front else 1)
     if triad:
         draw_triad(axis, view, *numpy.reshape(extent, (2, 2)).T)
     axis.set_anchor("N")
     axis.autoscale_view()
     axis.axis("off")
+
+
+def view_of(runs, view):
+    """Returns the rows of view_axes for an azimuth and elevation; None: for VIEW on the plane of the first run's flow,
+    whose first direction then points to the right and the second one up."""
+    return view_axes(*view) if view else view_axes(*VIEW) @ flow_plane(runs[0])
+
+
+def draw_walls(axis, shot, view):
+    """Draws the walls whose side of the fluid faces the observer, so that they are behind all particles, and their
+    edges."""
+    corners = shot.walls.reshape(-1, 4, 3)[:, [0, 1, 3, 2]] @ view.T
+    normal = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0])
+    facing = normal[:, 2] / numpy.linalg.norm(normal, axis=1).clip(1e-300)
+    order = [k for k in corners[..., 2].mean(1).argsort() if facing[k] > 1e-6]
+    greys = numpy.repeat(DARK + (LIGHT - DARK) * facing[order, None], 3, axis=1)
+    look = {"facecolors": greys, "edgecolors": greys, "linewidths": 0.4, "zorder": 0.5}
+    axis.add_collection(PolyCollection(corners[order, :, :2], **look))
+    for rim in shot.rims:
+        axis.plot(*(rim @ view[:2].T).T, color=style.FAINT, linewidth=0.7, zorder=1)
 
 
 def draw_triad(axis, view, low, high):
@@ -79,10 +98,44 @@ def cut(grid, across, place):
     return numpy.stack(ends, axis=1)
 
 
-def section(shot, place, across=1):
+def section(shot, place, across=1, axes=None, particle=None):
     """Returns the section of the surfaces with the plane x_{across+1} = place as line segments (segments, 2, 2), in the
-    two coordinates of the plane."""
-    return numpy.delete(cut(shot.sampled(shot.positions, SECTION_GRID), across, place), across, axis=2)
+    two coordinates of the plane. With `axes` (3, 3), coordinates are along the directions in its rows. `particle`: the
+    only one that is cut (default: all)."""
+    cells = shot.cells_of(particle) if particle else None
+    return flat(shot.sampled(shot.positions, SECTION_GRID, cells), place, across, axes)
+
+
+def flat(grid, place, across=1, axes=None):
+    """Returns the section of grids of cells (see `cut`) with the plane x_{across+1} = place, as `section` does."""
+    grid = grid if axes is None else grid @ numpy.transpose(axes)
+    return numpy.delete(cut(grid, across, place), across, axis=2)
+
+
+def extents_along(shot, direction):
+    """Returns the smallest and the largest coordinate along a direction (3,) of each particle, shape (particles, 2)."""
+    height = shot.positions @ direction
+    each = [numpy.concatenate([shot.cells[cell] for cell in shot.cells_of(name)]) for name in shot.particles]
+    return numpy.array([[height[nodes].min(), height[nodes].max()] for nodes in each or [slice(None)]])
+
+
+def middle_plane(shot, direction):
+    """Returns the coordinate, along a direction (3,), of the plane that cuts the most particles: through the middle of
+    all of them or, if more are cut there, of one of them."""
+    low, high = extents_along(shot, direction).T
+    middles = (low + high) / 2
+    return max([middles.mean(), *middles], key=lambda place: ((low < place) & (place < high)).sum())
+
+
+def draw_surroundings(axis, shot, place, across=1, axes=None, scale=1.0):
+    """Draws the section of posts, walls and periodic cell (see `section`). Lengths are multiplied by `scale`."""
+    if len(shot.edges):
+        corners = shot.corners.reshape(2, 2, 2, 3)
+        sides = numpy.array([corners.take(k, axis) for axis in range(3) for k in (0, 1)])
+        draw_pieces(axis, scale * flat(sides, place, across, axes), style.FAINT, 0.6, "butt")
+    draw_pieces(axis, scale * flat(shot.walls, place, across, axes), style.INK, 1.3, "butt")
+    if shot.posts:
+        draw_pieces(axis, scale * section(shot.posts, place, across, axes), style.FAINT, 1.3)
 
 
 def draw_pieces(axis, pieces, color, width=1.6, ends="round"):
@@ -90,13 +143,26 @@ def draw_pieces(axis, pieces, color, width=1.6, ends="round"):
     axis.add_collection(LineCollection(pieces, colors=[color], linewidths=width, capstyle=ends))
 
 
+def direction(axis):
+    """Returns the name of a direction (3,), such as x₁ or (0.6, 0.8, 0)."""
+    along = numpy.flatnonzero(numpy.abs(axis) > 1 - 1e-9)
+    return style.AXES[along[0]] if len(along) else "({:.3g}, {:.3g}, {:.3g})".format(*axis)
+
+
 def draw_sections(axis, runs, shots):
-    start = runs[0].snapshots()[0]
+    """Draws the sections of the surfaces of runs in the plane of the first run's flow, each through its particles."""
+    start, axes = runs[0].snapshots()[0], flow_plane(runs[0])
+    places = [middle_plane(shot, axes[1]) for shot in shots]
     moved = start.time < shots[0].time and shots[0].cell is None
+    for shot, place in zip(shots, places):
+        draw_surroundings(axis, shot, place, axes=axes)
     if moved:
-        draw_pieces(axis, section(start.scaled(runs[0]), middle(shots[0].frame)[1]), style.FAINT, 1, "butt")
-    for run, shot, color in zip(runs, shots, style.RUNS * len(runs)):
-        pieces = section(shot, middle(shot.frame)[1])
+        first = surrounded(runs[0], start)
+        place = middle_plane(first, axes[1])
+        draw_surroundings(axis, first, place, axes=axes)
+        draw_pieces(axis, section(first, place, axes=axes), style.FAINT, 1, "butt")
+    for run, shot, place, color in zip(runs, shots, places, style.RUNS * len(runs)):
+        pieces = section(shot, place, axes=axes)
         draw_pieces(axis, pieces, color, 1.8)
         name, time, angle = f"{run.name}: " if len(runs) > 1 else "", run.moment(shot.time), numpy.nan
         if "taylor_inertia" in run.series:  # not a rigid particle
@@ -115,7 +181,11 @@ def draw_sections(axis, runs, shots):
         axis.plot([], [], color=style.FAINT, linewidth=1,
                   label="at the start" if "Continuation" not in runs[0].deck else runs[0].moment(start.time))
     axis.autoscale_view()
-    axis.set(aspect="equal", anchor="N", xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$", title="section in the x₁x₃ plane")
+    sign = numpy.sign(axes[1][abs(axes[1]).argmax()])
+    across, normal, up = (direction(one) for one in (axes[0], sign * axes[1], axes[2]))
+    named = " or ".join(dict.fromkeys(f"{round(sign * place, 3) + 0.0:.3g}" for place in places))
+    axis.set(aspect="equal", anchor="N", xlabel=f"{across} / R$_C$", ylabel=f"{up} / R$_C$",
+             title=f"section {normal}{' · x' * ('(' in normal)} / R$_C$ = {named}")
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4)
 
 
@@ -127,12 +197,14 @@ def share_window(axes):
         axis.set(xlim=(x - width, x + width), ylim=(y - height, y + height), anchor="C")
 
 
-def field_cut(shot, field, particle=None):
+def field_cut(shot, field, particle=None, axes=None):
     """Returns the section through the middle of a particle (default: of all surfaces), normal to x2, as line segments
-    (segments, 2, 3 + k): position relative to the middle (3), and the values of a field (k)."""
+    (segments, 2, 3 + k): position relative to the middle (3), and the values of a field (k). With `axes` (3, 3),
+    positions are along the directions in its rows, and the section is normal to the second one."""
     cells = shot.cells_of(particle) if particle else range(len(shot.cells))
-    grid = shot.sampled(numpy.column_stack([shot.points, shot.fields[field]]), GRID, cells)
-    grid[..., :3] -= middle(shot.points[numpy.concatenate([shot.cells[cell] for cell in cells])])
+    points = shot.positions @ (numpy.eye(3) if axes is None else axes).T
+    grid = shot.sampled(numpy.column_stack([points, shot.fields[field]]), GRID, cells)
+    grid[..., :3] -= middle(points[numpy.concatenate([shot.cells[cell] for cell in cells])])
     return cut(grid, 1, 0)
 
 
@@ -145,10 +217,10 @@ def near_tip(shot, field):
     return x, z, numpy.linalg.norm(values, axis=0)
 
 
-def section_variation(shot, field, particle):
+def section_variation(shot, field, particle, axes):
     """Returns an angle (n,) and |d field / dl| (n,) along the section of a particle (see field_cut), with the arc
-    length l. The angle is the polar angle after the section has been scaled along x1 and x3 to equal extents."""
-    ends = field_cut(shot, field, particle)
+    length l. The angle is the polar angle after the section has been scaled along its two axes to equal extents."""
+    ends = field_cut(shot, field, particle, axes)
     length, change = (numpy.linalg.norm(ends[:, 1, columns] - ends[:, 0, columns], axis=1)
                       for columns in (slice(3), slice(3, None)))
     kept = length > 0.2 * numpy.median(length)  # differences over very short segments are dominated by rounding

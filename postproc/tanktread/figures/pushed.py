@@ -25,7 +25,8 @@ def stuck(runs, upper, lower, *, elements: int = 160):
     first = runs[0]
     for key, wanted in (("Channel/profile", "constriction"), ("Channel/section", "circle"),
                         ("Membrane/law", "neo-Hookean"), ("Particle/shape", "sphere")):
-        expect(first.value(key) == wanted, f"{key} must be {wanted}, but is {first.value(key)}")
+        expect(first.value(key) == wanted,
+               f"{first.directory}: this figure needs {key} `{wanted}`, but it is {first.value(key) or 'not set'}")
     drop = drop_of_velocity(first)
     way, pressure = Pushed(first, elements).through()
     largest, there = highest(way, pressure)

@@ -21,8 +21,8 @@ def picture(shot, values, view, colour_of, pixels=640):
 
     `values` (n,): values at the nodes that determine the colours. `view` (3, 3): rows are the directions to the right,
     up and towards the observer. If the snapshot is a lattice, the image shows the periodic cell centred at the origin,
-    with the periodic images of the particles, cut at its faces. `colour_of`: function that maps values to RGBA.
-    `pixels`: length of the longer side."""
+    with the periodic images of the particles, cut at its faces. Posts are grey. `colour_of`: function that maps values
+    to RGBA. `pixels`: length of the longer side."""
     depth, found, corner, size = seen(shot, values, view, OVERSAMPLING * pixels)
     columns, rows = numpy.array(depth.shape) // OVERSAMPLING
     image = _coloured(depth, found, colour_of).reshape(columns, OVERSAMPLING, rows, OVERSAMPLING, 4).mean((1, 3))
@@ -35,20 +35,24 @@ def seen(shot, values, view, pixels):
     """Returns four items: the depth of the visible sample in every pixel (right, up), towards the observer, in pixels,
     and -inf outside the surface; for every pixel the value, the cosine of the angle between normal and line of sight,
     and the distance from an element edge in pixels; the position of the lower left corner; pixels per length."""
-    places, frame = shot.positions @ view.T, shot.frame @ view.T
+    frame = shot.frame @ view.T
     low, high = frame[:, :2].min(0), frame[:, :2].max(0)
     size = pixels / (high - low).max()
     shape = OVERSAMPLING * (numpy.ceil((high - low) * size / OVERSAMPLING).astype(int) + 4)
     corner = low - 2 * OVERSAMPLING / size
     depth = numpy.full(shape.prod(), -numpy.inf, numpy.float32)
     found = numpy.zeros((shape.prod(), 3), numpy.float32)
-    shifts, lattice = [numpy.zeros(3)], None
+    shifts, lattice = [-shot.origin @ view.T * size], None
     if shot.cell is not None:
         vectors = shot.cell @ view.T * size
-        shifts = [steps @ vectors for steps in itertools.product((-1, 0, 1), repeat=3)]
+        shifts = [shifts[0] + steps @ vectors for steps in itertools.product((-1, 0, 1), repeat=3)]
         lattice = numpy.linalg.inv(vectors)
-    for shift in shifts:
-        for sample in _samples(shot, places * size + shift, values, lattice):
+    drawn = [(shot, values)] + [(one, numpy.full(len(one.points), numpy.nan)) for one in [shot.posts] if one]
+    for (one, known), shift in itertools.product(drawn, shifts):
+        for sample in _samples(one, one.positions @ view.T * size + shift, known, lattice):
+            sample[:, :3] += shot.origin @ view.T * size
+            if one is shot.posts:
+                sample[:, 5] = numpy.inf  # without the edges of its elements
             column, row = numpy.clip((sample[:, :2] - corner * size).astype(int), 0, shape - 1).T
             place = column * shape[1] + row
             order = numpy.argsort(sample[:, 2], kind="stable")  # the sample nearest to the observer is written last

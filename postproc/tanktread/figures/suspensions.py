@@ -15,6 +15,7 @@ from ..studies.sweep import Sweep
 from . import style
 from .draw import draw_pieces, section
 from .register import figure
+from .scene import wall
 
 SYMBOLS = {"relative_viscosity": "μ_eff/μ", "normal_stress_difference_1": "N₁", "normal_stress_difference_2": "N₂"}
 DRIFTS = {"area": "area / first value − 1", "volume_error": "V / V$_0$ − 1", "energy": "energy / mean − 1",
@@ -40,8 +41,9 @@ def encounter(runs, path, gap, deformation, *, pair: tuple[str, str] | None = No
         pairs = numpy.column_stack([run.series["first_of_gap"], run.series["second_of_gap"]])
         others = pairs != sorted(1 + run.particles.index(name) for name in names)
         smallest[others.any(axis=1)] = numpy.nan
+        why = ": choose another --pair" if len(run.particles) > 2 else ", but that of a periodic image"
         expect(not numpy.isnan(smallest).all(),
-               f"{run.directory}: the smallest gap is never that of {' and '.join(names)}: choose another --pair")
+               f"{run.directory}: the smallest gap is never that of {' and '.join(names)}{why}")
         gap.plot(dx, smallest, color=color)
         for name, line in zip(names, ("-", style.DASHES)):
             if f"{name}/taylor_inertia" in run.series:  # it is not rigid
@@ -98,17 +100,6 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
     return figure
 
 
-def wall(run):
-    """Returns a point of the wall, its unit normal, and a unit vector along the wall, each (3,). The vector along the
-    wall is the projection of x1 onto the wall, or of x3 if the normal is close to x1."""
-    expect(run.value("Wall/normal"), f"{run.directory}: its deck has no plane Wall")
-    point, normal = (numpy.array(run.value(f"Wall/{key}"), float) for key in ("point", "normal"))
-    normal /= numpy.linalg.norm(normal)
-    along = numpy.eye(3)[2 if abs(normal[0]) > 0.9 else 0]
-    along -= along @ normal * normal
-    return point, normal, along / numpy.linalg.norm(along)
-
-
 def sections(axis, run, moments):
     """Draws sections through the particle at several times, in the plane of the wall's normal and the vector along the
     wall (see `wall`)."""
@@ -119,9 +110,12 @@ def sections(axis, run, moments):
         pieces = section(shot, shot.points[:, across].mean(), across) - point
         draw_pieces(axis, pieces @ numpy.transpose([along, normal]) / run.radius, colour, ends="butt")
         axis.plot([], [], color=colour, label=f"{shot.time * run.rate[0]:.3g}")
-    axis.axhspan(-0.15, 0, color=style.FAINT, alpha=0.5, linewidth=0)
+    distance = run.value("Wall/distance", 0) / run.radius  # of the second wall
+    for low in [-0.15] + [distance] * (distance > 0):
+        axis.axhspan(low, low + 0.15, color=style.FAINT, alpha=0.5, linewidth=0)
     axis.autoscale_view()
-    axis.set(ylim=(-0.15, None), aspect="equal", title=f"{run.name}: section normal to the wall at several times",
+    axis.set(ylim=(-0.15, distance + 0.15 if distance else None), aspect="equal",
+             title=f"{run.name}: section normal to the wall at several times",
              xlabel="along the wall / R$_C$", ylabel="above the wall / R$_C$")
     axis.legend(ncols=2, fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))
 
@@ -130,10 +124,11 @@ def sections(axis, run, moments):
 def rheology(runs, upper, lower):
     """Intrinsic viscosity and normal stress differences of a dilute suspension in simple shear, over time.
 
-    They follow from the stresslet S of one particle of volume V: [η] = S_13/(μ γ̇ V), N1 = (S_11 − S_33)/(μ γ̇ V) and
-    N2 = (S_33 − S_22)/(μ γ̇ V). The flow is along x1 and its gradient along x3. γ̇ is the shear rate, and μ is the
-    viscosity of the outer fluid. The normal stress differences of a dilute suspension are N1 and N2 times μ γ̇ φ, where
-    φ is the volume fraction of the particles. A rigid sphere has [η] = 5/2."""
+    They follow from the stresslet S of a particle of volume V, or of all particles with the total volume V:
+    [η] = S_13/(μ γ̇ V), N1 = (S_11 − S_33)/(μ γ̇ V) and N2 = (S_33 − S_22)/(μ γ̇ V). The flow is along x1 and its
+    gradient along x3. γ̇ is the shear rate, and μ is the viscosity of the outer fluid. The normal stress differences of
+    a dilute suspension are N1 and N2 times μ γ̇ φ, where φ is the volume fraction of the particles. A rigid sphere has
+    [η] = 5/2."""
     for run, color in style.coloured(runs):
         viscosity, n1, n2 = stresses(run)
         upper.plot(run.time, viscosity, color=color, label=run.name)
@@ -150,7 +145,9 @@ def stresses(run):
     flow = run.value("Flow/type")
     expect(flow == "simple shear", f"{run.directory}: intrinsic viscosity is of simple shear, and this is {flow}")
     expect(run.value("Flow/history") is None, f"{run.directory}: the flow changes in time; see its intrinsic_viscosity")
-    volume = run.series["volume"][0] if "volume" in run.series else 4 / 3 * numpy.pi * run.radius**3
+    volume = run.snapshot_at(0).volume(48) if run.several else 4 / 3 * numpy.pi * run.radius**3
+    if all((f"{name}/volume" if run.several else "volume") in run.series for name in run.particles):
+        volume = sum(run.of(name, "volume")[0] for name in run.particles)
     unit = run.value("Flow/viscosity", 1) * run.rate[0] * volume
     s11, s22, s33, s13 = (run.series[f"stresslet_{k}"] / unit for k in ("11", "22", "33", "13"))
     return s13, s11 - s33, s33 - s22
@@ -167,7 +164,9 @@ def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
     from_: strain at which averages begin
     blocks: number of blocks for the standard errors"""
     for run, color in style.coloured(runs):
-        expect("volume_fraction" in run.series, f"{run.directory} is no suspension: its deck has no Domain")
+        expect("Domain" in run.deck, f"{run.directory} is no suspension: its deck has no Domain")
+        expect(SYMBOLS.keys() <= run.series.keys(), f"{run.directory} has no effective viscosity, because it has walls "
+               "or posts: see its series mean_velocity_x1, wall_force_x1, post_force_x1, disturbed_pressure_drop")
         strain, words, label = run.time, [], f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
         for (name, symbol), axis, line in zip(SYMBOLS.items(), (upper, lower, lower), ("-", "-", "--")):
             axis.plot(strain, run.series[name], color=color, linestyle=line,
@@ -211,8 +210,7 @@ def viscosity(study, upper, lower, *, single: str = "inputs/shear_neo_hookean.ya
     made = Study(directory=directory / "runs", jobs=jobs)
     runs = Sweep(study, made)
     expect(all(CA in row for row in runs.rows), f"{study} varies or sets no {CA}")
-    runs.make()
-    runs.write(directory)
+    runs.make(directory)
     rows: dict = {}
     for outcome, settings in zip(runs.outcomes, runs.rows):
         if row := averages(outcome, from_, blocks):

@@ -1,12 +1,14 @@
-"""Unknowns and data of a fit. Data are outlines or series; each datum computes its prediction from a run."""
+"""Unknowns, data and experiments of a fit. Data are outlines or series, which are predicted from runs."""
+
+import copy
 
 import numpy
 
-from .. import tables
+from .. import tables, units
 from ..interpolation import interpolated
-from ..mistakes import expect, log
-from . import silhouette
-from .common import keys_of, number, only, optional, positive
+from ..mistakes import Mistake, expect, log
+from . import reading, silhouette
+from .reading import any_name, deck_key, number, positive, read
 
 # distance of the default bounds of an unknown from its start: a factor of 1000 or, with linear spacing, log(1000) times
 # the start value
@@ -18,19 +20,19 @@ class Unknown:
     """A key of the deck whose value is fitted. The fit varies `number(value)`: the logarithm of the value or, with
     `spacing: linear`, the value divided by its start value."""
 
+    kinds = {"start": number, "known": number, "error": positive, "from": number, "to": number,
+             "spacing": reading.word("linear", "logarithmic")}
+
     def __init__(self, key, given, owner=None):
-        given = given if isinstance(given, dict) else {"start": given}
         self.key, self.owner, self.name = key, owner, key if owner is None else f"{owner}: {key}"
-        only(given, ("start", "known", "error", "from", "to", "spacing"), self.name)
+        given = read(given if isinstance(given, dict) else {"start": given}, self.kinds, self.name)
         expect(("known" in given) == ("error" in given), f"{self.name}: `known` and `error` go together")
-        spacing = given.get("spacing", "logarithmic")
-        expect(spacing in ("linear", "logarithmic"),
-               f"{self.name}: the spacing is linear or logarithmic, not {spacing}")
-        self.start_value = number(given.get("start", given.get("known")), f"{self.name}: start")
-        self.logarithmic = spacing == "logarithmic"
+        expect("start" in given or "known" in given, f"{self.name} has no start value")
+        self.start_value, self.error = given.get("start", given.get("known")), given.get("error")
+        self.logarithmic = given.get("spacing") != "linear"
         expect(not self.logarithmic or self.start_value > 0,
                f"{self.name} starts from a positive number, or has `spacing: linear`")
-        self.known, *bounds = (optional(number, given, word, self.name) for word in ("known", "from", "to"))
+        self.known, *bounds = map(given.get, ("known", "from", "to"))
         width = bounds[1] - bounds[0] if None not in bounds else 0
         self.unit = 1.0 if self.logarithmic else abs(self.start_value) or abs(width) / 2 or 1.0
         expect(not self.logarithmic or all(bound is None or bound > 0 for bound in bounds),
@@ -40,7 +42,6 @@ class Unknown:
                                         for bound, far in zip(bounds, (-FAR, FAR)))
         expect(low <= start <= high and low < high,
                f"{self.name} starts from {self.start_value:g}, which is not between `from` and `to`")
-        self.error = positive(given["error"], f"{self.name}: error") if "error" in given else None
 
     def number(self, value):
         return numpy.log(value) if self.logarithmic else value / self.unit
@@ -60,50 +61,76 @@ class Unknown:
 
 class Datum:
     """Base class of outlines and series. `at`: time of the datum; None is the end of the run. `error`: standard error,
-    or None if it is not stated."""
+    or None if it is not stated. `cases`: settings of the runs that the datum needs, in addition to those of its
+    experiment."""
 
     def __init__(self, given, name):
-        self.name, self.at = name, optional(number, given, "at", name)
-        self.error = optional(positive, given, "error", name)
+        self.name, self.at, self.error, self.cases = name, given.get("at"), given.get("error"), [{}]
 
-    def columns(self, path, *names):
-        """Returns two columns (n, 2) of a table. Sets `error` to its column of errors if no error is stated."""
-        rows = tables.read(path, (*names, "error"), (2, 3)).values
-        if self.error is None and rows.shape[1] > 2:
-            self.error = rows[:, 2]
-            expect((self.error > 0).all() and numpy.isfinite(self.error).all(), f"{self.name}: the third column of the "
-                   "table is of standard errors, and one is not a number above 0")
-        return rows[:, :2]
+    def table(self, path, names, chosen=None):
+        """Returns the table of two columns, `names`, in a file. Sets `error` to its column of standard errors if no
+        error is stated. `chosen`: names or numbers, from 1, of two or three columns, which then count instead."""
+        try:
+            found = tables.read(path) if chosen else tables.read(path, (*names, "error"), (2, 3))
+        except Mistake as mistake:
+            raise Mistake(f"{self.name}: {mistake}; `columns` chooses columns by name or number") from None
+        known = found.columns
+        for one in chosen or ():
+            expect(one in known if isinstance(one, str) else one <= len(known),
+                   f"{self.name}: {path} has no column {one}; there are: {', '.join(known)}")
+        index = [known.index(one) if isinstance(one, str) else one - 1 for one in chosen or range(1, len(known) + 1)]
+        if self.error is None and len(index) > 2:
+            self.error = found.values[:, index[2]]
+            expect((self.error > 0).all() and numpy.isfinite(self.error).all(), f"{self.name}: column "
+                   f"{known[index[2]]} of {path} is of standard errors, and one is not a number above 0")
+        names, own = ([one[k] for k in index[:2]] for one in (known, found.units))
+        return tables.Table(names, own, found.values[:, index[:2]], found.lines)
+
+    def joined(self, predictions):
+        """Returns the prediction of the datum from its predictions by each of the runs `cases`."""
+        return predictions[0]
+
+    def another(self, key, value):
+        """Returns a copy of the datum for an experiment in which a key has another value."""
+        return copy.copy(self)
+
+
+def _columns(given, name):
+    """Returns a list of two or three columns of a table: names, or numbers from 1."""
+    kinds = [lambda one, name: reading.text(one, name) if isinstance(one, str) else reading.whole(one, name)]
+    found = read(given, kinds, name)
+    expect(2 <= len(found) <= 3, f"{name} are the two or three columns of the data, and of their standard errors")
+    return found
 
 
 class OutlineData(Datum):
     """Points of a particle's outline in a coordinate plane. The fit also finds the position of the outline and, if
     `scale error` is given, its scale."""
 
+    kinds = {"outline": reading.text, "plane": [reading.word("x1", "x2", "x3")], "error": positive, "scale": positive,
+             "scale error": lambda given, name: numpy.inf if given == "free" else positive(given, name) if given else 0,
+             "at": number, "open": reading.flag, "columns": _columns}
+
     def __init__(self, given, name, folder):
-        known = {"outline", "plane", "error", "scale", "scale error", "at", "open"}
-        expect(set(given) <= known, f"{name}: an outline has {', '.join(sorted(known))}")
+        given = read(given, self.kinds, name)
         expect("scale" in given,
                f"{name} has no scale: the deck's length for a unit of its picture (1 if they are the same)")
         super().__init__(given, name)
-        self.scale = positive(given["scale"], f"{name}: scale")
-        plane = given.get("plane", ["x1", "x3"])
-        expect(isinstance(plane, list) and len(plane) == 2 and plane[0] != plane[1]
-               and all(one in ("x1", "x2", "x3") for one in plane), f"{name}: the plane is two of x1, x2, x3")
+        self.scale, self.scale_error = given["scale"], given.get("scale error", 0)
+        plane, path = given.get("plane", ["x1", "x3"]), folder / given["outline"]
+        expect(len(set(plane)) == len(plane) == 2, f"{name}: the plane is two of x1, x2, x3")
         self.axis = 6 - sum(int(one[1]) for one in plane) - 1
-        path = folder / str(given["outline"])
         of_picture = {"x", "y"} <= set(map(str.lower, tables.read(path).columns))  # the names of the picture's axes
-        self.points = self.columns(path, *(("x", "y") if of_picture else plane))[:, numpy.argsort(plane)]
+        found = self.table(path, ("x", "y") if of_picture else plane, given.get("columns"))
+        self.points = found.values[:, numpy.argsort(plane)]
         if numpy.ndim(self.error):
             self.error = float(numpy.sqrt((self.error**2).mean()))
         steps = numpy.linalg.norm(self.points - numpy.roll(self.points, 1, axis=0), axis=1)
         expect(given.get("open") or steps[0] <= max(GAP * steps.sum(), 3 * numpy.median(steps)),
                f"{name}: the outline does not close: its last point is {steps[0] / steps.sum():.0%} of its length "
                "from the first (`open: true` takes it as it is)")
-        self.scale_error = error = given.get("scale error") or 0
-        if error:
-            self.scale_error = numpy.inf if error == "free" else positive(error, f"{name}: scale error")
-        self.count, self.places = len(self.points), 2 + bool(error)  # places: number of components of x (shift, scale)
+        self.count = len(self.points)
+        self.places = 2 + bool(self.scale_error)  # number of components of x (shift, scale)
 
     length = property(lambda self: self.count + (0 < self.scale_error < numpy.inf),
                       doc="The number of residuals: one per point, and one of a scale with an error.")
@@ -128,29 +155,95 @@ class OutlineData(Datum):
         return found if self.length == self.count else numpy.append(found, place[2] / self.scale_error)
 
 
-class SeriesData(Datum):
-    """Values, at given times, of a series or of the ratio of two series. With `origin: free`, the fit also finds the
-    time shift between the data and the run."""
+def _against(given, name):
+    """Returns {key of the deck: factor or list of factors}: the key is the first column multiplied by the factor."""
+    if isinstance(given, str):
+        deck_key(given, name)
+        return {given: 1.0}
+    found = read(given, {deck_key: lambda one, name: read(one, [number] if isinstance(one, list) else number, name)},
+                 name)
+    expect(found, f"{name} names no key")
+    return found
 
+
+def _with_unit(number, unit):
+    return f"{number:.15g} {unit}" if unit not in (None, "1") else float(number)
+
+
+class SeriesData(Datum):
+    """Values of a series or of the ratio of two series: at one time, at given times, or in steady states that depend on
+    keys of the deck (`against`). With `origin: free`, the fit also finds the time shift between the data and the run.
+    `along`: times or values of the key (None: the last value of the run). `unit`: unit of `along` as the table states
+    it."""
+
+    kinds = {"series": reading.text, "over": reading.text, "value": number, "curve": reading.text, "error": positive,
+             "at": number, "origin": reading.word("free"), "against": _against, "columns": _columns}
     length = property(lambda self: self.count)  # number of residuals
+    span = property(lambda self: float(numpy.ptp(self.along)) or 1.0, doc="The unit of the time shift in the fit.")
     discretisation = None  # estimated error of the series in the first run; 0 if its deck does not request an accuracy
 
     def __init__(self, given, name, folder):
-        known = {"series", "over", "value", "curve", "error", "at", "origin"}
-        expect(set(given) <= known and ("value" in given) != ("curve" in given),
-               f"{name}: a series has value or curve, and error, at, over, origin")
+        given = read(given, self.kinds, name)
+        expect("series" in given and ("value" in given) != ("curve" in given),
+               f"{name}: a series has value or curve, and error, at, over, origin, against")
         super().__init__(given, name)
         self.series = [given[word] for word in ("series", "over") if word in given]
-        self.places = int("origin" in given)
-        expect("at" not in given or "value" in given, f"{name}: `at` is of a value; a curve has its own times")
-        expect(not self.places or given["origin"] == "free" and "curve" in given,
-               f"{name}: `origin: free` is of a curve, and there is no other origin")
+        self.places, self.against, self.unit = int("origin" in given), given.get("against"), None
+        expect(not self.against or "curve" in given, f"{name}: `against` is of a curve")
+        expect(self.at is None or "value" in given or self.against,
+               f"{name}: `at` is of a value, or of a curve against a key; a curve over time has its own times")
+        expect(not self.places or ("curve" in given and not self.against),
+               f"{name}: `origin: free` is of a curve over time")
         if "curve" in given:
-            self.times, self.values = self.columns(folder / str(given["curve"]), "time", "value").T
-            self.span = float(numpy.ptp(self.times)) or 1.0  # unit of the time shift in the fit
+            path, named = folder / given["curve"], next(iter(self.against or ["time"])).rpartition("/")[2]
+            known = tables.read(path).columns  # the first column, unless another one has the name of the key
+            first = next((one for one in known if one.lower() == named.lower()), known[0])
+            found = self.table(path, (first, "value"), given.get("columns"))
+            self.along, self.values = found.values.T
+            self.unit, self.value_unit = found.units
         else:
-            self.times, self.values = self.at, numpy.array([number(given["value"], f"{name}: value")])
+            self.along, self.values, self.value_unit = self.at, numpy.array([given["value"]]), None
         self.count = len(self.values)
+        if self.against:
+            self._sort()
+
+    def _sort(self):
+        """Orders the rows by the values of the key, and sets the runs that the datum needs: one per value."""
+        order = numpy.argsort(self.along, kind="stable")
+        self.along, self.values = self.along[order], self.values[order]
+        self.error = self.error[order] if numpy.ndim(self.error) else self.error
+        self.nodes = numpy.unique(self.along)
+        self.cases = [{key: [_with_unit(one * value, self.unit) for one in factor] if isinstance(factor, list) else
+                       _with_unit(factor * value, self.unit) for key, factor in self.against.items()}
+                      for value in self.nodes]
+
+    def axis(self, runs):
+        """Returns the label of the axis of `along`."""
+        if self.unit and self.against:
+            return f"{next(iter(self.against))}, {self.unit}"
+        key = next(iter(self.against)) if self.against else "Time/final time"
+        return (key if self.against else "time") + runs.unit(key)
+
+    def another(self, key, value):
+        """Returns a copy of the datum; if it is a curve against the key, with one row, at this value of the key."""
+        one = copy.copy(self)
+        if self.against and key in self.against:
+            one.cases, one.along, one.nodes, one.count = [{key: value}], numpy.zeros(1), numpy.zeros(1), 1
+            one.error = float(numpy.sqrt(numpy.mean(numpy.square(self.error)))) if self.error is not None else None
+        return one
+
+    def _convert(self, run):
+        """Converts the columns of the table from their units to those of a run."""
+        name, ratio = self.series[0], len(self.series) > 1
+        factors = []
+        for unit, one in (self.value_unit, name), (None if self.against else self.unit, "time"):
+            own = "1" if ratio and one == name else run.si[one] or run.units[one] or "1"
+            factors.append(1.0 if unit is None else units.factor(unit, own))
+            expect(factors[-1], f"{self.name}: the table is in {unit}, which does not fit the unit of {one}, {own}"
+                   + ("" if "Units" in run.deck else "; the deck has no section Units"))
+        self.values, self.error = (one if one is None else one * factors[0] for one in (self.values, self.error))
+        self.along, self.value_unit = self.along if self.along is None else self.along * factors[1], None
+        self.unit = self.unit if self.against else None
 
     def start(self, prediction):
         """Returns the start value of the time shift, divided by `span`: the last time at which the series of the run
@@ -160,16 +253,20 @@ class SeriesData(Datum):
         times, values = prediction
         passed = numpy.flatnonzero((values[1:] - self.values[0]) * (values[:-1] - self.values[0]) <= 0)
         nearest = passed[-1] if len(passed) else numpy.argmin(abs(values - self.values[0]))
-        return (times[[nearest]] - self.times[0]) / self.span
+        return (times[[nearest]] - self.along[0]) / self.span
 
     def prediction(self, run):
+        """Returns the times and values of a run's series, where it is defined."""
         values, times = run.series[self.series[0]], run.series["time"]
-        last = 0 if self.times is None or self.places else numpy.max(self.times)
+        if self.value_unit or (self.unit and not self.against):
+            self._convert(run)
+        wanted = self.at if self.against else self.along
+        last = 0 if wanted is None or self.places else numpy.max(wanted)
         expect(last <= times[-1] * (1 + 1e-9),
                f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
-        if self.times is not None and not self.places:
-            expect(numpy.min(self.times) >= times[0] - 1e-9 * abs(times[-1]),
-                   f"{self.name}: its data begin before the run, at {numpy.min(self.times):g}: give `origin: free`")
+        if wanted is not None and not self.places:
+            expect(numpy.min(wanted) >= times[0] - 1e-9 * abs(times[-1]),
+                   f"{self.name}: its data begin before the run, at {numpy.min(wanted):g}: give `origin: free`")
         if self.places:
             expect(self.span <= (times[-1] - times[0]) * (1 + 1e-9),
                    f"{self.name}: the run is shorter than the data, {self.span:g}: set Time/final time")
@@ -185,17 +282,26 @@ class SeriesData(Datum):
                                    sizes[0] / sizes[1] * numpy.hypot(*numpy.divide(errors, sizes)))
         values = values / run.series[self.series[1]] if len(self.series) > 1 else values
         defined = ~numpy.isnan(values)
-        expect(defined[-1] if self.times is None else defined.any(),
+        expect(defined[-1] if wanted is None else defined.any(),
                f"{self.name}: {' / '.join(self.series)} is undefined (NaN) in the run")
         return times[defined], values[defined]
 
+    def joined(self, predictions):
+        """Returns the prediction by one run; of a curve against a key, its values and those of the series there."""
+        if not self.against:
+            return predictions[0]
+        return self.nodes, numpy.array([values[-1] if self.at is None else interpolated(times, values, [self.at])[0]
+                                        for times, values in predictions])
+
     def predicted(self, prediction, place):
-        """Returns the values of the run at the data's times."""
-        times, values = prediction
-        if self.times is None:
+        """Returns the values that the runs give for the data, or for other values of `along`."""
+        at, values = prediction
+        if self.along is None:
             return values[-1:]
-        wanted = numpy.atleast_1d(self.times) + (place[0] * self.span if self.places else 0)
-        return interpolated(times, values, numpy.clip(wanted, times[0], times[-1]))
+        if self.against:
+            return numpy.interp(self.along, at, values)  # the data are at the values `at`; figures join these by lines
+        wanted = numpy.atleast_1d(self.along) + (place[0] * self.span if self.places else 0)
+        return interpolated(at, values, numpy.clip(wanted, at[0], at[-1]))
 
     def residuals(self, prediction, place):
         """Returns residuals of unit variance. The discretisation error d of the runs is modelled as a sum of up to six
@@ -204,9 +310,9 @@ class SeriesData(Datum):
         found = self.values - self.predicted(prediction, place)
         if self.error is None:
             return found
-        times = numpy.zeros(1) if self.times is None else numpy.atleast_1d(self.times)
+        along = numpy.zeros(1) if self.along is None else numpy.atleast_1d(self.along)
         waves = numpy.arange(min(self.count, 6))
-        u = numpy.cos(numpy.pi * numpy.outer((times - times[0]) / (numpy.ptp(times) or 1), waves))
+        u = numpy.cos(numpy.pi * numpy.outer((along - along[0]) / (numpy.ptp(along) or 1), waves))
         u *= numpy.where(waves > 0, numpy.sqrt(2), 1) / numpy.sqrt(len(waves)) * (self.discretisation or 0)
         q, size, _ = numpy.linalg.svd(u / numpy.reshape(self.error, (-1, 1)), full_matrices=False)
         z = found / self.error
@@ -214,15 +320,32 @@ class SeriesData(Datum):
 
 
 class Experiment:
+    """An experiment and its runs. `cases`: settings of each run, in addition to `settings`. All runs share the
+    unknowns."""
+
+    kinds = {"set": reading.SETTINGS, "unknown": {deck_key: reading.anything}, "data": [{any_name: reading.anything}]}
+
     def __init__(self, name, given, folder):
-        expect(isinstance(given, dict) and given.get("data"), f"the experiment {name} has no data")
-        expect(set(given) <= {"set", "unknown", "data"}, f"the experiment {name} has set, unknown and data")
-        self.name, self.settings = name, keys_of(given.get("set"), f"{name}: set")
-        unknowns = keys_of(given.get("unknown"), f"{name}: unknown")
-        self.unknowns, self.data = [Unknown(key, one, name) for key, one in unknowns.items()], []
-        expect(isinstance(given["data"], list), f"{name}: data must be a list of outlines and series")
+        given = read(given, self.kinds, f"the experiment {name}")
+        expect(given.get("data"), f"the experiment {name} has no data")
+        self.name, self.settings, data = name, given.get("set", {}), []
+        self.unknowns = [Unknown(key, one, name) for key, one in given.get("unknown", {}).items()]
         for one in given["data"]:
-            one = keys_of(one, f"{name}: a datum")
-            expect("outline" in one or "series" in one, f"{name}: a datum is an outline or a series")
-            label = one.get("outline", one.get("series")) if len(given["data"]) > 1 else "data"
-            self.data.append((OutlineData if "outline" in one else SeriesData)(one, f"{name}: {label}", folder))
+            kind = next((kind for kind in ("outline", "series") if one.get(kind) is not None), None)
+            expect(kind, f"{name}: a datum is an outline or a series")
+            label = one[kind] if len(given["data"]) > 1 and isinstance(one[kind], str) else "data"
+            data.append({"outline": OutlineData, "series": SeriesData}[kind](one, f"{name}: {label}", folder))
+        self.take(data)
+
+    def take(self, data):
+        """Sets the data, and `cases` to the different settings of the runs that they need."""
+        cases = {str(case): case for datum in data for case in datum.cases}
+        reading.few(len(cases), f"the experiment {self.name}")
+        self.data, self.cases = data, list(cases.values())
+
+    def another(self, key, value):
+        """Returns a copy of the experiment, without its unknowns, in which a key has another value."""
+        one = copy.copy(self)
+        one.settings, one.unknowns = self.settings | {key: value}, []
+        one.take([datum.another(key, value) for datum in self.data])
+        return one

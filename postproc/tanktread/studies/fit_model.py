@@ -1,5 +1,6 @@
 """Weighted least-squares fit of one membrane law: its unknowns and their standard errors, from runs of the program."""
 
+import collections
 import itertools
 
 import numpy
@@ -37,34 +38,56 @@ def determined(unknowns, x, errors):
     return numpy.where((errors > 0) & (errors < most), errors, numpy.inf)
 
 
+# A run without results, or from which a datum of its experiment cannot be predicted. `settings`: of the run.
+Failure = collections.namedtuple("Failure", "experiment settings directory message")
+
+
 class Runs:
-    """Predictions of the data from runs of the program. A run is made once. A prediction is None if its run failed."""
+    """Predictions of the data from runs of the program. A run is made once. The prediction for an experiment is None if
+    one of its runs failed or gave no outline or no value; the first such run is in `failures`."""
 
     def __init__(self, study, decks, law):
-        self.law, self.study, self.decks, self._found, self.messages, self._run = law, study, decks, {}, [], None
+        self.law, self.study, self.decks, self._run = law, study, decks, None
+        self._found, self._made, self.failures = {}, set(), {}
 
-    count = property(lambda self: len(self._found))
+    count = property(lambda self: len(self._made))
+
+    @staticmethod
+    def name(experiment, settings):
+        return f"{experiment.name} {experiment.cases} {sorted(settings.items())}"
 
     def all(self, jobs):
         """Returns the predictions for a list of pairs (experiment, settings), in its order."""
-        texts = [experiment.name + str(sorted(settings.items())) for experiment, settings in jobs]
-        new = {text: job for text, job in zip(texts, jobs) if text not in self._found}
-        outcomes = self.study.all([(self.decks, settings) for _, settings in new.values()])
+        names = [self.name(*job) for job in jobs]
+        new = {name: job for name, job in zip(names, jobs) if name not in self._found}
+        outcomes = iter(self.study.all([(self.decks, settings | case) for experiment, settings in new.values()
+                                        for case in experiment.cases]))
+        for name, (experiment, settings) in new.items():
+            self._found[name] = self._predictions(name, experiment, settings, outcomes)
         if new:
-            progress(f"{self.law}: {self.count + len(new)} runs made or found")
-        for (text, (experiment, _)), outcome in zip(new.items(), outcomes):
-            expect(not outcome.refused, f"the deck is refused: {outcome.message}")
-            self._run, self._found[text] = outcome.run if outcome.done else self._run, None
-            if not outcome.done:
-                self.messages.append(outcome.message)
-                continue
-            try:
-                self._found[text] = [datum.prediction(outcome.run) for datum in experiment.data]
-            except ValueError as error:  # a shape whose outline cannot be found counts as a failed run
-                if isinstance(error, Mistake) and not any(self._found.values()):
-                    raise  # a mistake of the experiment file, such as a series that the run does not have
-                self.messages.append(str(error))
-        return [self._found[text] for text in texts]
+            progress(f"{self.law}: {self.count} runs made or found")
+        return [self._found[name] for name in names]
+
+    def _predictions(self, name, experiment, settings, outcomes):
+        """Returns the predictions of an experiment's data from the next of the outcomes; None if a run failed."""
+        of_runs = collections.defaultdict(dict)  # predictions of each datum by each run
+        for case, outcome in zip(map(str, experiment.cases), outcomes):
+            expect(not outcome.refused, f"{experiment.name}: the deck is refused: {outcome.message}")
+            self._made.add(outcome.directory)
+            message = None if outcome.done else outcome.message
+            self._run = outcome.run if outcome.done else self._run
+            for datum in () if message else experiment.data:
+                try:
+                    if case in map(str, datum.cases):
+                        of_runs[datum][case] = datum.prediction(outcome.run)
+                except ValueError as error:  # the shape has no outline, or the series no value
+                    if isinstance(error, Mistake) and not any(self._found.values()):
+                        raise  # a mistake of the experiment file, such as a series that the run does not have
+                    message = str(error)
+            if message:
+                self.failures.setdefault(name, Failure(experiment.name, settings, outcome.directory.name, message))
+        return None if name in self.failures else [
+            datum.joined([of_runs[datum][str(case)] for case in datum.cases]) for datum in experiment.data]
 
     def unit(self, key):
         """Returns the unit of a key if the deck has units: ", pN/µm"; otherwise ""."""
@@ -83,9 +106,7 @@ class Fit:
         # slice of the position of each datum in x
         self.positions = parts([len(self.unknowns), *(datum.places for datum in self.data)])[1:]
         self.count = sum(datum.count for datum in self.data)
-        for one, experiment in itertools.product(self.unknowns, experiments):
-            expect(one.owner not in (None, experiment.name) or one.key not in experiment.settings,
-                   f"{experiment.name}: {one.key} is in `set`, but it is unknown")
+        self.beyond = []  # vector x at which runs failed and the iteration ended
         self.stated = all(datum.error is not None for datum in self.data)
 
     length = property(lambda self: sum(datum.length for datum in self.data)
@@ -137,7 +158,14 @@ class Fit:
             (found,) = self.predictions(x)
             if found is not None:
                 return numpy.concatenate([x, *(datum.start(one) for datum, one in zip(self.data, found))])
-        raise Mistake(f"{self.law}: all runs fail at the start and around it; the first one: {self.runs.messages[0]}")
+        first = next(iter(self.runs.failures.values()))
+        raise Mistake(f"{self.law}: all runs fail at the start and around it; the first one, {first.directory} of the "
+                      f"experiment {first.experiment}: {first.message}")
+
+    def failures_at(self, *points):
+        """Returns the Failures of runs at these vectors x."""
+        names = [self.runs.name(one, self.settings_of(one, x)) for x in points for one in self.experiments]
+        return [self.runs.failures[name] for name in names if name in self.runs.failures]
 
     def solve(self):
         x = self.begin()
@@ -147,12 +175,24 @@ class Fit:
                f"{self.law}: {free} numbers are unknown, positions included, and there are {self.count} data")
         bounds = numpy.array([one.bounds for one in self.unknowns] + [(-numpy.inf, numpy.inf)] * places).T
 
+        best = numpy.inf, x  # smallest chi square, and where it was found
+
         def function(x):
-            return self.residuals(*self.predictions(x), x)
+            nonlocal best
+            (found,) = self.predictions(x)
+            residual = self.residuals(found, x)
+            if found is not None:
+                best = min(best, (float(residual @ residual), x), key=lambda one: one[0])
+            elif abs(x - best[1])[:len(self.unknowns)].max() < TELLS:  # the edge of a region where runs fail
+                self.beyond = [x]
+                raise Settled(best[1])
+            return residual
 
         def derivative(x):
             (columns,), by_position = self.jacobian(x, STEP)
-            columns = numpy.nan_to_num(columns)
+            if not numpy.isfinite(columns).all():  # runs fail on this side
+                (other,), _ = self.jacobian(x, STEP, (-1,))
+                columns = numpy.nan_to_num(numpy.where(numpy.isfinite(columns), columns, other))
             full = numpy.column_stack([columns * (numpy.linalg.norm(columns, axis=0) > FAINT), by_position])
             residual = function(x)
             step = numpy.linalg.lstsq(full, -residual, rcond=None)[0]
@@ -177,8 +217,13 @@ class Fit:
 
     def errors(self):
         """Computes the covariance matrix of the unknowns that the data determine. The positions are eliminated. `told`:
-        one flag per unknown, true if the data determine it."""
+        one flag per unknown, true if the data determine it. `edge`: Failures of runs next to the solution, which may
+        then be the edge of the region where runs succeed instead of a minimum."""
         (up, down), self.moved = self.jacobian(self.x, TELLS, (1, -1))
+        shifts = TELLS * numpy.eye(len(self.unknowns), len(self.x))
+        near = [self.x + side * shift for side in (1, -1) for one, number, shift in zip(self.unknowns, self.x, shifts)
+                if not one.bound_of(number, side * TELLS)]
+        self.edge = self.failures_at(*self.beyond, *near)
         up, down = (numpy.where(numpy.isfinite(one), one, other) for one, other in ((up, down), (down, up)))
         self.derivative, disagreement = (up + down) / 2, numpy.linalg.norm(up - down, axis=0) / 2
         strength = numpy.linalg.norm(self.derivative, axis=0)
@@ -200,7 +245,9 @@ class Fit:
 
     @property
     def values(self):
-        """Returns {name: (value, standard error or inf)}."""
+        """Returns {name: (value, standard error or inf)}; (NaN, inf) at an edge where runs fail."""
+        if self.edge:
+            return {one.name: (numpy.nan, numpy.inf) for one in self.unknowns}
         return {one.name: (one.value(x), one.error_of(one.value(x), error)) for one, x, error in
                 zip(self.unknowns, self.x, determined(self.unknowns, self.x, self.number_errors))}
 
@@ -212,7 +259,8 @@ class Fit:
                    self.count * numpy.log(self.square / self.count) + 2 * (len(self.x) + 1))
 
     def runs_test(self):
-        """Returns z of the Wald-Wolfowitz runs test of the signs of residuals along all outlines and curves."""
+        """Returns z of the Wald-Wolfowitz runs test of the signs of residuals along all outlines and curves; NaN if
+        none has both signs and enough points."""
         runs = mean = variance = 0
         for datum, own in zip(self.data, self.rows):
             signs = self.residual[own][:datum.count] > 0
@@ -222,7 +270,22 @@ class Fit:
             runs += 1 + (signs[1:] != signs[:-1]).sum()
             mean += 1 + 2 * plus * minus / n
             variance += 2 * plus * minus * (2 * plus * minus - n) / (n * n * (n - 1))
-        return float((runs - mean) / numpy.sqrt(variance)) if variance else 0.0
+        return float((runs - mean) / numpy.sqrt(variance)) if variance else numpy.nan
+
+    def signs(self):
+        """Returns (number of positive residuals, number of residuals, name, probability) of the data whose residuals
+        have one sign most clearly: of each outline or curve, of all values of a series, and of all data. The
+        probability is that of a two-sided binomial test, multiplied by the number of tests. Returns None if there are
+        too few data."""
+        groups = collections.defaultdict(list)
+        for datum, own in zip(self.data, self.rows):
+            name = datum.name if datum.count >= SERIES else " / ".join(getattr(datum, "series", ["outlines"]))
+            groups[name].extend(self.residual[own][:datum.count] > 0)
+        if len(groups) > 1:
+            groups["all data"] = list(itertools.chain.from_iterable(groups.values()))
+        tests = [(sum(signs), len(signs), name) for name, signs in groups.items() if len(signs) >= SERIES]
+        found = [(*test, min(1.0, len(tests) * scipy.stats.binomtest(*test[:2]).pvalue)) for test in tests]
+        return min(found, key=lambda test: test[3], default=None)
 
     def information(self):
         """Returns the information matrix of the unknowns, with positions eliminated."""

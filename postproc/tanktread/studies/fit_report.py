@@ -10,29 +10,31 @@ import scipy.stats
 
 from ..figures import style
 from .fit_data import OutlineData
-from .fit_model import SERIES, Fit, determined
+from .fit_model import Fit, determined
+
+
+UNLIKELY = 0.01  # a share of signs with a smaller probability is not explained by random errors
 
 
 def further(fits, settings):
     """Returns for each possible further experiment (name, {unknown: standard error if the experiment is added}, {other
     law: expected increase of its chi square}). The experiment has data of the same kind and error as the first
-    experiment, with the values that the best law predicts. `settings`: {key: values}, one experiment per value."""
-    best, first, rows = fits[0], fits[0].experiments[0], []
-    for key, value in ((key, value) for key, values in settings.items() for value in values):
-        candidate = copy.copy(first)
-        candidate.settings, candidate.unknowns, candidate.data = first.settings | {key: value}, [], []
-        (truth,) = best.runs.all([(first, best.settings_of(candidate, best.x))])
+    experiment, with the values that the best law predicts. `settings`: {key: values}, one experiment per value. Of a
+    curve against this key, it has one row."""
+    rows = []
+    for key, value in ((key, value) for key, values in settings.items() for value in values if fits):
+        best, first = fits[0], fits[0].experiments[0]
+        candidate = first.another(key, value)
+        (truth,) = best.runs.all([(candidate, best.settings_of(candidate, best.x))])
         if truth is None:
             rows.append((f"{key} {value}", {}, {}))
             continue
-        for datum, prediction in zip(first.data, truth):
-            one = copy.copy(datum)
-            one.error = datum.error if datum.error is not None else best.scatter
-            if isinstance(datum, OutlineData):
-                one.points, one.scale, one.error = prediction.even(datum.count), 1.0, one.error * datum.scale
+        for one, prediction in zip(candidate.data, truth):
+            one.error = one.error if one.error is not None else best.scatter
+            if isinstance(one, OutlineData):
+                one.points, one.scale, one.error = prediction.even(one.count), 1.0, one.error * one.scale
             else:
-                one.values = datum.predicted(prediction, datum.start(prediction))
-            candidate.data.append(one)
+                one.values = one.predicted(prediction, one.start(prediction))
         alone, *others = (_alone(fit, candidate) for fit in fits)
         alone.errors()
         both = numpy.zeros((len(best.unknowns),) * 2)
@@ -78,6 +80,31 @@ def stated(value, error):
     return " ± ".join(text.rstrip(".") for text in texts)
 
 
+def failed(fit):
+    """Returns {experiment: {directory of a run: message}} of the runs that failed or gave no outline or no value."""
+    found = {}
+    for one in fit.runs.failures.values():
+        found.setdefault(one.experiment, {})[one.directory] = one.message
+    return found
+
+
+def signs(fit):
+    """Returns the lines of the report about the signs of the residuals: along each outline or curve, and their
+    share."""
+    lines, z, share = [], fit.runs_test(), fit.signs()
+    if numpy.isfinite(z):
+        meaning = "change as by chance" if z > -2 else "stay the same too long: the model is not the data’s"
+        lines.append(f"  signs of the residuals along the data: {meaning} ({z:.1f} standard deviations)")
+    if share:
+        plus, count, name, probability = share
+        side = "below" if 2 * plus > count else "above"
+        meaning = ("as by chance" if probability > UNLIKELY else f"the model is {side} the data, which random errors "
+                   "do not explain: the data have an offset, or the model is not theirs")
+        lines.append(f"  signs of the residuals: {plus} of {count} positive in {name} (binomial test, probability "
+                     f"{probability:.2g}): {meaning}")
+    return lines
+
+
 def told(fits, rows):
     """Returns the report as text."""
     lines = []
@@ -91,10 +118,21 @@ def told(fits, rows):
         elif len(fit.data) > 1:
             lines.append("  of it: " + ", ".join(f"{datum.name} {(fit.residual[own] ** 2).sum():.3g} of {datum.length}"
                                                  for datum, own in zip(fit.data, fit.rows)))
-        if fit.missed:
+        if fit.missed and not fit.edge:
             lines.append(f"  the residuals are {fit.scatter:.3g} times what the errors of the data say: a finer "
                          "mesh, a free scale or another law first")
+        for name, runs in failed(fit).items():
+            lines.append(f"  {len(runs)} run{'s' * (len(runs) > 1)} of {name} failed or gave no outline or no value; "
+                         f"the first one, {next(iter(runs))}: {next(iter(runs.values()))}")
+        if fit.edge:
+            ends = (f"{one.name} = {one.value(x):.3g}{fit.runs.unit(one.key).replace(',', '', 1)}"
+                    for one, x in zip(fit.unknowns, fit.x))
+            of = ", ".join(dict.fromkeys(one.experiment for one in fit.edge))
+            lines.append(f"  no value, because the fit ended at an edge beyond which runs of {of} fail, at "
+                         f"{', '.join(ends)}: mend these runs, leave out the experiment, or give other start values")
         for unknown, bound, (name, (value, error)) in zip(fit.unknowns, fit.at_bound, fit.values.items()):
+            if fit.edge:
+                break
             unit = fit.runs.unit(unknown.key).replace(",", "", 1)
             if numpy.isfinite(error):
                 also = f"; by the residuals ± {fit.scatter * error:.2g}" if fit.missed else ""
@@ -109,14 +147,14 @@ def told(fits, rows):
                              "the standard errors ignore the bound")
         size = numpy.sqrt(numpy.diag(fit.covariance))
         correlation = fit.covariance / numpy.outer(size, size)
-        shown = enumerate(itertools.compress(fit.unknowns, fit.told))
+        shown = enumerate(itertools.compress(fit.unknowns, [] if fit.edge else fit.told))
         for (i, one), (j, other) in itertools.combinations(shown, 2):
             lines.append(f"  correlation of {one.name} and {other.name}: {correlation[i, j]:.3f}")
         # residuals far below the errors of the data, such as round-off, say nothing about the model
-        if any(datum.count >= SERIES for datum in fit.data) and abs(fit.residual).max() > 1e-2:
-            z = fit.runs_test()
-            meaning = "change as by chance" if z > -2 else "stay the same too long: the model is not the data’s"
-            lines.append(f"  signs of the residuals along the data: {meaning} ({z:.1f} standard deviations)")
+        if not fit.edge and (not fit.stated or abs(fit.residual).max() > 1e-2):
+            lines += signs(fit)
+    ended = [fit for fit in fits if fit.edge]
+    fits = [fit for fit in fits if not fit.edge]
     if len(fits) > 1:
         gaps = numpy.array([fit.aic for fit in fits]) - fits[0].aic
         weights = scipy.special.softmax(-gaps / 2)
@@ -125,6 +163,8 @@ def told(fits, rows):
         told_apart = (f"tell {fits[0].law} from the others" if gaps[1] > 10 else
                       "do not tell these laws apart (a difference in AIC below 10)")
         lines.append(f"the data {told_apart}{', but none of them describes the data' if fits[0].missed else ''}")
+    if fits and ended:
+        lines.append(f"not compared, because they ended at an edge: {', '.join(fit.law for fit in ended)}")
     for name, errors, rises in rows:
         said = [f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined"
                 for key, error in errors.items()] + [f"chi square of {law} + {rise:.3g}" for law, rise in rises.items()]
@@ -136,8 +176,9 @@ def draw(fits, axes=None):
     """Returns a figure of the data with the fit, the residuals, and the ellipses of pairs of unknowns."""
     best = fits[0]
     (predictions,) = best.predictions(best.x)
-    over_time = any(numpy.size(getattr(datum, "times", None)) > 1 for datum in best.data)
-    known = list(itertools.compress(zip(best.unknowns, best.x), best.told))
+    curves = [datum for datum in best.data if numpy.size(getattr(datum, "along", None)) > 1]
+    over_time = any(not datum.against for datum in curves)
+    known = list(itertools.compress(zip(best.unknowns, best.x), [] if best.edge else best.told))
     pairs = list(itertools.combinations(range(len(known)), 2))[:3]
     figure, axes = style.panels(axes, 1, 2 + len(pairs), 4.6 * (2 + len(pairs)), 4.4)
     data, residual = axes[:2]
@@ -147,12 +188,12 @@ def draw(fits, axes=None):
             data.plot(*numpy.vstack([prediction.even(400), prediction.even(1)]).T, color=color, linewidth=1)
             data.plot(*datum.placed(place).T, ".", color=color, ms=2.5, label=datum.name)
             data.set_aspect("equal")
-        elif numpy.size(datum.times) > 1:
-            along = copy.copy(datum)
-            along.times = numpy.linspace(datum.times.min(), datum.times.max(), 200)
-            data.plot(along.times, along.predicted(prediction, place), color=color, linewidth=1)
-            data.errorbar(datum.times, datum.values, datum.error, fmt=".", color=color, ms=4, label=datum.name)
-        else:
+        elif datum in curves:
+            line = copy.copy(datum)
+            line.along = numpy.linspace(datum.along.min(), datum.along.max(), 200)
+            data.plot(line.along, line.predicted(prediction, place), color=color, linewidth=1)
+            data.errorbar(datum.along, datum.values, datum.error, fmt=".", color=color, ms=4, label=datum.name)
+        elif over_time or not curves:  # a single value has no place on the axis of a key
             name = datum.name.removesuffix(": data")
             if over_time:
                 name = prediction[0][-1] if datum.at is None else datum.at
@@ -163,8 +204,8 @@ def draw(fits, axes=None):
     if data.get_legend_handles_labels()[0]:
         data.legend(fontsize=7)
     series = [datum for datum in best.data if not isinstance(datum, OutlineData)]
-    if over_time:
-        data.set_xlabel("time" + best.runs.unit("Time/final time"))
+    if curves:
+        data.set_xlabel(" or ".join(dict.fromkeys(datum.axis(best.runs) for datum in curves)))
     elif series:
         data.tick_params(axis="x", rotation=60, labelsize=7)
     ylabel = " or ".join(dict.fromkeys(" / ".join(datum.series) for datum in series))

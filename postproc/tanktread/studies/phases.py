@@ -37,8 +37,8 @@ import functools
 import numpy
 
 from ..mistakes import Mistake, command_line, expect, log
-from . import common
-from .common import keys_of, number, study_of, values_of
+from . import common, reading
+from .reading import any_name, deck_key, number, read
 
 NEAR = 1.5  # a border is first searched for between the previous border divided and multiplied by this factor
 SWING = 0.5  # a shape that rotates by at least so many half turns tumbles; smaller rotations are oscillations
@@ -86,39 +86,46 @@ MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear,
                              ("asymmetry in the first third", "asymmetry in the last third"))}
 
 
+def _in_curve(given, name):
+    """Returns the values of a key in a curve: a list from a list or a range, otherwise a single value."""
+    return reading.values(given, name) if isinstance(given, (list, dict)) else reading.setting(given, name)
+
+
+KINDS = {"motion": reading.word(*MOTIONS), "set": reading.SETTINGS,
+         "along": {"key": reading.text, "from": number, "to": number, "within": number},
+         "across": {deck_key: reading.values},
+         "curves": {any_name: {deck_key: _in_curve}}, "begin": number, "literature": {any_name: [[number]]}}
+
+
 class Diagram:
     """Phase diagram of a study file. `borders`: {curve: rows}. A row contains the value of the key across, the values
     of the key along that are just below and just above the border, and how the search ended."""
 
     def __init__(self, path, runs):
-        text = study_of(path, {"set", "along", "across", "curves", "literature"}, {"motion", "begin"})
-        self.runs, self.decks, self.fixed = runs, text["deck"], text["set"]
-        kind = str(text.get("motion", "shear"))
-        expect(kind in MOTIONS, f"{path}: the motion is {' or '.join(MOTIONS)}, not {kind}")
-        self.kind = MOTIONS[kind]
+        given = reading.study_of(path, KINDS)
+        self.runs, self.decks, self.fixed = runs, given["deck"], given["set"]
+        self.kind = MOTIONS[given.get("motion", "shear")]
         # texts for a search that finds no border in its range
         self.to_here, self.from_here = f"{self.kind.below[0]} to here", f"{self.kind.above} from here"
-        self.along, across, curves = text["along"], text["across"], text["curves"]
+        self.along, across, curves = given["along"], given["across"], given["curves"]
         expect(set(self.along) == {"key", "from", "to", "within"}, f"{path}: along has key, from, to and within")
-        low, high, within = self.range = [number(self.along[name], f"{path}: along, {name}")
-                                          for name in ("from", "to", "within")]
+        low, high, within = self.range = [self.along[name] for name in ("from", "to", "within")]
         expect(0 < low < high and within > 1, f"{path}: along needs positive values that ascend and a factor above 1, "
                                               f"but is from {low} to {high} within {within}")
         expect(len(across) == 1 and curves, f"{path}: across has one key, and curves one or more")
-        self.across, self.begin = next(iter(across)), number(text.get("begin", 0.4), f"{path}: begin")
+        self.across, self.begin = next(iter(across)), given.get("begin", 0.4)
         expect(0 <= self.begin < 1, f"{path}: begin is a share of a run, from 0 to less than 1, but is {self.begin:g}")
-        for name, rows in text["literature"].items():
-            expect(isinstance(rows, list) and all(isinstance(row, list) and len(row) == 3 for row in rows),
-                   f"{name}: literature has rows of a value across, the lowest and the highest one along")
-        self.literature = {name: [[number(value, name) for value in row] for row in rows]
-                           for name, rows in text["literature"].items()}
-        self.rows = {name: self.settings(name, across | keys_of(keys, f"{path}: the curve {name}"))
-                     for name, keys in curves.items()}
+        self.literature = given["literature"]
+        for name, rows in self.literature.items():
+            expect(all(len(row) == 3 for row in rows),
+                   f"{path}: {name}: literature has rows of a value across, the lowest and the highest one along")
+        self.rows = {name: self.settings(name, across | keys) for name, keys in curves.items()}
         self.borders, self.made = {name: [] for name in curves}, {}  # runs by (curve, value across, value along)
 
     def settings(self, name, keys):
         """Returns the settings of a curve: one dict for each of its values of the key across."""
-        at = [number(value, f"{name}: {self.across}") for value in values_of(self.across, keys[self.across])]
+        at = read(keys[self.across] if isinstance(keys[self.across], list) else [keys[self.across]], [number],
+                  f"{name}: {self.across}")
         lists = {key: given for key, given in keys.items() if isinstance(given, list)} | {self.across: at}
         for key, one in lists.items():
             expect(len(one) == len(at), f"{name}: {key} has {len(one)} values where {self.across} has {len(at)}")

@@ -23,6 +23,10 @@ of series; their last values are the columns.
 Values may have units, such as 40 1/s, if the deck has the section Units. The tables contain them as numbers in the
 units of the deck.
 
+The tables contain the runs that have ended, and are written again whenever a run ends. The column `status` is done,
+refused, stopped (by a signal or at its limit) or failed. `ended` tells how a completed run ended: steady (with
+Time/steady tolerance), past (Time/end when past), or done: at its final time, or with the shape that was requested.
+
 A run that is complete is not repeated, even if the study has changed. A run that was interrupted is resumed. A run that
 was stopped at its `limit` is resumed, or repeated if it has no checkpoint, when the limit is larger or removed. The row
 of a run that fails contains its error message.
@@ -31,7 +35,9 @@ of a run that fails contains its error message.
 import collections
 import contextlib
 import csv
+import functools
 import itertools
+import math
 import os
 import pathlib
 import re
@@ -45,63 +51,46 @@ from ..files import Named, opened
 from ..interpolation import interpolated, mean
 from ..mistakes import Mistake, command_line, expect, log, progress
 from ..runs import Study, text_of
-from .common import keys_of, number, only, optional, positive, spaced, study_of, values_of, whole
+from . import reading
+from .reading import any_name, deck_key, read
 
-RUN = ["status", "processor_seconds", "directory", "message"]  # the last columns of every table
+RUN = ["status", "ended", "processor_seconds", "directory", "message"]  # the last columns of every table
 TAKES = {"last": lambda time, values: values[-1], "smallest": lambda time, values: values.min(),
          "largest": lambda time, values: values.max(), "mean": mean, "all": None}
 
 
-def drawn(text):
+def drawn(given):
     """Returns a list of settings {key: value}, drawn at random as the section `random` requests."""
-    expect("number" in text and keys_of(text.get("keys"), "random: keys"), "random needs a number and keys")
-    only(text, ("number", "seed", "keys"), "random")
-    size, seed = whole(text["number"], "random: number"), text.get("seed", 1)
-    expect(isinstance(seed, int) and seed >= 0, f"random: seed must be a whole number, 0 or above, but is {seed}")
-    generator = numpy.random.default_rng(seed)
-    columns = {}
-    for key, given in text["keys"].items():
-        if isinstance(given, list):
-            given = values_of(key, given)
-            columns[key] = [given[k] for k in generator.integers(len(given), size=size)]
-        else:
-            expect(isinstance(given, dict) and {"from", "to"} <= set(given),
-                   f"{key}: random values have from and to, or are a list to draw from")
-            only(given, ("from", "to", "spacing"), key)
-            columns[key] = spaced(key, given, generator.random(size))
+    generator, size = numpy.random.default_rng(given.get("seed", 1)), given["number"]
+    columns = {key: [one[k] for k in generator.integers(len(one), size=size)] if isinstance(one, list) else
+               reading.spaced(one, key, generator.random(size)) for key, one in given["keys"].items()}
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
-def combinations(text):
+def combinations(given):
     """Returns the settings of all runs of a study, without duplicates."""
-    grid, together = ({key: values_of(key, one) for key, one in text[name].items()} for name in ("grid", "together"))
+    grid, together, random = given["grid"], given["together"], given["random"]
     expect(len({len(values) for values in together.values()}) <= 1, "the lists of `together` must be equally long")
-    groups = [[dict(zip(grid, row)) for row in itertools.product(*grid.values())],
-              [dict(zip(together, row)) for row in zip(*together.values())] or [{}],
-              drawn(text["random"]) if text["random"] else [{}]]
-    names = [*groups[0][0], *groups[1][0], *groups[2][0]]
+    expect(not random or ("number" in random and random.get("keys")), "random needs a number and keys")
+    names = [*grid, *together, *random.get("keys", {})]
     twice = sorted({name for name in names if names.count(name) > 1})
     expect(not twice, f"{', '.join(twice)}: a key is in one of grid, together and random only")
-    rows = [text["set"] | a | b | c for a, b, c in itertools.product(*groups)]
-    return [row for k, row in enumerate(rows) if row not in rows[:k]]
+    reading.few(math.prod([*map(len, grid.values()), *map(len, [*together.values()][:1]), random.get("number", 1)]),
+                "the study")
+    groups = [[dict(zip(grid, row)) for row in itertools.product(*grid.values())],
+              [dict(zip(together, row)) for row in zip(*together.values())] or [{}],
+              drawn(random) if random else [{}]]
+    rows = [given["set"] | a | b | c for a, b, c in itertools.product(*groups)]
+    return list({str({key: text_of(value) for key, value in row.items()}): row for row in rows}.values())
 
 
-def columns_of(text, path):
+def columns_of(record, path):
     """Returns {column: (series, take, at)} from the section `record` of a study file."""
-    record = text.get("record")
     expect(record, f"{path} records nothing: name series under `record`")
-    if isinstance(record, list):
-        expect(all(isinstance(name, str) for name in record), f"{path}: `record` as a list is of names of series")
-        record = {name: name for name in record}
-    found = {}
-    for name, given in keys_of(record, f"{path}: record").items():
-        given = {"series": given} if isinstance(given, str) else keys_of(given, f"{path}: {name}")
-        take = str(given.get("take", "last"))
-        expect(take in TAKES, f"{path}: take {take} of {name} is not one of {', '.join(TAKES)}")
-        expect(not set(given) - {"series", "take", "at"} and not {"take", "at"} <= set(given),
-               f"{path}: {name} has series, and take or at")
-        found[name] = given.get("series", name), take, optional(number, given, "at", f"{path}: {name}")
-    return found
+    for name, given in record.items():
+        expect(not {"take", "at"} <= set(given), f"{path}: {name} has series, and take or at")
+    return {name: (given.get("series", name), given.get("take", "last"), given.get("at"))
+            for name, given in record.items()}
 
 
 def recorded(outcome, columns):
@@ -154,16 +143,43 @@ def numbers_of(key, given, outcomes):
     return numbers if numeric else None
 
 
+def _drawn_from(given, name):
+    """Returns the list or the range from which the values of a key are drawn at random."""
+    if isinstance(given, list):
+        return reading.values(given, name)
+    found = read(given, reading.RANGE, name)
+    expect({"from", "to"} <= set(found), f"{name}: random values have from and to, or are a list to draw from")
+    return found
+
+
+def _columns(given, name):
+    """Returns {column: {series, take, at}} from the section or list `record`."""
+    if isinstance(given, list):
+        given = {one: one for one in read(given, [reading.text], name)}
+    return read(given, {any_name: _column}, name)
+
+
+def _column(given, name):
+    kinds = {"series": reading.text, "take": reading.word(*TAKES), "at": reading.number}
+    return {"series": reading.text(given, name)} if isinstance(given, str) else read(given, kinds, name)
+
+
+KINDS = {"set": reading.SETTINGS, "grid": {deck_key: reading.values}, "together": {deck_key: reading.values},
+         "random": {"number": reading.whole, "seed": functools.partial(reading.whole, least=0),
+                    "keys": {deck_key: _drawn_from}},
+         "record": _columns, "limit": reading.positive, "ranks": reading.whole}
+
+
 class Sweep:
-    """A study file and its runs. `keys`: keys that vary. `rows`: settings of each run. `outcomes`: their Outcomes,
-    available after make()."""
+    """A study file and its runs. `keys`: keys that vary. `rows`: settings of each run. `outcomes`: their Outcomes, or
+    None for runs that have not ended."""
 
     def __init__(self, path, study):
-        text = study_of(path, {"set", "grid", "together", "random"}, {"record", "limit", "ranks"})
-        self.name, self.study, self.decks = pathlib.Path(path).stem, study, text["deck"]
-        self.ranks = whole(text.get("ranks", 1), f"{path}: ranks")
-        self.rows, self.columns = combinations(text), columns_of(text, path)
-        self.study.limit = optional(positive, text, "limit", path)
+        given = reading.study_of(path, KINDS)
+        self.name, self.study, self.decks = pathlib.Path(path).stem, study, given["deck"]
+        self.ranks, self.study.limit = given.get("ranks", 1), given.get("limit")
+        self.rows, self.columns = combinations(given), columns_of(given.get("record"), path)
+        self.outcomes, self.found = [None] * len(self.rows), {}  # found: recorded() of each run that has ended
         self.keys = [key for key in dict.fromkeys(key for row in self.rows for key in row)
                      if len({str(row.get(key)) for row in self.rows}) > 1]
         series = any(take == "all" for _, take, _ in self.columns.values())
@@ -173,64 +189,76 @@ class Sweep:
             expect(not any(other.startswith(f"{name}/") for other in self.columns),
                    f"{path}: record: {name} is also the beginning of the name of another column")
 
-    def make(self):
-        """Makes the runs and prints the progress on standard error."""
-        start, ends = time.monotonic(), collections.Counter()
+    def make(self, directory):
+        """Makes the runs, writes the tables whenever a run has ended, and prints the progress on standard error."""
+        start, ends, written = time.monotonic(), collections.Counter(), 0
 
-        def told(outcome):
+        def told(k, outcome):
+            nonlocal written
             ends[outcome.status] += 1
-            if ends["done"] == 1:  # after the first completed run, raises Mistake for columns that do not exist
-                recorded(outcome, self.columns)
-            made = sum(ends.values())
-            left = (time.monotonic() - start) / made * (len(self.rows) - made)
+            self.found[k] = recorded(outcome, self.columns)  # raises Mistake for columns that do not exist
+            self.outcomes[k] = outcome
+            made, now = sum(ends.values()), time.monotonic()
+            if now > written:
+                self.write(directory)
+                written = time.monotonic() + 10 * (time.monotonic() - now)  # tables of many rows are written less often
+            left = (now - start) / made * (len(self.rows) - made)
             said = ", ".join(f"{number} {status}" for status, number in ends.items())
             if sys.stderr.isatty() or made * 10 // len(self.rows) > (made - 1) * 10 // len(self.rows):
                 progress(f"{made} of {len(self.rows)} runs: {said}; {left:.0f} s left")
 
-        self.outcomes = self.study.all([(self.decks, row, self.ranks) for row in self.rows], told)
+        try:
+            self.study.all([(self.decks, row, self.ranks) for row in self.rows], told)
+        finally:
+            if self.found:
+                self.write(directory)
         progress("")
 
     def write(self, directory):
-        """Writes table.csv and table.h5. Whole series are only in table.h5 (/columns/<name>, rows padded with NaN).
-        Keys and columns in table.h5 have the attribute `unit`, such as ", µm", taken from the first completed run.
-        Values of keys are numbers in the unit of the deck, or text."""
-        given = {key: [row.get(key, numpy.nan) for row in self.rows] for key in self.keys}
-        keys = {key: numbers_of(key, values, self.outcomes) for key, values in given.items()}
+        """Writes table.csv and table.h5 of the runs that have ended. Whole series are only in table.h5
+        (/columns/<name>, rows padded with NaN). Keys and columns in table.h5 have the attribute `unit`, such as ", µm",
+        taken from the first completed run. Values of keys are numbers in the unit of the deck, or text."""
+        ended = sorted(self.found)
+        outcomes, found = [self.outcomes[k] for k in ended], [self.found[k] for k in ended]
+        given = {key: [self.rows[k].get(key, numpy.nan) for k in ended] for key in self.keys}
+        keys = {key: numbers_of(key, values, outcomes) for key, values in given.items()}
         shown = {key: given[key] if values is None else
                  [text if numpy.isnan(value) else value for text, value in zip(given[key], values)]
                  for key, values in keys.items()}
-        found = [recorded(outcome, self.columns) for outcome in self.outcomes]
         whole = [name for name, (_, take, _) in self.columns.items() if take == "all"]
         single = [word for name in self.columns if name not in whole for word in (name, f"{name} error")
                   if word == name or any(word in values for values in found)]
         columns = {name: [values.get(name, numpy.nan) for values in found] for name in single}
-        messages = [own.get("message", "") if one.done else one.message for one, own in zip(self.outcomes, found)]
-        with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
+        messages = [own.get("message", "") if one.done else one.message for one, own in zip(outcomes, found)]
+        partial = directory / "table.csv.part", directory / "table.h5.part"
+        with open(partial[0], "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
             out.writerow([*self.keys, *single, *RUN])
-            for one, message, *values in zip(self.outcomes, messages, *shown.values(), *columns.values()):
-                out.writerow([*values, one.status, f"{one.processor_seconds:.3g}", one.directory.name, message])
+            for one, message, *values in zip(outcomes, messages, *shown.values(), *columns.values()):
+                out.writerow([*values, one.status, one.ended, f"{one.processor_seconds:.3g}", one.directory.name,
+                              message])
         for name in [*whole, "time"] if whole else []:
             padded = itertools.zip_longest(*(values.get(name, []) for values in found), fillvalue=numpy.nan)
             columns[name] = numpy.reshape(list(padded), (-1, len(found))).T
-        with h5py.File(directory / "table.h5", "w") as file:
-            file["status"] = [outcome.status for outcome in self.outcomes]
+        with h5py.File(partial[1], "w") as file:
+            file["status"] = [outcome.status for outcome in outcomes]
+            file["ended"] = [outcome.ended for outcome in outcomes]
             file["message"] = messages
-            file["directory"] = [str(outcome.directory) for outcome in self.outcomes]
+            file["directory"] = [str(outcome.directory) for outcome in outcomes]
             file.attrs["keys"] = self.keys
             for key, values in keys.items():
                 file[f"keys/{key}"] = list(map(str, given[key])) if values is None else values
             file.attrs["columns"] = list(columns)
             for name, values in columns.items():
                 file[f"columns/{name}"] = values
-            run = next((outcome.run for outcome in self.outcomes if outcome.done), None)
+            run = next((outcome.run for outcome in outcomes if outcome.done), None)
             for key in self.keys if run else []:
                 file[f"keys/{key}"].attrs["unit"] = run.unit(self.study.dimension(key))
             for name in columns if run else []:
                 series = (self.columns.get(name) or self.columns.get(name.removesuffix(" error")) or [name])[0]
                 file[f"columns/{name}"].attrs["unit"] = run.unit(run.units[series])
-        for name in "table.csv", "table.h5":
-            log.info(directory / name)
+        for path in partial:  # renamed when complete, so that a killed sweep keeps whole tables
+            path.rename(path.with_suffix(""))
 
 
 def table(directory):
@@ -285,8 +313,9 @@ def run(path, directory=None, jobs=None, fresh=False):
     directory = pathlib.Path(directory or f"results/{pathlib.Path(path).stem}")
     sweep = Sweep(path, Study(directory=directory / "runs", jobs=os.cpu_count() if jobs is None else jobs, fresh=fresh))
     directory.mkdir(parents=True, exist_ok=True)
-    sweep.make()
-    sweep.write(directory)
+    sweep.make(directory)
+    for name in "table.csv", "table.h5":
+        log.info(directory / name)
     return sweep
 
 

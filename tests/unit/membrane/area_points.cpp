@@ -34,6 +34,8 @@ TEST(AreaPoints, AsManyAsForTheRestAreTheWholeLaw) {
     EXPECT_NEAR(tension_summary(parts, x).smallest, tension_summary(whole, x).smallest, 1e-12);
     // The reported change of area includes points at which the law with one point is not evaluated.
     EXPECT_GE(tension_summary(with_points(s, law, 1), x).area_change, tension_summary(whole, x).area_change);
+    // Its root mean square is evaluated at the points of the rest of the law, whatever the points of the area elasticity.
+    EXPECT_NEAR(tension_summary(with_points(s, law, 1), x).rms_area_change, tension_summary(whole, x).rms_area_change, 1e-12);
   }
 }
 

@@ -154,6 +154,7 @@ TEST(Membrane, InflationStretchesUniformly) {
       EXPECT_NEAR(summary.smallest / (tension / modulus(law)), 1, 1e-12);  // round-off
       EXPECT_EQ(summary.compressed_area, tension < 0 ? 1 : 0);
       EXPECT_NEAR(summary.area_change, std::abs(stretch * stretch - 1), 1e-12);
+      EXPECT_NEAR(summary.rms_area_change, summary.area_change, 1e-12);
     }
 }
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
+#include "base/stop.hpp"
 #include "explicit_motion.hpp"
 #include "motion/integrator.hpp"
 #include "system/parallel/agreement.hpp"
@@ -39,8 +40,6 @@ State start(double step) {
   return state;
 }
 
-bool never() { return false; }
-
 TEST(GuardedDynamics, AFailedEvaluationShortensTheStepInEveryScheme) {
   for (const std::string& scheme : schemes) {
     TimeOptions options;
@@ -50,7 +49,7 @@ TEST(GuardedDynamics, AFailedEvaluationShortensTheStepInEveryScheme) {
     decay.fails = [](const Net& x) {
       if (x(0, 0) < 0.7) throw std::logic_error("no basis");
     };
-    GuardedDynamics motion(decay, never);
+    GuardedDynamics motion(decay);
     State state = start(2);  // an unlimited step would end far below 0.7
     const StepReport report = integrator(options)->advance(motion, state, 4);
     EXPECT_GT(report.rejected, 0) << scheme;
@@ -62,7 +61,7 @@ TEST(GuardedDynamics, AFailedEvaluationShortensTheStepInEveryScheme) {
 
 TEST(GuardedDynamics, AFirstTrialWithoutAVelocityStillGivesAnInitialStep) {
   Decay decay;
-  GuardedDynamics motion(decay, never);
+  GuardedDynamics motion(decay);
   State state = start(0);
   const double step = first_step(motion, state, TimeOptions());
   decay.fails = [&](const Net& x) {
@@ -77,7 +76,7 @@ TEST(GuardedDynamics, AFailureOnOneRankIsAFailureOnAllRanks) {
   decay.fails = [&](const Net&) {
     if (ranks.rank() == ranks.size() - 1) throw RunFailure("not converged");
   };
-  GuardedDynamics motion(decay, never);
+  GuardedDynamics motion(decay);
   EXPECT_TRUE(motion.velocity(Net::Ones(2, 3)).array().isNaN().all());
   EXPECT_EQ(motion.failure(), "not converged");
 }
@@ -88,7 +87,7 @@ TEST(GuardedDynamics, LackOfMemoryDoesNotShortenTheStep) {
   decay.fails = [&](const Net&) {
     if (ranks.rank() == ranks.size() - 1) throw std::bad_alloc();
   };
-  GuardedDynamics motion(decay, never);
+  GuardedDynamics motion(decay);
   EXPECT_THROW(motion.velocity(Net::Ones(2, 3)), RunFailure);
   EXPECT_EQ(motion.failure(), "there is not enough memory");
 }
@@ -96,8 +95,14 @@ TEST(GuardedDynamics, LackOfMemoryDoesNotShortenTheStep) {
 TEST(GuardedDynamics, AllRanksStopIfOneReceivesASignal) {
   const coupling::Ranks ranks;
   Decay decay;
-  GuardedDynamics motion(decay, [&] { return ranks.rank() == ranks.size() - 1; });
+  int evaluations = 0;
+  decay.fails = [&](const Net&) { ++evaluations; };
+  GuardedDynamics motion(decay);
+  set_stop_request([&] { return ranks.rank() == ranks.size() - 1; });
   EXPECT_THROW(motion.velocity(Net::Ones(2, 3)), Stopped);
+  EXPECT_EQ(evaluations, 0);
+  EXPECT_TRUE(motion.velocity(Net::Ones(2, 3)).allFinite());  // the request has been answered
+  set_stop_request({});
 }
 
 // Two ranks whose own errors would lie on either side of the tolerance take the same steps.
@@ -108,7 +113,7 @@ TEST(GuardedDynamics, TheFirstRankDecidesAboutSteps) {
     options.scheme = scheme;
     Decay decay;
     decay.size = 1 + ranks.rank();
-    GuardedDynamics motion(decay, never);
+    GuardedDynamics motion(decay);
     State state = start(0.5);
     const auto integrate = integrator(options);
     for (int k = 0; k < 4; ++k) integrate->advance(motion, state, 4);

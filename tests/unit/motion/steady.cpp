@@ -115,6 +115,33 @@ TEST_P(Steady, DoesNotAcceptAMovingShapeAsSteady) {
   EXPECT_GT(report.rest, 1e5);  // half of the velocity, not the correction of 1e-9
 }
 
+/// A model whose velocity has the same size everywhere and another direction in each evaluation, so that no iterate is better than another.
+class Restless : public ExplicitMotion {
+ public:
+  Net velocity(const Net& x) override {
+    ++velocities;
+    return Net(Vec3(0.1 * std::cos(velocities), 0.1 * std::sin(velocities), 0).transpose().replicate(x.rows(), 1));
+  }
+  double norm(const Net& d) const override { return d.norm() / std::sqrt(static_cast<double>(d.rows())); }
+  int velocities = 0;
+};
+
+TEST_P(Steady, EndsEarlyAtAKnownObstacle) {
+  int velocities = 0;  // without obstacle
+  for (const char* obstacle : {"", "the membrane is slack"}) {
+    Restless motion;
+    Net x = Net::Zero(40, 3);
+    SteadyEquations equations(motion, {}, 0.5, x, [&](const Net&) { return obstacle; });
+    SteadyOptions options;
+    options.method = GetParam();
+    const SteadyReport report = find_steady(equations, options, {}, x, 5);
+    EXPECT_FALSE(report.converged);
+    EXPECT_EQ(report.why, obstacle);
+    if (report.why.empty()) velocities = motion.velocities;
+    else EXPECT_LT(motion.velocities, velocities / 4);
+  }
+}
+
 /// A model whose velocity is NaN. relabellings() (motions of points along the surface that keep the shape) throws, because it needs a velocity.
 /// `assemblies` counts the assemblies of the Jacobian's operators.
 class Unknown : public Slow {

@@ -11,6 +11,8 @@
 #include "deck/document.hpp"
 #include "deck/section.hpp"
 #include "scene/member.hpp"
+#include "scene/particles/gaps.hpp"
+#include "scene/particles/particle_system.hpp"
 #include "system/parallel/ranks.hpp"
 #include "refusal.hpp"
 
@@ -70,7 +72,7 @@ TEST(Scenes, RejectViscosityRatiosThatRoundingMakesUnsolvable) {
 }
 
 TEST(Scenes, CountTheFactorsOfTheWallOnEveryRank) {
-  const std::string tube = "  Flow: {type: duct}\n  Tube: {azimuthal elements: 100, axial elements: ";
+  const std::string tube = "  Flow: {type: duct}\n  Particle: {}\n  Tube: {azimuthal elements: 100, axial elements: ";
   const bool one_rank = coupling::Ranks().size() == 1;
   EXPECT_EQ(refusal(tube + "240}\n").empty(), one_rank);                        // 43 GB per rank
   EXPECT_NE(refusal(tube + "300}\n").find("more than the limit of 64 GB"), std::string::npos);  // 66 GB per rank
@@ -205,7 +207,7 @@ TEST(Sizes, BeyondMemoryAreRejectedWithAnEstimate) {
             formatted("Surface/elements per side must be at most %.0f, but is 80: the assembled boundary-integral operators of 38402 control points "
                       "take %.0f GB, more than the limit of 64 GB.",
                       most, factored * 38402. * 38402. / 1e9));
-  EXPECT_EQ(refusal("  Flow: {type: duct}\n  Tube: {azimuthal elements: 200, axial elements: 200}\n"),
+  EXPECT_EQ(refusal("  Flow: {type: duct}\n  Particle: {}\n  Tube: {azimuthal elements: 200, axial elements: 200}\n"),
             formatted("Tube/azimuthal elements and Tube/axial elements must give at most %.0f control points: the assembled "
                       "boundary-integral operators of 40600 control points take %.0f GB, more than the limit of 64 GB.",
                       std::floor(std::sqrt(64e9 / factored)), factored * 40600. * 40600. / 1e9));
@@ -251,6 +253,86 @@ TEST(Members, HaveTheSymmetryOfASingleParticleWhetherTheyHaveANameOrNot) {
   };
   EXPECT_GT(order("  Particle: " + place), 1);
   EXPECT_EQ(order("  Particles: {a: " + place + "}\n"), order("  Particle: " + place));
+}
+
+/// Returns the deck of two rigid spheres of radius 1 on x1, the distance of whose centres is 2 + gap, with meshes of n x n elements on six sides.
+std::string two_spheres(double gap, int n, const std::string& keys = "") {
+  return formatted("  Flow: {type: quiescent}\n  Particles:\n    defaults: {motion: free, Surface: {elements per side: %d}%s}\n    one: {}\n"
+                   "    two: {center: [%.9g, 0, 0]}\n",
+                   n, keys.c_str(), 2 + gap);
+}
+
+/// Returns the message with which the start of the particles is refused; empty if they may start.
+std::string refused_start(const std::string& sections) {
+  return refusal_of([&] { checked_members(scene(sections)); });
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(Starts, WhereOnlyTheMeshesOverlapAskForFinerMeshes) {
+  const std::string coarse = "The meshes are too coarse: Particles/one and Particles/two overlap at the start, near [1", wide = "  Contact: {limit: 1e-5}\n";
+  EXPECT_EQ(refused_start(two_spheres(-0.05, 4)).find("Particles/one and Particles/two overlap at the start, near ["), 0u);
+  const std::string said = refused_start(two_spheres(1e-4, 4));
+  EXPECT_TRUE(contains(said, coarse) && contains(said, "With 2 times as many elements") && contains(said, "Contact/limit")) << said;
+  EXPECT_TRUE(contains(refused_start(two_spheres(1e-4, 4) + wide), coarse));
+  EXPECT_EQ(refused_start(two_spheres(1e-4, 8) + wide), "");  // the remedy
+  const std::string wall = "  Flow: {type: quiescent}\n  Wall: {contact gap: 1e-5}\n  Particle: {motion: free, center: [0, 0, 1.0001]";
+  EXPECT_TRUE(contains(refused_start(wall + "}\n  Surface: {elements per side: 4}\n"), "The meshes are too coarse: The particle crosses the wall"));
+  EXPECT_EQ(refused_start(wall + "}\n  Surface: {elements per side: 8}\n"), "");
+}
+
+TEST(Starts, BelowTheLimitOfContactsAreRefused) {
+  const std::string close = "Particles/one and Particles/two start too close to each other: near [1";
+  EXPECT_EQ(refused_start(two_spheres(5e-4, 8)).find(close), 0u);
+  EXPECT_EQ(refused_start(two_spheres(2e-3, 8)), "");
+  EXPECT_EQ(refused_start(two_spheres(5e-4, 8) + "  Contact: {limit: 4e-4}\n"), "");
+  const std::string limited = "  Contact: {limit: 9e-4, limiter: true}\n";  // which moves them apart if the gap is at least half of the limit
+  EXPECT_EQ(refused_start(two_spheres(5e-4, 8) + limited), "");
+  EXPECT_EQ(refused_start(two_spheres(4e-4, 8) + limited).find(close), 0u);
+  // An adaptive mesh of a rigid body is refined before the first step.
+  EXPECT_EQ(refused_start(two_spheres(1.5e-3, 4, ", Adaptation: {enabled: true}")), "");
+  EXPECT_EQ(refused_start(two_spheres(5e-4, 4, ", Adaptation: {enabled: true}")).find(close), 0u);
+  const std::string image = refused_start("  Flow: {type: quiescent}\n  Domain: {side lengths: [2.0005, 4, 4]}\n  Particle: {motion: free}\n"
+                                          "  Surface: {elements per side: 8}\n");
+  EXPECT_TRUE(contains(image, "Particle and its own image start too close")) << image;
+}
+
+TEST(Evaluations, OfAParticleThatCrossesAnotherPartNameBoth) {
+  const auto crossing = [](const std::string& sections, const Vec3& shift) {
+    const Scene all = scene(sections);
+    coupling::Ranks ranks;
+    Phases phases;
+    const auto particles = make_particle_system(all, ranks, phases);
+    const Net start = particles->start();
+    EXPECT_TRUE(particles->dynamics().velocity(start).allFinite());
+    EXPECT_FALSE(particles->dynamics().velocity(start.rowwise() + shift.transpose()).allFinite());
+    const std::string why = particles->dynamics().why_undefined();
+    particles->dynamics().velocity(start);
+    return why.substr(0, why.find(" near ["));
+  };
+  const std::string small = "{radius: 0.4, center: [-1, 0, 0], Membrane: {shear modulus: 1}, Surface: {elements per side: 3}}\n";
+  const std::string cell = "  Flow: {type: quiescent}\n  Particles:\n    bead: " + small, box = "  Domain: {side lengths: [4, 4, 1.2]}\n";
+  const std::string post = "    pillar: {shape: cylinder, axis: x3, radius: 0.3, center: [0, 0, 0], Surface: {azimuthal elements: 8, axial elements: 8}}\n";
+  EXPECT_EQ(crossing(cell + post + box, {0.5, 0, 0}), "Particles/bead would cross Particles/pillar");
+  EXPECT_EQ(crossing(cell + "  Wall: {point: [0, 0, -1]}\n", {0, 0, -0.8}), "Particles/bead would cross the wall");
+  EXPECT_EQ(crossing("  Flow: {type: duct}\n  Tube: {radius: 1, azimuthal elements: 8, axial elements: 8}\n  Particles:\n    bead: " + small, {0, 0.8, 0}),
+            "Particles/bead would cross the wall of the duct");
+}
+
+TEST(Scenes, WithWallsOrALatticeAskForTheirParticle) {
+  const std::string still = "  Flow: {type: quiescent}\n", plates = "  Domain: {periodic: x1 x2, side lengths: [12, 12, 1]}\n";
+  for (const auto& [around, name] : {std::pair<std::string, std::string>("  Flow: {type: duct}\n  Tube: {radius: 1}\n", "Tube"),
+                                     {"  Flow: {type: duct}\n  Channel: {profile: constriction, depth: 0.5, half length: 2}\n", "Channel"},
+                                     {still + "  Wall: {point: [0, 0, -6]}\n", "Wall"},
+                                     {still + "  Wall: {point: [0, 0, -6], distance: 12}\n" + plates, "Wall"},
+                                     {still + "  Domain: {side lengths: [6, 6, 6]}\n", "Domain"}}) {
+    EXPECT_EQ(refusal(around).find(name + " needs a particle"), 0u) << around;
+    EXPECT_EQ(refusal(around + "  Surface: {elements per side: 4}\n").find(name + " needs a particle"), 0u) << around;
+    EXPECT_EQ(refusal(around + "  Particle: {motion: free, radius: 0.5}\n"), "") << around;
+    EXPECT_EQ(refusal(around + "  Membrane: {shear modulus: 1}\n"), "") << around;
+    EXPECT_EQ(refusal(around + "  Particles: {a: {motion: free}}\n"), "") << around;
+  }
+  EXPECT_EQ(refusal(still + "  Domain: {side lengths: [6, 6, 6]}\n  Particle: {shape: cylinder, axis: x1, radius: 1}\n"), "");
 }
 
 TEST(Scenes, PutASingleRigidBodyInAFlowOfAnyDegreeIntoTheSystem) {

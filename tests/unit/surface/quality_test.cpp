@@ -1,6 +1,8 @@
 #include "surface/quality.hpp"
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -20,6 +22,8 @@ TEST(Quality, AFittedSphereIsEven) {
   const Quality q = whole_quality(map, cube.sphere());
   EXPECT_GT(q.jacobian_ratio, 0.4);  // the elements at the corners of the cube are the most uneven
   EXPECT_LT(q.aspect_ratio, 1.5);
+  // an element subtends 15 degrees; its outermost Gauss points are 0.86 of the way from its centre to its corners
+  EXPECT_NEAR(q.tilt, 0.861 * std::sqrt(2.) * std::numbers::pi / 24, 2e-3);
   EXPECT_NO_THROW(require_sound(q));
 }
 
@@ -35,6 +39,7 @@ TEST(Quality, OfAUnionIsTheWorstOfItsParts) {
   EXPECT_EQ(together.folded_place, whole.folded_place);
   EXPECT_EQ(together.aspect_ratio, whole.aspect_ratio);
   EXPECT_EQ(together.stretched_element, whole.stretched_element);
+  EXPECT_EQ(together.tilt, whole.tilt);
 }
 
 TEST(Quality, StretchingIncreasesTheAspectRatio) {
@@ -46,6 +51,17 @@ TEST(Quality, StretchingIncreasesTheAspectRatio) {
   const double after = whole_quality(map, net).aspect_ratio;
   EXPECT_GT(after, 4);
   EXPECT_LT(after, 5 * before);
+}
+
+TEST(Quality, TheSurfaceTurnsWithinAnElementAtATipWhateverItsSize) {
+  const CubeMesh cube(6);
+  const BezierMap map(cube.space);
+  Net net = cube.sphere();
+  const double round = whole_quality(map, net).tilt;
+  net.col(0) *= 5;
+  // normals of the tip of an ellipsoid 5 : 1 : 1 turn five times as fast: tan of the angle is 5 times that on the sphere
+  EXPECT_NEAR(std::tan(whole_quality(map, net).tilt), 5 * std::tan(round), 0.1 * 5 * std::tan(round));
+  EXPECT_NEAR(whole_quality(map, 7 * net).tilt, whole_quality(map, net).tilt, 1e-9);  // round-off of acos
 }
 
 TEST(Quality, AFoldedElementIsReportedWithItsPosition) {

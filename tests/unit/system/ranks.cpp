@@ -75,8 +75,8 @@ TEST(Ranks, OwnersFillTheRowsOfTheirPoints) {
 
 TEST(Ranks, AConditionOnOneRankIsKnownToAll) {
   Ranks ranks;
-  EXPECT_TRUE(ranks.any(ranks.rank() == ranks.size() - 1));
-  EXPECT_FALSE(ranks.any(false));
+  EXPECT_TRUE(any_stop_requested(ranks.rank() == ranks.size() - 1));
+  EXPECT_FALSE(any_stop_requested(false));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "surface/geometry.hpp"
+#include "system/parallel/stop_together.hpp"
 
 namespace tanktread::coupling {
 
@@ -66,7 +67,7 @@ void BodyLayer::set_shape(const Net& x, const Net& at, bool keep_rows) {
   const auto n = static_cast<Eigen::Index>(rows_.size());
   matrix_ = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
     stokes::Rows<double> rows;
-    layer_.assemble(own, rows);
+    stop_together([&] { layer_.assemble(own, rows); });
     for (std::size_t i = 0; i < own.size(); ++i) all.middleRows<3>(3 * own[i]) = rows.middleRows<3>(3 * static_cast<Eigen::Index>(i));
   });
   for (std::size_t p = 0; p < bodies_.size(); ++p) {
@@ -74,9 +75,10 @@ void BodyLayer::set_shape(const Net& x, const Net& at, bool keep_rows) {
     matrix_.block(first, first, length, length) += flat(outward_).segment(in, length) * flat(flux_).segment(in, length).transpose();
   }
   rows_of_others_.resize(0, 0);
-  if (keep_rows && beyond_) beyond_->assemble(at_, others_, rows_of_others_);
-  if (keep_rows) factors_.emplace(matrix_);
-  else factors_.emplace(std::exchange(matrix_, {}));
+  stop_together([&] {
+    if (keep_rows && beyond_) beyond_->assemble(at_, others_, rows_of_others_);
+    factors_.emplace(keep_rows ? matrix_ : std::exchange(matrix_, {}));
+  });
 }
 
 Net BodyLayer::velocity(const Net& f) {

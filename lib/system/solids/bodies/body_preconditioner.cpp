@@ -6,6 +6,7 @@
 #include "base/dense_factors.hpp"
 #include "base/indices.hpp"
 #include "stokes/layer.hpp"
+#include "system/parallel/stop_together.hpp"
 #include "system/targets/collocation.hpp"
 
 namespace tanktread::coupling {
@@ -35,7 +36,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   const spline::Space& space = *particle.space;
   stokes::Layer double_layer(stokes::Layer::Kernel::double_layer, space, space.collocation, quadrature);
   double_layer.set_shape(own);
-  double_layer.assemble(all, matrix);  // the double layer without the viscosity contrast, -D
+  stop_together([&] { double_layer.assemble(all, matrix); });  // the double layer without the viscosity contrast, -D
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature);
   layer.set_shape(own);
   const Vec3 centre = bodies.rest_centre(p);
@@ -47,7 +48,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
     }
     matrix += flat(at_sites) * bodies.mean_functional(p, k).transpose();
   }
-  factors->inverse = DenseFactors(matrix).inverse();
+  stop_together([&] { factors->inverse = DenseFactors(matrix).inverse(); });
   return factors;
 }
 

@@ -13,6 +13,7 @@ class BoundedFreeBody : public LoneRigidBody {
   void set_time(double time, double start) override {
     if (flow_.set_time(time, start)) position_ = {};
   }
+  std::string why_undefined() const override { return "the body would cross the wall"; }
   RigidMotion motion(const Net& position) const override { return solution(position).motion; }
   Net force_density(const Net& position) const override { return solution(position).density; }
   Mat3 stresslet(const Net& position) const override { return solution(position).stresslet; }

@@ -15,8 +15,9 @@
 #include "membrane/mass.hpp"
 #include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
-#include "system/targets/collocation.hpp"
+#include "system/parallel/stop_together.hpp"
 #include "system/rigid_motion.hpp"
+#include "system/targets/collocation.hpp"
 
 namespace tanktread::coupling {
 
@@ -47,7 +48,7 @@ Eigen::MatrixXd weighted_double_layer(const stokes::Sites& sites, const Eigen::S
   stokes::Rows<double> rows;
   for (int first = 0; first < n_sites; first += at_a_time) {
     const int last = std::min(first + at_a_time, n_sites);
-    layer.assemble(indices(last - first, first), rows);
+    stop_together([&] { layer.assemble(indices(last - first, first), rows); });
     for (int c = 0; c < 3; ++c)
       sum(Eigen::seq(c, Eigen::last, 3), Eigen::all) +=
           weights.middleCols(first, last - first) * Strided(rows.row(c).data(), last - first, rows.cols(), Eigen::OuterStride<>(3 * rows.cols()));

@@ -103,6 +103,7 @@ class Tube {
   /// latest call. `origin`: x1 coordinate of the origin of the frame of wall() if the wall is straight; by default the x1 coordinate of the
   /// particle's centroid. In a periodic channel, by default the x1 coordinate of the period that contains the particles.
   void set_shape(const Net& x, std::optional<double> origin = {});
+  void forget() { latest_shape_ = {}; }  ///< requires set_shape() before the next response, also if the shape does not change
 
   /// Returns the lattice of a periodic duct; not set for other ducts.
   const std::optional<stokes::PeriodicCell>& cell() const;
@@ -195,8 +196,8 @@ class Tube {
   bool fixed() const { return properties().fixed; }
   surface::DuctProperties properties() const { return surface::properties(wall().kind); }
 
-  /// Returns whether the points `rows` of x are inside the duct; in a channel, also between its ends.
-  bool inside(const Net& x, std::span<const int> rows) const;
+  /// Returns the first of the points `rows` of x that is not inside the duct or, in a channel, not between its ends; -1 if there is none.
+  Eigen::Index first_outside(const Net& x, std::span<const int> rows) const;
 
   const surface::TubeWall& wall() const;
   const stokes::DuctFlow& flow() const { return *flow_; }

@@ -150,9 +150,9 @@ double Tube::work(const WallResidual& residual, const Response& of) const {
   return dot(of.wall_traction, residual.velocity) - of.pressure_drop * residual.flow;
 }
 
-bool Tube::inside(const Net& x, std::span<const int> rows) const {
+Eigen::Index Tube::first_outside(const Net& x, std::span<const int> rows) const {
   const surface::TubeWall& wall = wall_->surface();
-  return std::ranges::all_of(rows, [&](int i) {
+  const auto first = std::ranges::find_if_not(rows, [&](int i) {
     const Vec3 place = x.row(i).transpose();
     switch (wall.kind) {
       case surface::DuctKind::straight_tube:
@@ -161,6 +161,7 @@ bool Tube::inside(const Net& x, std::span<const int> rows) const {
     }
     throw std::logic_error("unknown DuctKind");
   });
+  return first == rows.end() ? -1 : *first;
 }
 
 double Tube::gap() const {
@@ -179,7 +180,7 @@ double Tube::gap_to_channel_wall() const {
       surface::fundamental_elements(particle_->parameters.symmetry, static_cast<int>(particle_->space.elements.size()), points).element;
   const double radius = wall().radius(), nearest = surface::gap_to_wall(particle_->geometry.bezier(), particle_->shape, elements, wall_->boxes(),
                                                                         wall().period, 1e-5 * radius, radius);
-  return inside(particle_->sites(), indices(particle_->sites().rows())) ? nearest : -nearest;
+  return first_outside(particle_->sites(), indices(particle_->sites().rows())) < 0 ? nearest : -nearest;
 }
 
 }  // namespace tanktread::coupling

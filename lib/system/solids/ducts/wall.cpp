@@ -7,6 +7,7 @@
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
 #include "surface/geometry.hpp"
+#include "system/parallel/stop_together.hpp"
 #include "system/solids/ducts/channel_flow.hpp"
 #include "system/solids/ducts/congruence.hpp"
 
@@ -44,7 +45,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   if (cell_) find_null_vector();
   const surface::Symmetry of_wall = reflections(surface_, points_.sites());
   if (solver.iterates(WallFactors::bytes(of_wall, symmetry_), cell_.has_value())) {
-    patches_of_rows_.emplace(surface_, *on_itself_, symmetry_.fundamental());
+    stop_together([&] { patches_of_rows_.emplace(surface_, *on_itself_, symmetry_.fundamental()); });
     krylov_ = std::make_unique<Krylov>(IterativeOptions{.solver = "GMRES", .preconditioner = "recycled"});
   } else {
     factor(of_wall);
@@ -111,17 +112,23 @@ void Wall::factor(const surface::Symmetry& of_wall) {
       factors_.add(site, p, map.q * rows.template middleCols<3>(3 * from) * map.q.transpose());
     }
   };
-  for (std::size_t first = 0, last = 0; first < own.size(); first = last) {
-    std::vector<int> some, row;  // some: sites whose rows are assembled. row: for each site of `own`, index in `some` of the congruent site
-    for (; last < own.size() && some.size() < at_a_time; ++last) {
-      const int site = own[last] - own[last] % m + representative_of(own[last]).point;
-      if (some.empty() || some.back() != site) some.push_back(site);
-      row.push_back(static_cast<int>(some.size()) - 1);
+  const auto assemble = [&] {
+    for (std::size_t first = 0, last = 0; first < own.size(); first = last) {
+      std::vector<int> some,
+          row;  // some: sites whose rows are assembled. row: for each site of `own`, index in `some` of the congruent site
+      for (; last < own.size() && some.size() < at_a_time; ++last) {
+        const int site = own[last] - own[last] % m + representative_of(own[last]).point;
+        if (some.empty() || some.back() != site) some.push_back(site);
+        row.push_back(static_cast<int>(some.size()) - 1);
+      }
+      stokes::Rows<double> part;
+      points_.collocate<double>(
+          some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { assemble_rows(targets, rows); }, part);
+      for (std::size_t k = 0; k < row.size(); ++k)
+        add_rows(own[first + k], *representative_of(own[first + k]).from, part.middleRows<3>(3 * row[k]));
     }
-    stokes::Rows<double> part;
-    points_.collocate<double>(some, [&](std::span<const int> targets, stokes::Rows<double>& rows) { assemble_rows(targets, rows); }, part);
-    for (std::size_t k = 0; k < row.size(); ++k) add_rows(own[first + k], *representative_of(own[first + k]).from, part.middleRows<3>(3 * row[k]));
-  }
+  };
+  stop_together(assemble);
   if (cell_ && points_.ranks().rank() == 0) factors_.add_product(no_flux_.null_vector, no_flux_.flux_vector);
   factors_.factor(points_.ranks());
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "spline/point_search.hpp"
+#include "system/parallel/stop_together.hpp"
 #include "system/solids/ducts/wall_points.hpp"
 
 namespace tanktread::coupling {
@@ -120,7 +121,8 @@ void WallFactors::add_product(const Net& a, const Net& b) {
 void WallFactors::factor(const Ranks& ranks) {
   for (Block& block : blocks_) {
     const Eigen::Index n = block.matrix.rows();
-    block.factors = DenseFactors(ranks.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& sum) { sum = std::exchange(block.matrix, {}); }));
+    Eigen::MatrixXd all = ranks.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& sum) { sum = std::exchange(block.matrix, {}); });
+    stop_together([&] { block.factors = DenseFactors(std::move(all)); });
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "surface/geometry.hpp"
+#include "system/parallel/stop_together.hpp"
 #include "system/targets/collocation.hpp"
 
 namespace tanktread::coupling {
@@ -36,7 +37,7 @@ PlatesAndPosts::PlatesAndPosts(const std::vector<Solid>& solids, const Parameter
   for (const Solid& one : solids) {
     velocities_.middleRows(first_.back(), one.surface.n_points()).rowwise() = one.velocity.transpose();
     first_.push_back(first_.back() + one.surface.n_points());
-    if (one.outside) outside_.push_back(one.outside);
+    if (one.outside) outside_.emplace_back(one.outside, one.name);
   }
   areas_ = moments([](const Vec3&) { return 1.; });
   flux_ = surface_.open_from_periodic.transpose() * surface::Geometry(surface_.space).volume_gradient(surface_.net);
@@ -107,11 +108,11 @@ bool PlatesAndPosts::reaches(const Net& at) const {
   return low[2] >= reached_[0][2] - slack && high[2] <= reached_[1][2] + slack;
 }
 
-bool PlatesAndPosts::outside(const Net& at) const {
-  for (const auto& outside : outside_)
-    for (const auto row : at.rowwise())
-      if (!outside(row.transpose())) return false;
-  return true;
+PlatesAndPosts::Crossing PlatesAndPosts::crossing(const Net& at) const {
+  for (const auto& [outside, name] : outside_)
+    for (Eigen::Index i = 0; i < at.rows(); ++i)
+      if (!outside(at.row(i).transpose())) return {i, name};
+  return {};
 }
 
 /// Returns the rows of the single-layer matrix for control values of f (2.46) at `sites`, three rows per site.
@@ -137,11 +138,13 @@ void PlatesAndPosts::factor(stokes::Layer& on_itself) {
     all.topLeftCorner(n, n) = plates_->uniform();
   } else {
     all = ranks_.assembled<Eigen::MatrixXd>(n + m, n + m, [&](Eigen::MatrixXd& a) {
-      for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
-        const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
-        const Eigen::MatrixXd part = rows(on_itself, some);
-        for (std::size_t k = 0; k < some.size(); ++k) a.block(3 * some[k], 0, 3, n) = part.middleRows<3>(3 * static_cast<Eigen::Index>(k));
-      }
+      stop_together([&] {
+        for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
+          const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
+          const Eigen::MatrixXd part = rows(on_itself, some);
+          for (std::size_t k = 0; k < some.size(); ++k) a.block(3 * some[k], 0, 3, n) = part.middleRows<3>(3 * static_cast<Eigen::Index>(k));
+        }
+      });
     });
     for (std::size_t s = 0; s + 1 < first_.size(); ++s) {
       const Eigen::Index first = 3 * first_[s], length = 3 * first_[s + 1] - first;
@@ -155,7 +158,7 @@ void PlatesAndPosts::factor(stokes::Layer& on_itself) {
       all.col(n + k).segment<3>(3 * i) = free;
       all.row(n + k).segment<3>(3 * i) = (plates_ ? area(static_cast<std::size_t>(i)) : areas_[i]) * free.transpose();
     }
-  factors_ = DenseFactors(std::move(all));
+  stop_together([&] { factors_ = DenseFactors(std::move(all)); });
 }
 
 PlatesAndPosts::Flow PlatesAndPosts::solve(const Net& u, const Vec3& force) const {

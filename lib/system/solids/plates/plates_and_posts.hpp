@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/dense_factors.hpp"
@@ -38,6 +40,7 @@ class PlatesAndPosts {
     surface::SolidSurface surface;
     Vec3 velocity = Vec3::Zero();
     std::function<bool(const Vec3& x)> outside;  ///< returns whether x is in front of a plate, or outside of a post and its images; empty: always
+    std::string name;                            ///< name of the part, for messages
   };
 
   struct Parameters {
@@ -67,8 +70,14 @@ class PlatesAndPosts {
   /// Must be called before `velocity_at` and `layer`, again after another system that shares this object has called it. x must be equal on all ranks.
   void reach(const Net& x);
 
-  /// Returns whether all points `at` are outside of all solids (Solid::outside).
-  bool outside(const Net& at) const;
+  /// Point of a particle that is in a solid: its row, -1 if there is no such point, and the name of the solid.
+  struct Crossing {
+    Eigen::Index site = -1;
+    std::string solid;
+  };
+
+  /// Returns the first of the points `at` that is not outside of a solid (Solid::outside).
+  Crossing crossing(const Net& at) const;
 
   /// Returns the solution f, U of (2.46) for given right-hand sides: the velocity u at the collocation points, and the force F.
   Flow solve(const Net& u, const Vec3& force) const;
@@ -118,7 +127,7 @@ class PlatesAndPosts {
   std::vector<int> first_;  // index of the first collocation point of each solid; last entry: number of all collocation points
   Net normals_;                        // unit normals at the collocation points
   Net flux_;                           // int N_A n dGamma
-  std::vector<std::function<bool(const Vec3& x)>> outside_;  // Solid::outside of all solids that have it
+  std::vector<std::pair<std::function<bool(const Vec3& x)>, std::string>> outside_;  // Solid::outside and name of all solids that have it
   std::optional<PlateFactors> plates_;  // inverse of the operator by Fourier series; set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
                                         // each plate

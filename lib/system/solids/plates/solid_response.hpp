@@ -47,6 +47,7 @@ class SolidResponse {
   /// Sets the particles' control net; later calls use this shape. `at`: points on the particles at which `velocities` are needed. `own`: the rows
   /// that this rank computes.
   void set_shape(const Net& x, const Net& at, std::span<const int> own);
+  void forget() { shape_ = {}; }  ///< requires set_shape() before the next response, also if the shape does not change
 
   /// Returns the solution without particles.
   const PlatesAndPosts::Flow& empty();
