@@ -50,9 +50,9 @@ def the_series_of_a_run_are_a_table_with_names_and_units():
     check(sorted(found.columns) == sorted(series) and found.columns[0] == "time", found.columns)
     check(numpy.array_equal(found.values, numpy.transpose([series[name] for name in found.columns]), equal_nan=True), found.values)
     unit = dict(zip(found.columns, found.units))
-    check([unit[name] for name in ("time", "area", "volume", "drag", "evaluations")] == ["ms", "um^2", "um^3", "pN", None], unit)
-    said = package("read", "results", "--csv", "-s", "time", "velocity_x1").stdout
-    check(said.splitlines()[0] == "time (ms),velocity_x1 (um/ms)", said)
+    check([unit[name] for name in ("time", "area", "volume", "drag_x1", "kernel_evaluations")] == ["ms", "um^2", "um^3", "pN", None], unit)
+    said = package("read", "results", "--csv", "-s", "time", "drag_x1").stdout
+    check(said.splitlines()[0] == "time (ms),drag_x1 (pN)", said)
 
 
 def all_columns_are_returned_by_default():
