@@ -56,7 +56,8 @@ void find_shapes(ParticleKind& kind, const DeckPlaces& at, Scene& scene) {
 void prepare(deck::Document& deck, const DeckPlaces& places, Scene& scene) {
   deck.declare(scene);
   if (auto& outline = scene.tube.outline) find_and_keep(outline->path, own_name(outline->path), places, scene);
-  if (auto& channel = scene.tube.channel; channel && channel->points) find_and_keep(channel->points->path, own_name(channel->points->path), places, scene);
+  if (auto& channel = scene.tube.channel; channel && channel->points)
+    find_and_keep(channel->points->path, own_name(channel->points->path), places, scene);
   if (scene.tube.present && scene.flow.flow_rate) {
     scene.tube.check();
     scene.flow.complete(surface::outline(scene.tube).area());

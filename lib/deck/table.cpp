@@ -58,7 +58,9 @@ struct Wrong {
   std::string text;
 };
 
-std::string replaced(const std::string& text, const char* pattern, const char* by) { return std::regex_replace(text, std::regex(pattern), by); }
+std::string replaced(const std::string& text, const char* pattern, const char* by) {
+  return std::regex_replace(text, std::regex(pattern), by);
+}
 
 bool digits(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == text.npos; }
 
@@ -77,7 +79,8 @@ bool is_number(const std::string& field) { return number(field).has_value(); }
 
 bool is_unit(const std::string& text) {
   static const std::string one =
-      "(?:(?:milli|micro|nano|pico|centi|kilo)?(?:met(?:er|re)|second|newton|pascal|gram|joule|poise|dyne)s?|microns?|sec|min|minutes?|hours?"
+      "(?:(?:milli|micro|nano|pico|centi|kilo)?(?:met(?:er|re)|second|newton|pascal|gram|joule|poise|dyne)s?|microns?|sec|min|minutes?|"
+      "hours?"
       "|deg|degrees?|rad|radians?|px|pixels?|(?:[fpnumcdkMG]|µ|μ)?(?:m|s|N|Pas?|g|J|Hz|P|dyn)|h|°|%|1)"
       "(?:(?:\\^|\\*\\*)?(?:-|⁻)?(?:[0-9]|⁰|¹|²|³|⁴)?)?";
   static const std::regex unit(one + "(?:(?: |\\*|/|·|\\.)+" + one + ")*|-|–|");
@@ -86,8 +89,8 @@ bool is_unit(const std::string& text) {
 
 /// Returns the name in lower case without blanks and underscores. Names with the same meaning have the same key.
 std::string key(const std::string& name) {
-  static const std::map<std::string, std::string> synonyms{{"x", "x1"}, {"y", "x2"}, {"z", "x3"}, {"points:0", "x1"}, {"points:1", "x2"},
-                                                           {"points:2", "x3"}, {"t", "time"}};
+  static const std::map<std::string, std::string> synonyms{{"x", "x1"},        {"y", "x2"},        {"z", "x3"},  {"points:0", "x1"},
+                                                           {"points:1", "x2"}, {"points:2", "x3"}, {"t", "time"}};
   const std::string plain = lower_case(replaced(name, "[\\s_]", ""));
   const auto found = synonyms.find(plain);
   return found == synonyms.end() ? plain : found->second;
@@ -97,7 +100,8 @@ std::pair<std::string, std::string> name_and_unit(const std::string& field) {
   const std::string text = replaced(field, "^[\\s,;:]+|[\\s,;:]+$", "");
   // the unit is in brackets, after a slash or a comma, or the last word
   for (const char* pattern : {"(.*?)\\s*[\\[(]\\s*(.*?)\\s*[\\])]", "(.+?)\\s*/\\s*(.+)", "(.+),\\s*(.+)", "(.+)[ _]([^\\s\\d-]\\S*)"})
-    if (std::smatch found; std::regex_match(text, found, std::regex(pattern)) && is_unit(found[2])) return {found[1], found.str(2).empty() ? "-" : found.str(2)};
+    if (std::smatch found; std::regex_match(text, found, std::regex(pattern)) && is_unit(found[2]))
+      return {found[1], found.str(2).empty() ? "-" : found.str(2)};
   return {text, ""};
 }
 
@@ -107,8 +111,10 @@ Texts fields(const std::string& text, char separator) {
   bool quoted = false;
   for (const char c : separator == ' ' ? trimmed(text) : text) {
     quoted ^= c == '"';
-    if (c != separator || quoted) found.back() += c;
-    else if (separator != ' ' || !found.back().empty()) found.emplace_back();
+    if (c != separator || quoted)
+      found.back() += c;
+    else if (separator != ' ' || !found.back().empty())
+      found.emplace_back();
   }
   for (std::string& field : found) {
     field = trimmed(field);
@@ -118,12 +124,12 @@ Texts fields(const std::string& text, char separator) {
   return found;
 }
 
-/// Returns the fields of a line of `count` names, or nothing if it is no such line. `own`: whether it has the separator of the rows; otherwise another
-/// one.
+/// Returns the fields of a line of `count` names, or nothing if it is no such line. `own`: whether the line has the separator of the rows; if not, it
+/// may have another one.
 Texts names(const std::string& text, char separator, std::size_t count, bool own) {
   std::vector<Texts> tries{fields(text, separator)};
   if (separator == ' ' || (!own && text.find(separator) == text.npos)) {
-    const std::string joined = replaced(text, "\\s+(?=[\\[(])|\\s*(/)\\s*", "$1");  // without blanks before units
+    const std::string joined = replaced(text, "\\s+(?=[\\[(])|\\s*(/)\\s*", "$1");             // without blanks before units
     if (separator != ',') tries = {fields(text, ';'), fields(text, '\t'), fields(text, ',')};  // 0,5 below a;b may be one number
     tries.insert(tries.end(), {fields(replaced(trimmed(text), " {2,}", "\t"), '\t'), fields(joined, ' '), fields(text, ' ')});
   }
@@ -154,7 +160,8 @@ std::optional<Header> header(const std::vector<Line>& lines, bool head, char sep
       std::tie(found.names[k], found.units[k]) = name_and_unit(found.names[k]);
       if (!below[k].empty()) found.units[k] = below[k];
       if (found.units[k] == "-" || found.units[k] == "–") found.units[k] = "1";
-      known = known || !found.units[k].empty() || std::ranges::count(form.columns, key(found.names[k]), [](const auto& one) { return key(one.name); });
+      known = known || !found.units[k].empty() ||
+              std::ranges::count(form.columns, key(found.names[k]), [](const auto& one) { return key(one.name); });
     }
     if (known) return found;
   }
@@ -173,9 +180,12 @@ std::vector<std::size_t> order(const Texts& names, const TableForm& form) {
   for (const TableColumn& column : form.columns) {
     const auto at = std::ranges::find(keys, key(column.name));
     if (std::ranges::count(keys, key(column.name)) > 1) return {};
-    if (at != keys.end()) picked.push_back(static_cast<std::size_t>(at - keys.begin()));
-    else if (const std::size_t k = picked.size(); column.any_name && !missing) missing = k, picked.push_back(names.size());
-    else if (k < form.counts.front()) return {};
+    if (at != keys.end())
+      picked.push_back(static_cast<std::size_t>(at - keys.begin()));
+    else if (const std::size_t k = picked.size(); column.any_name && !missing)
+      missing = k, picked.push_back(names.size());
+    else if (k < form.counts.front())
+      return {};
   }
   for (std::size_t k = 0; k < names.size(); ++k)
     if (std::ranges::count(picked, k) == 0 && !std::ranges::count(Texts{"", "id", "index", "no", "nr"}, keys[k])) {
@@ -197,8 +207,9 @@ void check(const std::vector<Fields>& rows, char separator) {
       if (!value) throw Wrong{row.line, field.empty() ? "a value is missing" : in_quotes(shortened(field, 80)) + " is not a number"};
       if (!(std::abs(*value) < 1e75)) throw Wrong{row.line, in_quotes(field) + " is not a number below 1e75 in size"};
       if ((separator == ',' || separator == ' ') && field.size() > 1 && field.front() == '0' && digits(field))
-        throw Wrong{row.line, in_quotes(field) + " may be the end of a number: decimal commas need semicolons or tabs between the columns, and "
-                                                 "separators of thousands are not accepted"};
+        throw Wrong{row.line, in_quotes(field) +
+                                  " may be the end of a number: decimal commas need semicolons or tabs between the columns, and "
+                                  "separators of thousands are not accepted"};
       if (field.find(',') != field.npos) {
         if (!commas) commas = &row, comma = field;
         thousands = thousands && std::regex_match(field, std::regex("[+-]?[1-9]\\d{0,2},\\d{3}"));
@@ -211,8 +222,8 @@ void check(const std::vector<Fields>& rows, char separator) {
                                 (n == count ? "" : formatted(", but the first row %zu", count))};
   }
   if (commas && points)
-    throw Wrong{commas->line, formatted("\"%s\" has a decimal comma, but \"%s\" in line %d has a decimal point", comma.c_str(), point.c_str(),
-                                        points->line)};
+    throw Wrong{commas->line, formatted("\"%s\" has a decimal comma, but \"%s\" in line %d has a decimal point", comma.c_str(),
+                                        point.c_str(), points->line)};
   if (commas && thousands)
     throw Wrong{commas->line, formatted("\"%s\" may be %s or %s: write decimal points, and no separators of thousands", comma.c_str(),
                                         replaced(comma, ",", ".").c_str(), replaced(comma, ",", "").c_str())};
@@ -228,7 +239,8 @@ Content content(const std::vector<Line>& lines, char separator) {
       continue;
     }
     for (const std::string& field : row.texts)
-      if (std::regex_match(lower_case(field), std::regex("nan|n/?a|null|none|[+-]?inf"))) throw Wrong{line.number, in_quotes(field) + " is not a number"};
+      if (std::regex_match(lower_case(field), std::regex("nan|n/?a|null|none|[+-]?inf")))
+        throw Wrong{line.number, in_quotes(field) + " is not a number"};
     found.head.push_back(line);
   }
   if (found.rows.empty()) throw Wrong{lines.front().number, "no row of numbers follows"};
@@ -248,14 +260,18 @@ void check_unnamed(const std::vector<Fields>& rows, char separator, const TableF
       halves = digits(field.substr(sign)) && (k % 2 == 0 || separator == ',' || field.size() == 3);
     }
   if (halves)
-    throw Wrong{rows.front().line, formatted("these may be %zu whole numbers, or %zu with decimal commas or separators of thousands: name the columns "
-                                             "in the first line, or write decimal points", count, count / 2)};
+    throw Wrong{rows.front().line,
+                formatted("these may be %zu whole numbers, or %zu with decimal commas or separators of thousands: name the columns "
+                          "in the first line, or write decimal points",
+                          count, count / 2)};
 }
 
 /// Returns the number of the deck's units of a column in the unit that the file states; 1 if it states none.
 double factor(const TableColumn& column, const std::string& unit, int line, const Units* deck) {
   if (unit.empty() || (unit == "1" && (column.unit == "1" || !deck))) return 1;
-  const auto refuse = [&](const std::string& why) { throw Wrong{line, "the column " + column.name + " has the unit " + unit + ", but " + why}; };
+  const auto refuse = [&](const std::string& why) {
+    throw Wrong{line, "the column " + column.name + " has the unit " + unit + ", but " + why};
+  };
   if (column.unit == "degree" && (unit.starts_with("deg") || unit == "°")) return 1;
   if (!deck) refuse("the deck has no section Units: add it, or remove the unit from this line");
   try {
@@ -266,7 +282,8 @@ double factor(const TableColumn& column, const std::string& unit, int line, cons
   return 1;
 }
 
-std::vector<TableRow> table(const Content& content, const std::vector<Line>& notes, char separator, const TableForm& form, const Units* deck) {
+std::vector<TableRow> table(const Content& content, const std::vector<Line>& notes, char separator, const TableForm& form,
+                            const Units* deck) {
   const std::size_t count = content.rows.front().texts.size();
   std::vector<Line> last;  // comments directly before the first row
   for (const Line& note : notes)
@@ -300,11 +317,15 @@ std::vector<TableRow> table(const Content& content, const std::vector<Line>& not
 std::string in_utf8(std::string text) {
   int rest = 0;  // number of bytes that continue a character
   for (const unsigned char c : text)
-    if ((c & 0xC0) == 0x80 ? --rest < 0 : rest > 0) break;
-    else if (c >= 0xC0) rest = c < 0xE0 ? 1 : c < 0xF0 ? 2 : 3;
+    if ((c & 0xC0) == 0x80 ? --rest < 0 : rest > 0)
+      break;
+    else if (c >= 0xC0)
+      rest = c < 0xE0 ? 1 : c < 0xF0 ? 2 : 3;
   if (rest != 0) {
     std::string wider;
-    for (const unsigned char c : text) wider += c < 0x80 ? std::string(1, static_cast<char>(c)) : std::string{static_cast<char>(c >> 6 | 0xC0), static_cast<char>((c & 0x3F) | 0x80)};
+    for (const unsigned char c : text)
+      wider += c < 0x80 ? std::string(1, static_cast<char>(c))
+                        : std::string{static_cast<char>(c >> 6 | 0xC0), static_cast<char>((c & 0x3F) | 0x80)};
     text = std::move(wider);
   }
   const std::string minus = "\u2212";
@@ -338,7 +359,9 @@ std::vector<TableRow> read_table(const TableFile& file, const std::string& what,
   const std::string expected = "expected are " + joined(counts, " or ") + " columns of numbers, " + joined(columns, ", ") +
                                (form.word.empty() ? "" : ", and where it applies the word `" + form.word + "`") + ".";
   if (lines.empty()) throw UserError(what + " holds no numbers; " + expected);
-  const auto present = [&](char one) { return std::ranges::any_of(lines, [&](const Line& line) { return trimmed(line.text).find(one) != line.text.npos; }); };
+  const auto present = [&](char one) {
+    return std::ranges::any_of(lines, [&](const Line& line) { return trimmed(line.text).find(one) != line.text.npos; });
+  };
   std::optional<Content> found;
   Wrong wrong{0, ""};  // mistake with the separator that fits the most lines
   char separator = ' ';
@@ -356,8 +379,8 @@ std::vector<TableRow> read_table(const TableFile& file, const std::string& what,
     return table(*found, notes, separator, form, file.units.get());
   } catch (const Wrong& mistake) {
     throw UserError(what + formatted(", line %d, ", mistake.line) +
-                    (present(separator) ? std::string("columns separated by ") + names_of_separators.at(separator) : "no separator") + ": " +
-                    mistake.text + "; " + expected);
+                    (present(separator) ? std::string("columns separated by ") + names_of_separators.at(separator) : "no separator") +
+                    ": " + mistake.text + "; " + expected);
   }
 }
 

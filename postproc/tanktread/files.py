@@ -14,14 +14,27 @@ from .mistakes import Mistake, expect
 yaml_text = functools.partial(yaml.load, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
 
+def bytes_of(path):
+    """Returns the content of a regular file. A device, which may have no end, is not read."""
+    expect(pathlib.Path(path).exists(), f"there is no file {path}")
+    expect(pathlib.Path(path).is_file(), f"{path} is a directory or a device, not a file")
+    try:
+        return pathlib.Path(path).read_bytes()
+    except OSError as error:
+        raise Mistake(f"{path} cannot be read: {error.strerror}") from None
+
+
 def parsed(path, parse=yaml_text, kind=object):
     """Returns parse(text) of a file in UTF-8. Raises Mistake if it is not of this kind, such as dict."""
+    data = bytes_of(path)
     try:
-        found = parse(pathlib.Path(path).read_text(encoding="utf-8"))
+        found = parse(data.decode("utf-8"))
     except yaml.YAMLError as error:
         raise Mistake(f"{path} is not YAML: {error}") from None
-    except (OSError, ValueError) as error:
-        raise Mistake(f"{path} cannot be read: {getattr(error, 'strerror', error)}") from None
+    except UnicodeDecodeError:
+        raise Mistake(f"{path} is no text in UTF-8") from None
+    except ValueError as error:
+        raise Mistake(f"{path} cannot be read: {error}") from None
     expect(isinstance(found, kind), f"{path} is damaged: it holds no section of keys with values")
     return found
 

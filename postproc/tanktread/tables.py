@@ -8,11 +8,11 @@
 - What has two meanings is refused: 1,234 may be a thousand, and 0,5,1,2 may be two numbers or four."""
 
 import dataclasses
-import pathlib
 import re
 
 import numpy
 
+from .files import bytes_of
 from .mistakes import Mistake, expect
 
 SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", " ": "spaces"}
@@ -52,12 +52,7 @@ class _Wrong(Exception):
 
 
 def _text_of(path):
-    expect(pathlib.Path(path).exists(), f"there is no file {path}")
-    expect(pathlib.Path(path).is_file(), f"{path} is a directory or a device, not a file")
-    try:
-        data = pathlib.Path(path).read_bytes()
-    except OSError as error:
-        raise Mistake(f"{path} cannot be read: {error.strerror}") from None
+    data = bytes_of(path)
     expect(b"\0" not in data and data[:2] not in (b"\xff\xfe", b"\xfe\xff"),
            f"{path} is a workbook, another binary file, or text in UTF-16: save the table as CSV in UTF-8")
     try:

@@ -45,6 +45,18 @@ Tanktread:
   Quadrature: { tolerance: 1.0e-3 }
   Time: { scheme: bs3, fixed step: 0.001, final time: 0.001 }
 """
+SEVERAL = """
+Tanktread:
+  Flow: { type: %s }
+  Particles:
+    defaults: { %s Membrane: { law: Skalak, shear modulus: 3 }, Surface: { elements per side: 4, extraordinary points: catmull-clark } }
+    soft: { center: [-3, 0, 0], Membrane: { law: Skalak, shear modulus: 1 } }
+    hard: { center: [3, 0, 0] }
+  Quadrature: { tolerance: 1.0e-3 }
+  Time: { scheme: bs3, fixed step: 0.02, final time: 0.04 }
+"""
+MEASURES = "taylor_inertia", "inclination", "area", "volume"
+CENTRE = "centroid_x1", "centroid_x2", "centroid_x3"
 ADAPTS = "  Adaptation: { enabled: true, interval: 1, surface tolerance: 1.0e-4 }\n"
 
 SPHEROID = """
@@ -85,9 +97,33 @@ def a_run_whose_deck_names_its_particle_is_the_run_of_one_particle():
     run(deck(THEN % "run: first" + ADAPTS), "--output", "then", "--quiet")
     for name in ("taylor_inertia", "area"):
         close(series("then", name)[0], series("first", "cell/" + name)[-1], 1e-9, name)
-    run(deck(NAMED), "--output", "two", "--quiet", "--set", "Particles/cell/copies/lattice=[2, 1, 1]", "--set", "Particles/cell/copies/spacing=[4, 4, 4]")
-    said = run(deck(THEN % "run: two" + ADAPTS), "--output", "wrong", "--quiet", code=2).stderr
-    check("two is a run of several particles" in said, said)
+
+
+def particles_start_from_those_of_a_run_of_several():
+    """One particle of the run; all of them, each from the one with its name, also copies on a refined mesh."""
+    run(deck(SEVERAL % ("planar hyperbolic", "")), "--output", "two", "--quiet")
+    run(deck(THEN % "run: two, particle: hard" + "  Quadrature: { tolerance: 1.0e-3 }\n"), "--output", "one", "--quiet", "--set", "Time/final time=0.01")
+    for name in *MEASURES, *CENTRE:
+        close(series("one", name)[0], series("two", f"hard/{name}")[-1], 1e-9, name)
+    run(deck(SEVERAL % ("quiescent", "initial shape: { run: two },")), "--output", "all", "--quiet")
+    run(deck(SEVERAL % ("quiescent", "initial shape: { run: two, particle: soft },")), "--output", "equal", "--quiet", "--set", "Particles/hard/center=[3, 0, 0]",
+        "--set", "Particles/hard/initial shape/particle=hard")
+    for particle in "soft", "hard":
+        for name in *MEASURES, *CENTRE:
+            close(series("all", f"{particle}/{name}")[0], series("two", f"{particle}/{name}")[-1], 1e-9, f"{particle}/{name}")
+            check(series("all", f"{particle}/{name}")[0] == series("equal", f"{particle}/{name}")[0], name)
+    check(abs(series("all", "soft/taylor_inertia")[0] - series("all", "hard/taylor_inertia")[0]) > 1e-6, "equal shapes")
+    copies = ["--set", "Particles/cell/copies/lattice=[2, 1, 1]", "--set", "Particles/cell/copies/spacing=[4, 4, 4]", "--quiet"]
+    run(deck(NAMED), "--output", "copies", *copies)
+    run(deck(NAMED.replace("planar hyperbolic", "quiescent").replace("cell:", "cell:\n      initial shape: { run: copies }").replace(
+        "capillary number: 0.3", "shear modulus: 1")), "--output", "again", *copies)
+    for copy in "cell 1", "cell 2":
+        for name in *MEASURES, *CENTRE, "n_control_points":
+            close(series("again", f"{copy}/{name}")[0], series("copies", f"{copy}/{name}")[-1], 1e-9, f"{copy}/{name}")
+    for which, words in (("run: two", "must be one of the particles of two, `soft` or `hard`."), ("run: two, particle: sotf", "`soft` or `hard`, but is \"sotf\"."),
+                         ("particle: hard, stretch: [1, 1, 1]", "initial shape/particle needs Particle/initial shape/run")):
+        said = run(deck(THEN % which), "--output", "wrong", "--quiet", code=2).stderr
+        check(words in said and said.count("\n") == 1, said)
 
 
 def a_run_that_starts_from_its_own_directory_keeps_the_shape():

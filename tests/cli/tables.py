@@ -12,7 +12,7 @@ from harness import PROGRAM, SOURCE, check, deck, main, package, run
 os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
-from tanktread import tables
+from tanktread import files, tables
 
 
 def foreign_tables_are_read_or_refused_in_one_sentence():
@@ -32,11 +32,13 @@ def foreign_tables_are_read_or_refused_in_one_sentence():
 
 def a_file_that_cannot_be_read_is_refused():
     pathlib.Path("folder").mkdir()
-    for path, words in (("none.csv", "there is no file none.csv"), ("folder", "folder is a directory"), ("/dev/zero", "/dev/zero is a directory or a device")):
-        try:
-            check(not tables.read(path), path)
-        except tanktread.Mistake as mistake:
-            check(words in str(mistake), mistake)
+    pathlib.Path("binary").write_bytes(b"\xff\x00")
+    for path, words in (("none.csv", "there is no file none.csv"), ("folder", "folder is a directory"), ("/dev/zero", "/dev/zero is a directory or a device"), ("binary", "binary is")):
+        for read in tables.read, files.parsed:
+            try:
+                check(not read(path), path)
+            except tanktread.Mistake as mistake:
+                check(str(mistake).startswith(words), mistake)
 
 
 def the_series_of_a_run_are_a_table_with_names_and_units():
@@ -48,9 +50,9 @@ def the_series_of_a_run_are_a_table_with_names_and_units():
     check(sorted(found.columns) == sorted(series) and found.columns[0] == "time", found.columns)
     check(numpy.array_equal(found.values, numpy.transpose([series[name] for name in found.columns]), equal_nan=True), found.values)
     unit = dict(zip(found.columns, found.units))
-    check([unit[name] for name in ("time", "area", "volume", "drag", "evaluations")] == ["ms", "um^2", "um^3", "pN", None], unit)
-    said = package("read", "results", "--csv", "-s", "time", "velocity_x1").stdout
-    check(said.splitlines()[0] == "time (ms),velocity_x1 (um/ms)", said)
+    check([unit[name] for name in ("time", "area", "volume", "drag_x1", "kernel_evaluations")] == ["ms", "um^2", "um^3", "pN", None], unit)
+    said = package("read", "results", "--csv", "-s", "time", "drag_x1").stdout
+    check(said.splitlines()[0] == "time (ms),drag_x1 (pN)", said)
 
 
 def all_columns_are_returned_by_default():

@@ -81,17 +81,21 @@ TEST_F(Tables, WithUnitsAreInTheUnitsOfTheDeck) {
   EXPECT_EQ(read("angle (deg);x (mm);time (s)\n90;0,5;2\n", form, &units).first, (Rows{{2000, 500, 90}}));
   EXPECT_EQ(read("time,x1,angle\n1,2.5,3\n", form, &units).first, (Rows{{1, 2.5, 3}}));
   EXPECT_EQ(read("time (s),x1,angle\n1,2.5,3\n", form).second,
-            "The table, line 1, columns separated by commas: the column time has the unit s, but the deck has no section Units: add it, or remove the "
+            "The table, line 1, columns separated by commas: the column time has the unit s, but the deck has no section Units: add it, or "
+            "remove the "
             "unit from this line; expected are 3 columns of numbers, time, x1, angle.");
-  EXPECT_NE(read("time (um),x1,angle\n1,2.5,3\n", form, &units).second.find("has the unit um, but this is not a known unit of time"), std::string::npos);
+  EXPECT_NE(read("time (um),x1,angle\n1,2.5,3\n", form, &units).second.find("has the unit um, but this is not a known unit of time"),
+            std::string::npos);
 }
 
 TEST_F(Tables, MayHaveAWordAtTheEndOfARow) {
   const TableForm form{{{"x2", "length"}, {"x3", "length"}}, {2}, "corner"};
   EXPECT_EQ(read("x2,x3,corner\n0,1,corner\n0.5,1,\n1,0\n", form).first, (Rows{{0, 1}, {0.5, 1}, {1, 0}}));
   EXPECT_EQ(marks_, 1);
-  EXPECT_NE(read("0,1,edge\n", form).second.find("\"edge\" is not a number; expected are 2 columns of numbers, x2, x3, and where it applies the word "
-                                                 "`corner`."), std::string::npos);
+  EXPECT_NE(read("0,1,edge\n", form)
+                .second.find("\"edge\" is not a number; expected are 2 columns of numbers, x2, x3, and where it applies the word "
+                             "`corner`."),
+            std::string::npos);
 }
 
 }  // namespace
