@@ -118,7 +118,7 @@ TEST(Warnings, ReportAVesicleInAFlow) {
                                          "Membrane/global area dilatation=1000"};
   std::vector<std::string> resting = vesicle, drop = vesicle;
   resting.emplace_back("Flow/type=quiescent"), drop.back() = "Particle/viscosity ratio=2";
-  EXPECT_TRUE(names(at_start(vesicle), "area points 1"));
+  EXPECT_TRUE(names(at_start(vesicle), "Membrane/area points to 1"));
   EXPECT_EQ(at_start(resting), "");
   EXPECT_EQ(at_start(drop), "");
 }
