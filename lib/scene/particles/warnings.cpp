@@ -20,8 +20,8 @@ constexpr double grown = 5;
 constexpr int limited_steps = 10;
 constexpr double folding = 0.05;    // warning threshold of jacobian_ratio, which is at least 0.5 on uniform elements and 0.1 at a degenerate pole
 constexpr double slenderness = 10;  // threshold of aspect_ratio
-// threshold of surface::Quality::tilt, radians: two elements across a rounded tip. Lengths err by 1 % to 4 % above it, by less than 0.5 % below it
-constexpr double sharpness = 0.65;
+// threshold of surface::Quality::tilt, radians: two elements across a rounded tip. Lengths err by up to 4 % above it, by at most 1 % below it
+constexpr double sharpness = 0.7;
 constexpr double lost_volume = 1e-3;
 // threshold of K/G_s and K R_C^2/E_b, with the modulus K of the total area. If both are above it, time steps become very small
 constexpr double stiff_area = 3e4;
