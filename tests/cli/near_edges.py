@@ -42,6 +42,23 @@ def a_total_area_modulus_that_needs_many_steps_is_reported():
     check(len(many[0]) == len(many[1]) == 1 and "of 1e4" in many[0][0], many)
 
 
+def a_stiff_area_that_locks_the_mesh_is_reported_before_the_run_and_the_remedy_ends_the_warning():
+    stiff = ["Membrane/law=Skalak", "Membrane/area dilatation=1e3", "Time/final time=0.01"]
+    plan = run(deck(DECK), "--check", "--quiet", *(word for setting in stiff for word in ("--set", setting))).stdout
+    check("warning" in plan.split("\nplan")[1] and "set Membrane/area points to 1" in plan, plan)
+    told, kept = _said(*stiff)
+    check(len(told) == len(kept) == 1 and kept[0] in told[0] and "set Membrane/area points to 1" in kept[0], told, kept)
+    check(_said(*stiff, "Membrane/area points=1") == ([], []), "the remedy")
+
+
+def a_tip_that_the_mesh_does_not_resolve_is_reported_and_refinement_resolves_it():
+    drawn = ["Flow/type=planar hyperbolic", "Membrane/law=Skalak", "Membrane/capillary number=0.8", "Time/final time=1.5", "Time/tolerance=1e-3"]
+    told, kept = _said(*drawn)
+    check(len(told) == len(kept) == 1 and "turns by" in kept[0] and "Adaptation/enabled" in kept[0], told, kept)
+    cured, _ = _said(*drawn, "Surface/elements per side=6", "Adaptation/enabled=true")
+    check(not any("turns by" in line for line in cured), cured)
+
+
 def a_fixed_step_beyond_the_stability_limit_is_reported_before_the_run_fails():
     told, _ = _said("Time/scheme=bs3", "Time/fixed step=0.3", "Membrane/capillary number=0.1", "Time/final time=30", code=3)
     check(any("Time/scheme" in line for line in told), told)

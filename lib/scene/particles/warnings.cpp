@@ -20,8 +20,8 @@ constexpr double grown = 5;
 constexpr int limited_steps = 10;
 constexpr double folding = 0.05;    // warning threshold of jacobian_ratio, which is at least 0.5 on uniform elements and 0.1 at a degenerate pole
 constexpr double slenderness = 10;  // threshold of aspect_ratio
-// threshold of surface::Quality::tilt, radians: two elements across a rounded tip. Lengths err by 1 % to 4 % above it, by less than 0.5 % below it
-constexpr double sharpness = 0.65;
+// threshold of surface::Quality::tilt, radians: two elements across a rounded tip. Lengths err by up to 4 % above it, by at most 1 % below it
+constexpr double sharpness = 0.7;
 constexpr double lost_volume = 1e-3;
 // threshold of K/G_s and K R_C^2/E_b, with the modulus K of the total area. If both are above it, time steps become very small
 constexpr double stiff_area = 3e4;
@@ -81,13 +81,13 @@ std::vector<Warning> choices(const ParticleScene& one) {
       "the total area is so stiff that many time steps are needed: a Membrane/global area dilatation of 1e4 conserves it nearly as well");
   add(locking(one) >= locked, "locking",
       formatted("the mesh locks, because the area, with a modulus of %.3g G_s, is resisted at all points of an element: many steps are needed, and "
-                "deformations err by 1 %% or more; ",
+                "lengths can err by several per cent; ",
                 1 + 2 * locking(one)) +
           area_points(one));
   add(!one.particle.rigid() && given.fluid_interface() && k > 0 && one.flow.type != "quiescent", "vesicle",
-      "of a vesicle only the total area is kept, not that of each part, which is exact at rest only: in shear its inclination is 2 to 4 degrees too "
-      "small (reduced volume 0.9); set Membrane/law to Skalak, with capillary number 5 (instead of surface tension), area dilatation 1000 and area "
-      "points 1");
+      "only the total area of a vesicle is kept, not that of each part: this is exact at rest, but in shear the inclination is 2 to 4 degrees too small "
+      "(reduced volume 0.9); set Membrane/law to Skalak, Membrane/capillary number (instead of Membrane/surface tension) to 5, Membrane/area "
+      "dilatation to 1000 and Membrane/area points to 1");
   return found;
 }
 
