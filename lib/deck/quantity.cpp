@@ -77,7 +77,7 @@ bool is_product_of_words(const std::string& unit) {
 
 std::string working_spelling(const std::string& text) {
   if (text.size() > longest) return {};
-  static const std::regex before(R"(^[^-+.\w]+)"), separated(R"(([-+]?\d+)((?:[,' ]\d+)+)((?:\.\d+)?)(|[^-+,'.\d].*))");
+  static const std::regex before(R"(^(?:[^-+.\w]+|[A-Za-z]+\.? ))"), separated(R"(([-+]?\d+)((?:[,' ]\d+)+)((?:\.\d+)?)(|[^-+,'.\d].*))");
   std::smatch parts;
   const std::string ascii = in_ascii(text), plain = std::regex_replace(ascii, before, "");
   std::vector<std::string> works;
@@ -92,7 +92,7 @@ std::string working_spelling(const std::string& text) {
   } else if (const auto value = quantity(plain); value && (value->unit.empty() || plain != ascii)) {
     works = {value->unit.empty() ? number_text(value->number) : plain};
   }
-  return works.empty() ? "" : "; write " + alternatives(works);
+  return works.empty() || works.front() == text ? "" : "; write " + alternatives(works);
 }
 
 }  // namespace tanktread::deck

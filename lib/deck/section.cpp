@@ -46,10 +46,11 @@ Value value_of(const std::vector<double>& numbers) {
   else return Eigen::Map<const Eigen::Matrix<double, Value::ColsAtCompileTime, Value::RowsAtCompileTime>>(numbers.data()).transpose();
 }
 
-/// Returns whether a text begins with a number followed by other characters, such as a unit, but not by a comma, as in a list without brackets.
+/// Returns whether a text begins with a number followed by other characters, such as a unit, but not by a comma, as in a list without brackets, or
+/// by digits, as in `1 000`.
 bool has_unit(const std::string& text) {
   const std::optional<Quantity> given = quantity(text);
-  return given && !given->unit.empty() && given->unit.front() != ',';
+  return given && !given->unit.empty() && given->unit.front() != ',' && (!std::isdigit(static_cast<unsigned char>(given->unit.front())) || given->unit.starts_with("1/"));
 }
 
 /// Returns the end of a sentence about a refused value of `size` numbers: the spelling of a number that works, if the deck has another one.

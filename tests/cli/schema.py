@@ -78,7 +78,7 @@ def every_deck_of_new_is_valid():
     kinds = re.search(r"commented deck of this kind: (.*?) --", re.sub(r"\s+", " ", run("--help").stdout))[1]
     kinds = re.findall(r"[\w-]+", kinds.replace(" or ", " "))
     check(len(kinds) >= 5, kinds)
-    numbers = {"capsule": ["capillary_number 0.3,"], "drop": ["capillary_number 0.05,"], "tube": ["capillary_number 0.05,", "confinement 0.88,"],
+    numbers = {"capsule": ["capillary_number 0.3,"], "drop": ["capillary_number 0.05,"], "tube": ["capillary_number 0.05,", "confinement 0.8,"],
                "red-cell": ["capillary_number 0.497", "bending_number 0.005"]}
     for kind in kinds:
         text = run("--new", kind).stdout
@@ -87,6 +87,8 @@ def every_deck_of_new_is_valid():
         plan = run(f"{kind}.yaml", "--check").stdout
         check(" Units:\n" in text and re.search(r"viscosity: \d+ mPa s\n", text) and "  unusual" not in plan, kind, text)
         check(all(f" {name}" in plan for name in numbers.get(kind, ())), kind, plan)
+    for path in "red-cell.yaml", *(SOURCE / "inputs").glob("red_cell*.yaml"):  # with which the measured disc is at rest
+        check("bending reference: unstressed" in run(path, "--check").stdout, path)
         check(text.count("#") > text.count(": ") / 3, kind, "is not commented")
     said = run("--new", "capsul", code=2).stderr
     check("capsule" in said and said.count("\n") == 1, said)

@@ -227,7 +227,7 @@ TEST(ForeignLists, OverrideTheDefaultsOfTheirOwner) {
 
 TEST(Schemas, StateTheTypeOfEveryKey) {
   const std::string text = schema(Sample{});
-  const std::string dimensional = R"({"type": ["number", "string"], "pattern": "^[-+.0-9]")";
+  const std::string dimensional = R"({"type": ["number", "string"], "pattern": "^[-−+.0-9]")";
   for (const std::string& key :
        {R"("shear rate": )" + dimensional + R"(, "exclusiveMinimum": 0, "description": "rate of the flow [1/time]; default 1.0"})",
         std::string(R"("count": {"type": "integer", "minimum": 1, "maximum": 9, "description": "how many; default 3"})"),
