@@ -306,6 +306,7 @@ TEST(Evaluations, OfAParticleThatCrossesAnotherPartNameBoth) {
     Phases phases;
     const auto particles = make_particle_system(all, ranks, phases);
     const Net start = particles->start();
+    particles->dynamics().set_time(0, 0);
     EXPECT_TRUE(particles->dynamics().velocity(start).allFinite());
     EXPECT_FALSE(particles->dynamics().velocity(start.rowwise() + shift.transpose()).allFinite());
     const std::string why = particles->dynamics().why_undefined();
