@@ -106,8 +106,13 @@ class SteadyRun : protected AnyRun {
     const motion::Approach way = motion::approach_steady(equations, scene_.steady, scene_.solvers, reached);
     chosen_.emplace_back("search", way.text());
     if (prints()) std::printf("  %s\n", way.text().c_str());
-    if (way.arrived()) x = std::move(reached);
-    return way.arrived() ? way.last : failed;
+    if (way.arrived()) {
+      x = std::move(reached);
+      return way.last;
+    }
+    motion::SteadyReport lost = failed;
+    if (!way.amplitudes.empty() && way.last.why.empty()) lost.why.clear();  // the obstacle is only on the way of the search, as beyond a fold
+    return lost;
   }
 
   /// Computes the velocity of the current shape and, if it was found, its modes, and records its row and snapshot. If the computation of the modes

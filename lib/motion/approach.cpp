@@ -9,9 +9,7 @@ namespace tanktread::motion {
 
 std::string Approach::text() const {
   if (by_shorter_steps) return "no steady shape was found from the initial shape with Steady/step; one was found with a tenth of this step";
-  if (amplitudes.empty())
-    return std::string("no steady shape was found: not from the initial shape, not with shorter steps") +
-           (last.why.empty() ? ", and not in weaker flows" : "");
+  if (amplitudes.empty()) return "no steady shape was found: not from the initial shape, not with shorter steps, and not in weaker flows";
   std::string all;
   for (const double amplitude : amplitudes) all += (all.empty() ? "" : ", ") + formatted("%.4g", amplitude);
   return "no steady shape was found from the initial shape; steady shapes of the flow times " + all +
@@ -40,7 +38,6 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
     way.amplitudes = {1}, way.by_shorter_steps = true;
     return way;
   }
-  if (!way.last.why.empty()) return way;
   bool exhausted = false;  // true if the full flow was solved to the coarse tolerance but not to Steady/tolerance
   const auto found_at = [&](double amplitude, Net& y) {
     SteadyOptions here = options;
@@ -65,6 +62,7 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
       y += (next - amplitude) / (amplitude - last) * (x - before);
     }
     if (!found_at(next, y)) {
+      if (amplitude > 0 && !full->obstacle(x).empty()) break;
       step *= 0.5;
       continue;
     }
@@ -74,6 +72,7 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
     amplitude = next;
     way.amplitudes.push_back(next);
   }
+  way.last.why = full->obstacle(x);
   return way;
 }
 

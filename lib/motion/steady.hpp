@@ -103,7 +103,7 @@ class FixedPointError {
 /// Solves G(x) = 0 (4.17) by NOX, as the fixed-point equation x = x + s (1 - s J)^{-1} G(x) with the implicit step s and the frozen Jacobian J (4.3).
 /// The method is Anderson acceleration (`anderson`) or Newton's method (`newton-krylov`). If one iteration would change x by 0.2 R_C or more,
 /// implicit time steps shorter than s are made first. If the iteration does not converge, x is the best iterate. If there is an obstacle at the best
-/// iterate (SteadyEquations::obstacle), ends after `most_in_vain` iterations that find no better one. Collective.
+/// iterate (SteadyEquations::obstacle), Anderson's method ends after `most_in_vain` iterations that find no better one. Collective.
 SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x,
                          int most_in_vain = 20);
 

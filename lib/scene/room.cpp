@@ -7,6 +7,7 @@ namespace tanktread {
 void refine(ParticleKind& kind, int factor) {
   for (auto* elements : {&kind.surface.elements_per_side, &kind.surface.azimuthal_elements, &kind.surface.meridional_elements})
     if (*elements) **elements *= factor;
+  if (kind.surface.n_points() > 2e4) throw UserError("this mesh takes too long to build for a check");  // see check_room()
 }
 
 void check_room(const std::function<void(int factor)>& check, bool adapts) {

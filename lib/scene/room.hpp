@@ -16,13 +16,14 @@ struct NoRoom : UserError {
   double gap;
 };
 
-/// Multiplies the numbers of elements of the particle's mesh by `factor`. Does nothing to a shape from a file, which has the mesh of the file.
+/// Multiplies the numbers of elements of the particle's mesh by `factor`. Does nothing to a shape from a file, which has the mesh of the file. Throws
+/// UserError if the mesh would have more than 20,000 control points.
 void refine(ParticleKind& kind, int factor);
 
 /// Calls check(1), and nothing else if there is room. If it throws NoRoom, calls check(2), check(4) and check(8) to find out whether there is room on
 /// finer meshes. If so, throws UserError with this remedy, otherwise the first error. `check`: function that throws NoRoom if there is no room for
-/// particles whose meshes are refined by the given factor. `adapts`: true if the run refines the meshes before its first step; it then may start if
-/// only the finer meshes keep the smallest distance that is allowed.
+/// particles whose meshes are refined by the given factor. If it throws another UserError, meshes are not refined further. `adapts`: true if the run
+/// refines the meshes before its first step; it then may start if only the finer meshes keep the smallest distance that is allowed.
 void check_room(const std::function<void(int factor)>& check, bool adapts = false);
 
 }  // namespace tanktread
