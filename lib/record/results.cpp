@@ -283,7 +283,7 @@ int Results::close(const Account& account, const Phases& phases) {
     const std::string line = account.remark + (account.remark.empty() || missed.empty() ? "" : "; ") + missed;
     if (!line.empty()) std::fprintf(stderr, "tanktread: %s\n", line.c_str());
   }
-  return ranks_.any(!missed.empty()) ? Exit::missed : Exit::done;
+  return coupling::error_of_any(missed).empty() ? Exit::done : Exit::missed;
 }
 
 /// Returns estimates of the errors of time integration and quadrature, and the remark that the error of the mesh is unknown.

@@ -272,7 +272,8 @@ std::string nearest_to_wall(const Scene& scene, const Body& body, std::span<cons
   };
   const auto gap = [&](const coupling::Particle& one) {
     double least = std::numeric_limits<double>::infinity();
-    for (const auto row : one.block.rows(x).rowwise()) least = std::min(least, distance(row.transpose()));
+    const auto rows = one.block.rows(x);
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) least = std::min(least, distance(rows.row(i).transpose()));
     return least;
   };
   return particles.empty() ? scene.particles.front().path() : std::ranges::min(particles, {}, gap).path;
