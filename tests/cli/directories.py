@@ -114,8 +114,8 @@ def the_advice_for_what_an_interrupted_run_leaves_works():
                 advised = "--resume out continues it" in said
         result = run("--resume", "out", "--quiet", code=0 if advised else 2)
         check(advised or "run the deck again with --output out --overwrite" in result.stderr or kind == "search", kind, result.stderr)
-        run("deck.yaml", "--output", "out", "--overwrite", "--quiet")
         continued |= {kind} if advised else set()
+    run("deck.yaml", "--output", "out", "--overwrite", "--quiet")
     check(continued == {"whole", "no list", "newest cut"}, continued)
 
 

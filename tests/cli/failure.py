@@ -98,7 +98,7 @@ def _told(signal_number, *arguments):
 
 def a_signal_before_the_first_step_ends_the_run_with_one_sentence():
     rigid = ["--set", "Particle/motion=prescribed", "--set", "Particle/velocity=[1, 0, 0]", "--set", "Flow/type=quiescent"]
-    code, said = _told(signal.SIGTERM, deck("Tanktread:\n  Surface: {elements per side: 6}\n"), *rigid, "--output", "rigid", "--quiet")
+    code, said = _told(signal.SIGTERM, deck("Tanktread:\n  Surface: {elements per side: 14}\n"), *rigid, "--output", "rigid", "--quiet")
     check(code == 4 and said == "tanktread: stopped by a signal before any results were written\n", code, said)
     code, said = _told(signal.SIGINT, deck(DECK), "--set", "Surface/elements per side=12", "--output", "out", "--quiet")
     check(code == 4 and said == "tanktread: stopped by a signal before any results were written\n", code, said)

@@ -28,8 +28,10 @@ def _names(results):
     """Returns the names of all series of a run."""
     import h5py
 
+    names = []
     with h5py.File(pathlib.Path(results) / "run.h5", "r") as file:
-        return list(file["series"])
+        file["series"].visititems(lambda name, one: names.append(name) if isinstance(one, h5py.Dataset) else None)
+    return names
 
 
 def _same_bits(one, other):
