@@ -16,7 +16,8 @@ RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic":
 OF_PARTICLE = re.compile(
     r"area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|intrinsic_viscosity|length_x\d|phase|"
     r"gap|(local|rms)_area_change|n_control_points|(normal|shape)_velocity|"
-    r"smallest_tension|stresslet_\d\d|tank_treading_\w+|taylor_\w+|((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|\w*concentration|"
+    r"smallest_tension|stresslet_\d\d|tank_treading_\w+|"
+    r"taylor_\w+|((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|\w*concentration|"
     r"surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|(fluid|membrane)_dissipation|power_residual")
 
 
