@@ -31,7 +31,8 @@ void MeshOptions::declare(deck::Section& section) {
               "number n of elements along each edge of the cube from which the surface mesh is made, which has 6n^2 elements. With 6, "
               "the Taylor parameter of a particle that stays rounded errs by about 0.1 %, lengths of pointed, folded or thin particles by 10 % or "
               "more: compare a run with 8, or use --accuracy. Elements half as long have about a sixteenth of the error once they resolve the "
-              "shape. If not given: 6, or 8 for a rigid particle in a tube or channel if R_C is more than 3/4 of the distance from the axis to the wall");
+              "shape. If not given: 6, or 8 for a rigid particle in a tube or channel if R_C is more than 3/4 of the distance from the axis "
+              "to the wall");
   section.key(
       "extraordinary points", extraordinary_points, spline::extraordinary_rules,
       "treatment of the extraordinary points, the eight corners of the cube mesh where three elements meet instead of four. `g1`: "

@@ -85,8 +85,8 @@ std::vector<Warning> choices(const ParticleScene& one) {
                 1 + 2 * locking(one)) +
           area_points(one));
   add(!one.particle.rigid() && given.fluid_interface() && k > 0 && one.flow.type != "quiescent", "vesicle",
-      "only the total area of a vesicle is kept, not that of each part: this is exact at rest, but in shear the inclination is 2 to 4 degrees too small "
-      "(reduced volume 0.9); set Membrane/law to Skalak, Membrane/capillary number (instead of Membrane/surface tension) to 5, Membrane/area "
+      "only the total area of a vesicle is kept, not that of each part: this is exact at rest, but in shear the inclination is 2 to 4 degrees too "
+      "small (reduced volume 0.9); set Membrane/law to Skalak, Membrane/capillary number (instead of Membrane/surface tension) to 5, Membrane/area "
       "dilatation to 1000 and Membrane/area points to 1");
   return found;
 }

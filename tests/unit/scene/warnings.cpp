@@ -96,8 +96,8 @@ std::string at_start(const std::vector<std::string>& settings) {
 
 // The choices of the second and the third particle cause one warning, too.
 TEST(Warnings, ReportChoicesOfAnyParticle) {
-  EXPECT_TRUE(names(at_start({"Particles/one/center=[4, 0, 0]", "Particles/two/center=[-4, 0, 0]", "Particles/two/Membrane/global area dilatation=1e7",
-                              "Particles/three/center=[0, 0, 9]", "Particles/three/Membrane/global area dilatation=1e7"}),
+  EXPECT_TRUE(names(at_start({"Particles/one/center=[4, 0, 0]", "Particles/two/center=[-4, 0, 0]", "Particles/three/center=[0, 0, 9]",
+                              "Particles/two/Membrane/global area dilatation=1e7", "Particles/three/Membrane/global area dilatation=1e7"}),
                     "total area"));
 }
 
