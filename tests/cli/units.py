@@ -103,7 +103,8 @@ def unusual_values_are_pointed_out():
     with units have none."""
     given = "Units: {}, Flow: {shear rate: 100 1/s, viscosity: %s}, Particle: {radius: %s}, Membrane: {%s}, Time: {final time: 4 ms}"
     usual = ("1.2 mPa s", "4 um", "shear modulus: 5.3 uN/m, bending modulus: 2e-19 J")
-    for words, *values in ([], *usual), (["Flow/viscosity is 1.2 Pa s"], "1.2 Pa s", *usual[1:]), (["Particle/radius is 4e-12 m", "The capillary number is 9.057e-08, but"], usual[0], "4e-6", usual[2]), \
+    for words, *values in ([], *usual), (["Flow/viscosity is 1.2 Pa s"], "1.2 Pa s", *usual[1:]), \
+            (["Particle/radius is 4e-12 m", "The capillary number is 9.057e-08, but"], usual[0], "4e-6", usual[2]), \
             (["Membrane/shear modulus is 5.3 N/m", "capillary number is"], *usual[:2], "shear modulus: 5.3 N/m"), \
             (["Membrane/bending modulus is 2e-37 J"], *usual[:2], "shear modulus: 5.3 uN/m, bending modulus: 2e-19"), \
             (["The capillary number is 200, but"], *usual[:2], "capillary number: 200"):
@@ -122,9 +123,9 @@ def a_flow_rate_replaces_the_mean_velocity():
         "Surface: {elements per side: 3}, Time: {final time: 2 ms}"
     area = math.pi * 10 * 10  # square micrometres
     ducts = {"Tube: {radius: 10 um, azimuthal elements: 8, axial elements: 8}": area,
-             "Tube: {section: ellipse, semi-axes: [20 um, 5 um], periodic length: 30 um}": area,
-             "Channel: {radius: 10 um, profile: constriction, depth: 0.2, half length: 10 um}": area,
-             "Tube: {section: rectangle, sides: [20 um, 15 um]}": 300}
+             "Tube: {section: ellipse, semi-axes: [20 um, 5 um], periodic length: 30 um, azimuthal elements: 8, axial elements: 8}": area,
+             "Channel: {radius: 10 um, profile: constriction, depth: 0.2, half length: 10 um, azimuthal elements: 8, axial elements: 12}": area,
+             "Tube: {section: rectangle, sides: [20 um, 15 um], azimuthal elements: 8, axial elements: 8}": 300}
     for duct, area in ducts.items():
         for held in "flow rate", "pressure drop":
             for rate in "0.0012 µl/min", "20000 um^3/s":
@@ -135,7 +136,8 @@ def a_flow_rate_replaces_the_mean_velocity():
     tube = next(iter(ducts))
     run(deck("Tanktread: {" + text % ("flow rate: 20000 um^3/s", tube) + "}"), "--output", "rate", "--quiet")
     run(deck("Tanktread: {" + text % (f"mean velocity: {20_000 / (math.pi * 100)!r}", tube) + "}"), "--output", "speed", "--quiet")
-    check((series("rate", "velocity_x1") == series("speed", "velocity_x1")).all(), "another velocity")
+    speed = series("speed", "velocity_x1")
+    check(abs(series("rate", "velocity_x1") - speed).max() < 1e-10 * abs(speed).max(), "another velocity")  # rounding in the area of the outline
     refused(["Flow/flow rate", "Flow/mean velocity", "contradict"], deck("Tanktread: {" + text % ("flow rate: 1, mean velocity: 1", tube) + "}"))
     refused(["Flow/flow rate", "duct", "simple shear"], "inputs/shear_neo_hookean.yaml", "--set", "Flow/flow rate=1")
     refused(["Flow/Q", "was Flow/flow rate meant?"], deck("Tanktread: {" + text % ("Q: 1", tube) + "}"))

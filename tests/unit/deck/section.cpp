@@ -55,8 +55,8 @@ TEST(Keys, RejectAValueOutsideTheirRangeWithPathRangeUnitAndValue) {
   EXPECT_EQ(refusal("    heights: [1, -1]\n"),
             "Kinds/heights must be one number or more in brackets, each not negative (unit: length), but is [1, -1].");
   EXPECT_EQ(refusal("    sides: [1, 2, 3]\n"),
-            "Kinds/sides must be two numbers in brackets, each positive (unit: length), but is [1, 2, 3]; if commas are meant as decimal points, write points: "
-            "[0.5, 1.0, 1.5].");
+            "Kinds/sides must be two numbers in brackets, each positive (unit: length), but is [1, 2, 3]; if commas are meant as "
+            "decimal points, write points: [0.5, 1.0, 1.5].");
 }
 
 TEST(Keys, RejectWrongTypes) {
