@@ -50,7 +50,9 @@ Value value_of(const std::vector<double>& numbers) {
 /// by digits, as in `1 000`.
 bool has_unit(const std::string& text) {
   const std::optional<Quantity> given = quantity(text);
-  return given && !given->unit.empty() && given->unit.front() != ',' && (!std::isdigit(static_cast<unsigned char>(given->unit.front())) || given->unit.starts_with("1/"));
+  if (!given || given->unit.empty()) return false;
+  const char first = given->unit.front();
+  return first != ',' && (!std::isdigit(static_cast<unsigned char>(first)) || given->unit.starts_with("1/"));
 }
 
 /// Returns the end of a sentence about a refused value of `size` numbers: the spelling of a number that works, if the deck has another one.
@@ -137,7 +139,7 @@ void state(Record& record, std::string_view name, Field& field, const ValueType&
   record.entries.push_back(std::move(entry));
 }
 
-/// Records a sentence about the largest of a key's numbers if its size is unusual. The lengths of Adaptation are left out because they are tolerances.
+/// Records a sentence about the largest of a key's numbers if its size is unusual. Leaves out the lengths of Adaptation, which are tolerances.
 void note_unusual(Record& record, const Units& units, const std::string& path, const std::vector<double>& numbers, const Rule& rule,
                   std::string_view unit) {
   const double size = std::abs(std::ranges::max(numbers, {}, [](double x) { return std::abs(x); }));

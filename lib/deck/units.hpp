@@ -30,13 +30,13 @@ class Units {
   /// Throws UserError if the option `length`, `time` or `force` is not a quantity of this dimension, or if UDUNITS finds no table of units.
   explicit Units(const UnitOptions& options);
 
-  /// Returns the value of `text`, a number with or without a unit (see quantity()), in the deck's units. Throws std::invalid_argument if `text` is not
-  /// a number or the unit is not of this kind; the message completes a sentence that begins with `text`, and names units that work. Units of angles
-  /// belong only to the kinds `degree`, `degrees` and `radian/time`.
+  /// Returns the value of `text`, a number with or without a unit (see quantity()), in the deck's units. Throws std::invalid_argument if `text` is
+  /// not a number or the unit is not of this kind; the message completes a sentence that begins with `text`, and names units that work. Units of
+  /// angles belong only to the kinds `degree`, `degrees` and `radian/time`.
   double number(const std::string& text, std::string_view kind) const;
 
-  /// Returns the end of a sentence about a value that is a thousand times smaller or larger than usual values of this kind; empty for other values and
-  /// for 0. `number`: size of the value in the deck's units. `coordinate`: true if any small value is usual.
+  /// Returns the end of a sentence about a value that is a thousand times smaller or larger than usual values of this kind; empty for other values
+  /// and for 0. `number`: size of the value in the deck's units. `coordinate`: true if any small value is usual.
   std::string unusual(std::string_view kind, double number, bool coordinate = false) const;
 
   /// Returns a quantity of this kind as text in SI units, for example `1e-06 N/m`. `number`: value in the deck's units. The text is empty if the kind

@@ -143,7 +143,8 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
     if (const double moved = dynamics.norm(r); !(moved < largest_motion)) latest = std::max(latest, moved);
     ++in_vain;
     if (latest < rest) rest = latest, best = y, in_vain = 0;
-    if (in_vain == most_in_vain && options.method == "anderson" && !equations.obstacle(best).empty()) return coupling::not_a_number(y);  // ends the iteration
+    if (in_vain == most_in_vain && options.method == "anderson" && !equations.obstacle(best).empty())
+      return coupling::not_a_number(y);  // ends the iteration
     return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };

@@ -135,9 +135,9 @@ void InitialShape::declare(deck::Section& section) {
   section.key("run", run, deck::Choice{},
               "path of the results of an earlier run on the same mesh; the last shape of the particle in that run becomes the initial shape, at "
               "the same position. If that run has several particles, each particle starts from the one with its own name, unless Particle/initial "
-              "shape/particle names another one. The path names a results directory, whose newest checkpoint is read, or one of its snapshots; if the mesh of that "
-              "run was refined, the refined mesh is used. Surfactant and other surface fields start as in a new run. A relative path is looked "
-              "up in the working directory, then in the directory of the deck");
+              "shape/particle names another one. The path names a results directory, whose newest checkpoint is read, or one of its "
+              "snapshots; if the mesh of that run was refined, the refined mesh is used. Surfactant and other surface fields start as "
+              "in a new run. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("particle", particle, deck::Choice{},
               "name of the particle of the earlier run (Particle/initial shape/run) whose last shape becomes the initial shape, for example "
               "`cell` or, of copies, `cell 2`. If not given, the particle with the same name or, if there is one only, this one");

@@ -19,16 +19,21 @@ bool has_shear_rate(const std::string& type) {
   return type == "simple shear" || type == "four-roll" || type == "planar hyperbolic" || type == "uniaxial extension";
 }
 
+/// Returns the values of Flow/type, with the names of registered flows. Throws std::logic_error if a registered flow has the name of another type.
+deck::Choice types_of(const UserFlows* registered) {
+  deck::Choice types{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "parabolic", "duct"};
+  if (!registered) return types;
+  for (const std::string& name : registered->names()) {
+    if (std::ranges::count(types, name) > 0) throw std::logic_error("a registered flow has the name `" + name + "` of another Flow/type");
+    types.push_back(name);
+  }
+  return types;
+}
+
 }  // namespace
 
 void FlowOptions::declare(deck::Section& section) {
-  deck::Choice types{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "parabolic", "duct"};
-  if (registered)
-    for (const std::string& name : registered->names()) {
-      if (std::ranges::count(types, name) > 0) throw std::logic_error("a registered flow has the name `" + name + "` of another Flow/type");
-      types.push_back(name);
-    }
-  section.key("type", type, types,
+  section.key("type", type, types_of(registered),
               "ambient flow, that is the flow without particles; rate means Flow/shear rate. `simple shear`: velocity (rate x3, 0, 0); in "
               "a straight Tube the wall then moves with this velocity. `planar hyperbolic`: velocity (rate x1, 0, -rate x3). `uniaxial "
               "extension`: velocity (-rate x1/2, -rate x2/2, rate x3). `four-roll`: planar flow between extension and rotation, chosen by "
