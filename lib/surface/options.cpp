@@ -134,7 +134,8 @@ void InitialShape::declare(deck::Section& section) {
   section.key("run", run, deck::Choice{},
               "path of the results of an earlier run on the same mesh; the last shape of the particle in that run becomes the initial shape, at "
               "the same position. If that run has several particles, each particle starts from the one with its own name, unless Particle/initial "
-              "shape/particle names another one. The path names a results directory, whose newest checkpoint is read, or one of its snapshots; if the mesh of that "
+              "shape/particle names another one. The path names a results directory, whose newest checkpoint is read, or one of its "
+              "snapshots; if the mesh of that "
               "run was refined, the refined mesh is used. Surfactant and other surface fields start as in a new run. A relative path is looked "
               "up in the working directory, then in the directory of the deck");
   section.key("particle", particle, deck::Choice{},

@@ -62,7 +62,8 @@ void FlowHistory::declare(deck::Section& section) {
   section.key("file", file,
               "path of a table with the time dependence of the ambient flow, instead of the keys `times`, `amplitudes` and `angles`. A row "
               "holds the time in the deck's unit, the factor of the velocity and, in all rows or in none, the angle in degrees. A first "
-              "line may name the columns (time, amplitude, angle), in any order, and their units. A relative path is looked up in the working directory, "
+              "line may name the columns (time, amplitude, angle), in any order, and their units. A relative path is looked up in the "
+              "working directory, "
               "then in the directory of the deck");
   if (angles || section.given("angles")) axis = "x2";
   section.key("axis", axis, deck::Choice{"x1", "x2", "x3"},

@@ -36,7 +36,8 @@ void TubeOptions::declare(deck::Section& list) {
   list.key("outline", outline,
            "path of a file with the closed outline of the cross-section, for `section` `file`: one row x2,x3 per point, in the deck's "
            "unit of length, counter-clockwise. A cubic spline passes through the points; where two sides meet at a corner, the row of "
-           "the corner has the word `corner` in a third column. A first line may name the columns, in any order, and their units. The first point need not be repeated at the end. A relative "
+           "the corner has the word `corner` in a third column. A first line may name the columns, in any order, and their units. The "
+           "first point need not be repeated at the end. A relative "
            "path is looked up in the working directory, then in the directory of the deck");
   list.key("azimuthal elements", azimuthal_elements, deck::between(8, 400), "1",
            "number of elements around the wall of the tube or channel. It is increased slightly if sides of equal length would otherwise "
@@ -102,6 +103,7 @@ void ChannelOptions::declare(deck::Section& list) {
   list.key("points", points,
            "path of a file with the shape of the channel, for `profile` `file`: one row s,f per point, with the arc length s of the "
            "centre line in the deck's unit of length (ascending) and the factor f of the cross-section, or s,f2,f3 with factors in x2 "
+           ""
            "and x3. A first line may name the columns, in any order, and their units. A cubic spline passes through the points; beyond them the section is constant. A relative path is looked up in the "
            "working directory, then in the directory of the deck");
   list.key("bend radius", bend_radius, deck::positive(), "length",
