@@ -103,8 +103,8 @@ void ChannelOptions::declare(deck::Section& list) {
   list.key("points", points,
            "path of a file with the shape of the channel, for `profile` `file`: one row s,f per point, with the arc length s of the "
            "centre line in the deck's unit of length (ascending) and the factor f of the cross-section, or s,f2,f3 with factors in x2 "
-           ""
-           "and x3. A first line may name the columns, in any order, and their units. A cubic spline passes through the points; beyond them the section is constant. A relative path is looked up in the "
+           "and x3. A first line may name the columns, in any order, and their units. A cubic spline passes through the points; beyond "
+           "them the section is constant. A relative path is looked up in the "
            "working directory, then in the directory of the deck");
   list.key("bend radius", bend_radius, deck::positive(), "length",
            "radius of the circular arc along which the centre line of the channel bends; straight if not given");
