@@ -246,10 +246,10 @@ def read(path, wanted=(), counts=(), others=False, nan=False):
             tried.append((numpy.inf, None, separator, _rows(lines, separator, nan)))
         except _Wrong as wrong:
             tried.append((wrong.line, wrong, separator, None))
-    _, wrong, separator, content = max(tried, key=lambda one: one[0])
+    _, mistake, separator, content = max(tried, key=lambda one: one[0])
     try:
-        if wrong:
-            raise wrong
+        if mistake:
+            raise mistake
         return _table(*content, notes, separator, wanted, counts, others)
     except _Wrong as wrong:
         used = any(separator in text.strip() for _, text in lines)

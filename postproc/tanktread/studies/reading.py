@@ -16,7 +16,7 @@ from ..runs import shared
 MOST = 100_000  # largest number of runs of a study
 
 
-class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
+class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
     """Loads YAML. Keys of sections are texts, also if they look like numbers. A repeated key is an error."""
 
     def construct_mapping(self, node, deep=False):
