@@ -165,4 +165,15 @@ def _adds_a_part(program, name, deck, setting, judge):
     judge(whole)
 
 
+def without_the_right_to_install_the_command_for_the_administrator_is_printed():
+    tools = pathlib.Path("tools")
+    tools.mkdir()
+    for name, script in {"id": "echo 1000", "dpkg-query": "exit 1", "apt-get": "exit 9", "sudo": "exit 1"}.items():
+        (tools / name).write_text(f"#!/bin/sh\n{script}\n")
+        (tools / name).chmod(0o755)
+    environment = {**os.environ, "PATH": f"{tools.resolve()}:{os.environ['PATH']}"}
+    done = subprocess.run([SOURCE / "app/install", "package"], env=environment, capture_output=True, text=True)
+    check(done.returncode == 1 and "\n  apt-get install --no-install-recommends file dpkg-dev\n" in done.stderr, done)
+
+
 main()
