@@ -26,10 +26,10 @@ def _installed():
 def the_installed_program_and_package_run_and_draw_a_scene():
     place, environment = _installed()
     pathlib.Path("mine.yaml").write_text(_done("tanktread", "--new", "capsule", env=environment))
-    _done("tanktread", "mine.yaml", "--set", "Surface/elements per side=3", "--set", "Time/final time=0.2", "--output", "mine", "--quiet", env=environment)
+    _done("tanktread", "mine.yaml", "--set", "Surface/elements per side=3", "--set", "Time/final time=2 ms", "--output", "mine", "--quiet", env=environment)
     _done("tanktread-report", "mine", env=environment)
-    pathlib.Path("study.yaml").write_text("deck: mine.yaml\nset: {Surface/elements per side: 3, Time/final time: 0.1}\n"
-                                          "grid: {Membrane/capillary number: [0.1, 0.2]}\nrecord: [taylor_inertia]\n")
+    pathlib.Path("study.yaml").write_text("deck: mine.yaml\nset: {Surface/elements per side: 3, Time/final time: 1 ms}\n"
+                                          "grid: {Membrane/shear modulus: [0.5 mN/m, 1 mN/m]}\nrecord: [taylor_inertia]\n")
     _done("tanktread-sweep", "study.yaml", env=environment)
     check(pathlib.Path("mine/report.html").exists() and pathlib.Path("results/study/table.csv").read_text().count(",done,") == 2, "report or table")
     check("deformation" in _done("tanktread-figure", "--list", env=environment), "the figures")
@@ -56,7 +56,7 @@ def options_keys_and_words_are_completed():
 
 
 def _package(place):
-    _done("cmake", "-S", SOURCE / "tests/package", "-B", "build", f"-DCMAKE_PREFIX_PATH={place}")
+    _done("cmake", "-G", "Ninja", "-S", SOURCE / "tests/package", "-B", "build", f"-DCMAKE_PREFIX_PATH={place}")
     _done("cmake", "--build", "build", "--parallel", "2")
 
 
