@@ -62,7 +62,6 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
       y += (next - amplitude) / (amplitude - last) * (x - before);
     }
     if (!found_at(next, y)) {
-      if (amplitude > 0 && !full->obstacle(x).empty()) break;
       step *= 0.5;
       continue;
     }

@@ -22,12 +22,12 @@ struct Approach {
 };
 
 /// Finds a steady shape that a search from x does not find. First searches with a tenth of Steady/step, because long steps excite short waves on
-/// compressed membranes. If this fails, continues steady shapes in the amplitude a of the flow (natural continuation), from a first a <= 1/2 at which
-/// the search from x succeeds, to a = 1. Each search starts at the linear extrapolation of the two latest shapes. The step of a is increased after a
-/// search with few iterations, and halved after a failed search. The continuation ends if the step falls to 1/512, or if a search fails and there is
-/// an obstacle (SteadyEquations::obstacle) at the latest shape. The tolerance of these searches is at least 1e-6. At a = 1, up to three further
-/// searches must reach Steady/tolerance; otherwise the continuation ends. Sets x to the shape at the last amplitude for which a search succeeded, and
-/// `last.why` to the obstacle there. `family`: function that returns the equations at an amplitude. Collective.
+/// compressed membranes. If this fails, continues steady shapes in the amplitude a of the flow (natural continuation), from a first a <= 1/2 at
+/// which the search from x succeeds, to a = 1. Each search starts at the linear extrapolation of the two latest shapes. The step of a is increased
+/// after a search with few iterations, and halved after a failed search. The continuation ends if the step falls to 1/512. The tolerance of these
+/// searches is at least 1e-6. At a = 1, up to three further searches must reach Steady/tolerance; otherwise the continuation ends. Sets x to the
+/// shape at the last amplitude for which a search succeeded, and `last.why` to the obstacle there. `family`: function that returns the equations at
+/// an amplitude. Collective.
 Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
                          const coupling::SolverOptions& solvers, Net& x);
 
