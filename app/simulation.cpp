@@ -250,7 +250,7 @@ class Run : AnyRun {
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const Results::Sampled snapshot = within_step_ && within_step_->sampled ? *within_step_->sampled : sample();
-    collect_counts();  // includes the evaluations of the snapshot, which the next row counts
+    if (!interrupted_) collect_counts();  // includes the evaluations of the snapshot, which the next row counts
     output::Checkpoint checkpoint;
     particles_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, snapshot);
