@@ -310,8 +310,8 @@ def the_processor_time_of_a_resumed_run_includes_its_earlier_parts():
 
 
 def the_name_of_a_run_is_found_by_reading_each_deck_once():
-    paths, read, opened = [deck(CAPSULE), deck("Tanktread: { Time: { final time: 0.1 } }\n", "other.yaml")], [], pathlib.Path.read_text
-    with mock.patch.object(pathlib.Path, "read_text", lambda path, **more: read.append(path.name) or opened(path, **more)):
+    paths, read, opened = [deck(CAPSULE), deck("Tanktread: { Time: { final time: 0.1 } }\n", "other.yaml")], [], pathlib.Path.read_bytes
+    with mock.patch.object(pathlib.Path, "read_bytes", lambda path, **more: read.append(path.name) or opened(path, **more)):
         first = tanktread.Study.name(paths, {})
     check(read == ["deck.yaml", "other.yaml"], read)
     deck("Tanktread: { Time: { final time: 0.2 } }\n", "other.yaml")
