@@ -2,6 +2,7 @@
 // Small vectors and control nets. Lengths are in the unit of length of the deck unless stated otherwise.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "base/versions.hpp"
 
