@@ -23,6 +23,7 @@
 #include "app/signals.hpp"
 #include "base/errors.hpp"
 #include "base/stop.hpp"
+#include "base/threads.hpp"
 #include "base/timing.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"
@@ -48,6 +49,7 @@ struct Arguments : DeckPlaces {
   std::string output, new_deck;
   bool overwrite = false, check = false, reference = false, reference_series = false, rejections = false, schema = false, quiet = false;
   bool no_expect = false, cite = false;
+  std::optional<int> threads;
 };
 
 /// Declares the options of the command line.
@@ -84,6 +86,10 @@ void declare_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--new", arguments.new_deck, "print a commented deck of this kind: " + deck::alternatives(kinds_of_decks()))
       ->check(CLI::IsMember(kinds_of_decks()), "");
   app.add_flag("--cite", arguments.cite, "print what to cite for the features that the deck uses, or without a deck for all features, and stop");
+  app.add_option("--threads", arguments.threads,
+                 "number of threads of this process, or under mpirun of each rank (default: OMP_NUM_THREADS; if it is not set, the cores that the "
+                 "ranks of a computer may use, divided by the number of these ranks). Results do not depend on it")
+      ->check(CLI::Range(1, most_threads));
   app.add_flag("--quiet", arguments.quiet, "no progress bar, and no timed evaluation with --check");
   app.set_version_flag("--version", [] { return "tanktread " + provenance().at("version"); });
 }
@@ -220,6 +226,8 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   const bool resume = !arguments.resume.empty();
   if (arguments.decks.empty() && !resume)
     throw UserError("No deck is given: tanktread [options] deck.yaml [overlay.yaml ...]; see --help.");
+  const int cores = coupling::cores_per_rank();
+  set_threads(arguments.threads.value_or(requested_threads(cores)));
   refuse(resume && !arguments.output.empty(), "--output", "--resume", "a run continues in its own directory");
   refuse(resume && arguments.overwrite, "--overwrite", "--resume", "--overwrite deletes the checkpoints from which --resume continues");
 

@@ -1,5 +1,7 @@
 #include "base/stop.hpp"
 
+#include "base/threads.hpp"
+
 namespace tanktread {
 
 namespace {
@@ -21,7 +23,7 @@ void set_stop_request(std::function<bool()> requested) {
 bool stop_requested() { return stop_rules().answers && request && request(); }
 
 void stop_here() {
-  if (stop_rules().alone && stop_requested()) answer_stop();
+  if (thread_number() == 0 && stop_rules().alone && stop_requested()) answer_stop();
 }
 
 void answer_stop() {

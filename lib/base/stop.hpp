@@ -17,7 +17,8 @@ void set_stop_request(std::function<bool()> requested);
 bool stop_requested();
 
 /// Throws Stopped if this process is to stop. Loops that take long and make no collective calls call it between their blocks. On one of several
-/// ranks, does nothing except within the work of coupling::stop_together(), because the other ranks would wait for a rank that stops alone.
+/// ranks, does nothing except within the work of coupling::stop_together(), because the other ranks would wait for a rank that stops alone. In a
+/// loop of several threads, only the thread that started the loop answers.
 void stop_here();
 
 /// Marks the request as answered and throws Stopped.

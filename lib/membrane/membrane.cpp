@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/indices.hpp"
+#include "base/threads.hpp"
 #include "membrane/packed.hpp"
 #include "membrane/points_kernel.hpp"
 
@@ -30,6 +31,7 @@ struct Part {
   std::vector<Group> groups;
   std::vector<std::vector<ReferencePoint>> reference;  ///< per group: reference points; point q of batch k has the index n_gauss k + q
   std::vector<std::vector<Pack>> relaxed_curvature;    ///< per group: c0 of `Bending` at the Gauss points; empty without bending
+  PointSums sums;                                      ///< sums over the batches of all groups
 
   Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& of_surface);
   void split_material(const spline::Space& space, const Materials& of_surface, std::size_t m);
@@ -46,21 +48,34 @@ struct Part {
     std::size_t g, first;
     int n;
   };
+  /// Calls use(Points) for all batches: for one group after the other, on all threads. An element is in one batch of a group, and may be in several
+  /// groups.
   template <class Use>
   void each_batch(const Use& use) const {
     for (std::size_t g = 0; g < groups.size(); ++g)
-      for (std::size_t k = 0; k < groups[g].batches.size(); ++k) {
+      each_item(groups[g].batches.size(), [&](std::size_t k) {
         const std::size_t first = k * groups[g].n_gauss();
         const Pack* c0 = relaxed_curvature[g].empty() ? nullptr : &relaxed_curvature[g][first];
         const int m = groups[g].material;
         use(Points{groups[g], groups[g].batches[k], materials[m], whole[m], &reference[g][first], c0, g, first, groups[g].n_gauss()});
-      }
+      });
   }
   template <class Use>
   void each_bending_batch(const Use& use) const {
     each_batch([&](const Points& at) {
       if (at.c0) use(at);
     });
+  }
+  bool bends() const {
+    return std::ranges::any_of(relaxed_curvature, [](const std::vector<Pack>& c0) { return !c0.empty(); });
+  }
+
+  /// Adds to the control points of `sum` the rows that use(Points, rows) sets for each batch (see transpose()), or zero where it sets nothing.
+  template <class Use>
+  void add_rows(Net& sum, const Use& use) const {
+    std::vector<double> rows = sums.rows();
+    each_batch([&](const Points& at) { use(at, &rows[3 * at.batch.row]); });
+    sums.add(rows, sum);
   }
 };
 
@@ -87,6 +102,7 @@ Part::Part(const spline::Space& space, const Net& unstressed, std::span<const in
       curvatures(n, a, &curvature[k * n]);
     }
   }
+  sums = PointSums(space, groups);
 }
 
 /// Moves the area elasticity of material m to a new material, whose groups of elements have another Gauss rule (3.13).
@@ -115,13 +131,9 @@ Membrane::Membrane(const spline::Space& space, const Net& unstressed, const Mate
 
 std::shared_ptr<const Part> Membrane::part(std::span<const int> elements) const {
   const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const auto& p) { return std::ranges::equal(p->elements, elements); });
-  if (found != parts_.end()) {
-    std::rotate(parts_.begin(), found, found + 1);
-  } else {
-    if (parts_.size() == parts_kept) parts_.pop_back();
-    parts_.insert(parts_.begin(), std::make_shared<const Part>(*space_, unstressed_, elements, order_, materials_));
-  }
-  return parts_.front();
+  if (found != parts_.end()) return *found;
+  if (parts_.size() == parts_kept) parts_.erase(parts_.begin());
+  return parts_.emplace_back(std::make_shared<const Part>(*space_, unstressed_, elements, order_, materials_));
 }
 
 std::vector<double> Membrane::element_energies(const Net& x, std::span<const int> elements) const {
@@ -142,17 +154,19 @@ std::vector<double> Membrane::element_energies(const Net& x, std::span<const int
 void Membrane::load(const Net& x, std::span<const int> elements, Net& d) const {
   d.setZero(space_->n_points, 3);
   const auto mine = part(elements);
-  mine->each_batch([&](const Part::Points& at) {
+  mine->add_rows(d, [&](const Part::Points& at, double* rows) {
     Pack a[6 * max_gauss], p[6 * max_gauss];
     tangents(at.group, at.batch, x, a);
     stresses(at.material.law, at.n, at.reference, a, p);
-    add_transpose(at.group, at.batch, p, d);
+    transpose(at.group, at.batch, p, rows);
   });
-  mine->each_bending_batch([&](const Part::Points& at) {
+  if (!mine->bends()) return;
+  mine->add_rows(d, [&](const Part::Points& at, double* rows) {
+    if (!at.c0) return;
     Pack j[15 * max_gauss], p[15 * max_gauss];
     jets(at.group, at.batch, x, j);
     bending_stresses(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, j, p);
-    add_jet_transpose(at.group, at.batch, p, d);
+    jet_transpose(at.group, at.batch, p, rows);
   });
 }
 
@@ -167,6 +181,7 @@ ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> el
   ElementTensions result{std::numeric_limits<double>::infinity(), 0, none, none, none, none};
   const int lanes = pack_lanes();
   const auto mine = part(elements);
+  std::vector<double> smallest(none.size(), result.smallest), largest_change(none.size(), 0);  // of each element
   mine->each_batch([&](const Part::Points& at) {
     const bool sampled = mine->sampled[at.group.material], all_points = at.group.material < static_cast<int>(materials_.all.size());
     Pack a[6 * max_gauss], tension[max_gauss], share[max_gauss];
@@ -178,14 +193,15 @@ ElementTensions Membrane::element_tensions(const Net& x, std::span<const int> el
         const double here = numbers(tension)[lanes * q + l] / unit + uniform, area = numbers(share)[lanes * q + l];
         const double unstressed = numbers(at.reference, q, 4)[l], change = area / unstressed - 1;
         const int e = at.batch.elements[l];
-        result.area_change = std::max(result.area_change, std::abs(change));
+        largest_change[e] = std::max(largest_change[e], std::abs(change));
         if (all_points) result.unstressed[e] += unstressed, result.squared_change[e] += unstressed * change * change;
         if (!sampled) continue;
-        result.smallest = std::min(result.smallest, here);
+        smallest[e] = std::min(smallest[e], here);
         result.area[e] += area;
         if (here < compressed_below) result.compressed[e] += area;
       }
   });
+  result.smallest = std::ranges::min(smallest), result.area_change = std::ranges::max(largest_change);
   return result;
 }
 
@@ -214,20 +230,21 @@ LinearLoad::LinearLoad(LinearLoad&&) noexcept = default;
 
 void LinearLoad::apply(const Net& u, Net& hu) const {
   hu.setZero(membrane_->space().n_points, 3);
-  points_->part->each_batch([&](const Part::Points& at) {
+  points_->part->add_rows(hu, [&](const Part::Points& at, double* rows) {
     if (points_->of_group[at.g].empty()) return;
     Pack gradient[6 * max_gauss], p[6 * max_gauss];
     tangents(at.group, at.batch, u, gradient);
     membrane::apply(at.n, &points_->of_group[at.g][at.first], gradient, p);
-    add_transpose(at.group, at.batch, p, hu);
+    transpose(at.group, at.batch, p, rows);
   });
-  if (points_->jets.empty()) return;
-  points_->part->each_bending_batch([&](const Part::Points& at) {
+  if (points_->jets.empty() || !points_->part->bends()) return;
+  points_->part->add_rows(hu, [&](const Part::Points& at, double* rows) {
+    if (!at.c0) return;
     Pack gradient[15 * max_gauss], p[15 * max_gauss];
     jets(at.group, at.batch, u, gradient);
     const Pack* now = &points_->jets[at.g][15 * at.first];
     bending_apply(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, now, gradient, p);
-    add_jet_transpose(at.group, at.batch, p, hu);
+    jet_transpose(at.group, at.batch, p, rows);
   });
 }
 

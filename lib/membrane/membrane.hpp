@@ -33,7 +33,7 @@ struct ElementTensions {
 /// A membrane: a spline space, its unstressed net X, a law and a Gauss rule. Uses no MPI. The argument `elements` lists the elements to evaluate, in
 /// ascending order. Each row of a load is summed in the same order, however the elements are distributed over the ranks of the calling program.
 ///
-/// Not thread-safe, because the packed elements of the latest calls are cached.
+/// Its functions use all threads, and are called by one: the packed elements of the latest calls are cached.
 class Membrane {
  public:
   /// `order`: number of Gauss points per direction on elements up to degree 3, from 2 to 10, and one more for each degree above 3. `space` must
@@ -80,7 +80,7 @@ class Membrane {
   Materials materials_;
   int order_;
   std::vector<int> all_;
-  mutable std::vector<std::shared_ptr<const Part>> parts_;  // latest first
+  mutable std::vector<std::shared_ptr<const Part>> parts_;  // latest last
 };
 
 /// Returns the principal tensions, smaller first, divided by the modulus, from jets of the unstressed and current surface. Shape (points, 2).

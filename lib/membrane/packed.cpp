@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "base/kept_once.hpp"
+#include "base/threads.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 
@@ -67,6 +69,44 @@ std::vector<Group> pack(const spline::Space& space, std::span<const int> element
       append(g, space, std::span(list).subspan(first, std::min(lanes, list.size() - first)), extractions);
   }
   return groups;
+}
+
+void add_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum) {
+  double rows[3 * spline::most_functions * most_lanes];
+  transpose(group, batch, p, rows);
+  for (int l = 0; l < batch.used; ++l)
+    for (int a = 0; a < batch.functions; ++a)
+      for (int c = 0; c < 3; ++c) sum(group.points[batch.points + a * pack_lanes() + l], c) += rows[3 * (l * batch.functions + a) + c];
+}
+
+PointSums::PointSums(const spline::Space& space, std::vector<Group>& groups) : first_(static_cast<std::size_t>(space.n_points) + 1, 0) {
+  const auto each_row = [&](const auto& use) {
+    n_rows_ = 0;
+    for (Group& group : groups)
+      for (Batch& batch : group.batches) {
+        batch.row = n_rows_;
+        for (int l = 0; l < batch.used; ++l, n_rows_ += static_cast<std::size_t>(batch.functions)) {
+          const std::vector<int>& points = space.elements[batch.elements[l]].points;
+          for (std::size_t a = 0; a < points.size(); ++a) use(points[a], n_rows_ + a);
+        }
+      }
+  };
+  each_row([&](int point, std::size_t) { ++first_[static_cast<std::size_t>(point) + 1]; });
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  row_.resize(first_.back());
+  std::vector<std::size_t> next = first_;
+  each_row([&](int point, std::size_t row) { row_[next[static_cast<std::size_t>(point)]++] = static_cast<int>(row); });
+}
+
+void PointSums::add(const std::vector<double>& rows, Net& sum) const {
+  constexpr std::size_t points_at_a_time = 256;
+  each_block(first_.size() - 1, points_at_a_time, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t point = begin; point < end; ++point) {
+      double* const to = sum.data() + 3 * point;
+      for (std::size_t k = first_[point]; k < first_[point + 1]; ++k)
+        for (std::size_t c = 0; c < 3; ++c) to[c] += rows[3 * static_cast<std::size_t>(row_[k]) + c];
+    }
+  });
 }
 
 }  // namespace tanktread::membrane

@@ -25,6 +25,7 @@ struct Batch {
   /// index in Group::extraction of the first entry of the batch's extraction matrices; the entry for function A and Bernstein polynomial b has the
   /// index extraction + A * (p + 1)^2 + b, with the degree p. Equal matrices are stored once
   std::size_t extraction = 0;
+  std::size_t row = 0;                ///< index of the batch's first row in the rows of PointSums
 };
 
 /// All given elements of one degree and material, in ascending order, with the Gauss rule of the degree.
@@ -50,13 +51,33 @@ std::vector<Group> pack(const spline::Space& space, std::span<const int> element
 /// Evaluates the tangents of a net at the Gauss points of a batch: a[6 q + c] is component c of x_,s, and a[6 q + 3 + c] is component c of x_,t.
 void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a);
 
-/// Applies the transpose of `tangents`: adds sum_q (N_A,s p_s + N_A,t p_t) to the row of each control point A of `sum`. At the Gauss point q, p_s is
-/// p[6 q .. 6 q + 2], and p_t is p[6 q + 3 .. 6 q + 5]. The elements are added one after another, in the order of their lanes.
+/// Applies the transpose of `tangents`: sets sum_q (N_A,s p_s + N_A,t p_t) for each element and function A of the batch; component c for function A
+/// in lane l is rows[3 (l functions + A) + c]. At the Gauss point q, p_s is p[6 q .. 6 q + 2], and p_t is p[6 q + 3 .. 6 q + 5]. add_transpose()
+/// adds the results to the rows of the control points of `sum`. The elements are added one after another, in the order of their lanes.
+void transpose(const Group& group, const Batch& batch, const Pack* p, double* rows);
 void add_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum);
 
 /// Evaluates first and second derivatives of a net at the Gauss points of a batch: j[15 q + 3 k + c] is component c of derivative k = 0 .. 4 at point
-/// q, in the order x_,s x_,t x_,ss x_,st x_,tt. add_jet_transpose applies the transpose of `jets` and adds the result to `sum`.
+/// q, in the order x_,s x_,t x_,ss x_,st x_,tt. jet_transpose applies the transpose of `jets`; `rows`: see transpose().
 void jets(const Group& group, const Batch& batch, const Net& net, Pack* j);
-void add_jet_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum);
+void jet_transpose(const Group& group, const Batch& batch, const Pack* p, double* rows);
+
+/// Sums over all batches of what transpose() gives for each element and function, at the control points. The terms of a control point are added in
+/// the order of groups, batches, lanes and functions, whatever thread computes them.
+class PointSums {
+ public:
+  PointSums() = default;
+  /// Sets the member `row` of the batches of `groups`.
+  PointSums(const spline::Space& space, std::vector<Group>& groups);
+
+  /// Returns memory for the rows of all batches: component c of row r has the index 3 r + c.
+  std::vector<double> rows() const { return std::vector<double>(3 * static_cast<std::size_t>(n_rows_)); }
+  void add(const std::vector<double>& rows, Net& sum) const;  ///< adds the rows to the control points of `sum`
+
+ private:
+  std::size_t n_rows_ = 0;
+  std::vector<std::size_t> first_;  // for each control point, index in row_ of its first term
+  std::vector<int> row_;
+};
 
 }  // namespace tanktread::membrane

@@ -43,14 +43,9 @@ void gather(const Group& g, const Batch& batch, const Net& net, Register* x) {
     }
 }
 
-void scatter(const Group& g, const Batch& batch, const Register* f, Net& sum) {
-  const int* points = &g.points[batch.points];
-  double* rows = sum.data();
+void scatter(const Batch& batch, const Register* f, double* rows) {
   for (int l = 0; l < batch.used; ++l)
-    for (int a = 0; a < batch.functions; ++a) {
-      double* row = rows + 3 * static_cast<std::ptrdiff_t>(points[a * lanes + l]);
-      for (int c = 0; c < 3; ++c) row[c] += f[3 * a + c][l];
-    }
+    for (int k = 0; k < 3 * batch.functions; ++k) *rows++ = f[k][l];
 }
 
 // Orders of the five derivatives x_,s x_,t x_,ss x_,st x_,tt with respect to s and with respect to t.
@@ -131,25 +126,25 @@ void evaluate(const Group& group, const Batch& batch, const Net& net, Pack* a) {
 }
 
 template <int n>
-void transpose(const Group& group, const Batch& batch, const Pack* a, Net& sum) {
+void transpose(const Group& group, const Batch& batch, const Pack* a, double* rows) {
   Register f[3 * spline::most_functions], bezier[3 * max_bernstein];
   with_rule(group, [&](const auto& rule) { rule.template transpose<n>(registers(a), bezier); });
   extract(registers(&group.extraction[batch.extraction]), 1, group.n_bernstein(), bezier, group.n_bernstein(), batch.functions, f);
-  scatter(group, batch, f, sum);
+  scatter(batch, f, rows);
 }
 
 }  // namespace
 
 void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a) { evaluate<2>(group, batch, net, a); }
-void add_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum) { transpose<2>(group, batch, p, sum); }
+void transpose(const Group& group, const Batch& batch, const Pack* p, double* rows) { transpose<2>(group, batch, p, rows); }
 void jets(const Group& group, const Batch& batch, const Net& net, Pack* j) { evaluate<5>(group, batch, net, j); }
-void add_jet_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum) { transpose<5>(group, batch, p, sum); }
+void jet_transpose(const Group& group, const Batch& batch, const Pack* p, double* rows) { transpose<5>(group, batch, p, rows); }
 
 }  // namespace INSTRUCTIONS
 
 KERNEL(void, tangents, (const Group& group, const Batch& batch, const Net& net, Pack* a), (group, batch, net, a))
-KERNEL(void, add_transpose, (const Group& group, const Batch& batch, const Pack* p, Net& sum), (group, batch, p, sum))
+KERNEL(void, transpose, (const Group& group, const Batch& batch, const Pack* p, double* rows), (group, batch, p, rows))
 KERNEL(void, jets, (const Group& group, const Batch& batch, const Net& net, Pack* j), (group, batch, net, j))
-KERNEL(void, add_jet_transpose, (const Group& group, const Batch& batch, const Pack* p, Net& sum), (group, batch, p, sum))
+KERNEL(void, jet_transpose, (const Group& group, const Batch& batch, const Pack* p, double* rows), (group, batch, p, rows))
 
 }  // namespace tanktread::membrane

@@ -1,8 +1,9 @@
 #include "quadrature/gauss.hpp"
 
+#include <array>
+#include <atomic>
 #include <cassert>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 namespace tanktread::quadrature {
@@ -47,20 +48,31 @@ GaussRule made(int n) {
   return rule;
 }
 
-template <class Rule, class Make>
-const Rule& kept(int n, std::map<int, Rule>& rules, Make make) {
+/// Returns make(n). Each rule is computed at its first use and kept in one of several lists. Several threads may call this function, because a
+/// rule does not change after it has entered its list.
+template <class Rule, Rule (*make)(int)>
+const Rule& kept(int n) {
   assert(n >= 1);
-  const auto [rule, fresh] = rules.try_emplace(n);
-  if (fresh) rule->second = make(n);
-  return rule->second;
+  struct Entry {
+    int n;
+    Rule rule;
+    const Entry* next;
+  };
+  static std::array<std::atomic<const Entry*>, 64> lists{};
+  std::atomic<const Entry*>& list = lists[static_cast<std::size_t>(n) % lists.size()];
+  const Entry* const first = list.load(std::memory_order_acquire);
+  for (const Entry* entry = first; entry; entry = entry->next)
+    if (entry->n == n) return entry->rule;
+  auto* const fresh = new Entry{n, make(n), first};  // never deleted
+  while (!list.compare_exchange_weak(fresh->next, fresh, std::memory_order_release)) continue;
+  return fresh->rule;
 }
+
+TensorRule made_tensor(int n) { return tensor(gauss(n), gauss(n)); }
 
 }  // namespace
 
-const GaussRule& gauss(int n) {
-  static std::map<int, GaussRule> rules;
-  return kept(n, rules, made);
-}
+const GaussRule& gauss(int n) { return kept<GaussRule, made>(n); }
 
 TensorRule tensor(const GaussRule& in_s, const GaussRule& in_t) {
   const int n = in_s.size() * in_t.size();
@@ -75,9 +87,6 @@ TensorRule tensor(const GaussRule& in_s, const GaussRule& in_t) {
   return rule;
 }
 
-const TensorRule& tensor_gauss(int n) {
-  static std::map<int, TensorRule> rules;
-  return kept(n, rules, [](int points) { return tensor(gauss(points), gauss(points)); });
-}
+const TensorRule& tensor_gauss(int n) { return kept<TensorRule, made_tensor>(n); }
 
 }  // namespace tanktread::quadrature

@@ -14,7 +14,7 @@ struct GaussRule {
 };
 
 /// Returns the n-point Gauss-Legendre rule on [0, 1], n >= 1. The error of nodes and weights is a few units of round-off. Each rule is computed once
-/// and stored; the reference stays valid for the whole run.
+/// and stored; the reference stays valid for the whole run. Several threads may call this function, and tensor_gauss().
 const GaussRule& gauss(int n);
 
 /// Returns the smallest number of Gauss points that integrates polynomials of this degree exactly.

@@ -15,6 +15,7 @@
 #include "accuracy/obstacles.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "base/threads.hpp"
 #include "deck/expectation.hpp"
 #include "deck/units.hpp"
 #include "record/duct_arrays.hpp"
@@ -104,6 +105,7 @@ void check_vacant(const RunRequest& request) {
 std::map<std::string, std::string> Results::origin() const {
   std::map<std::string, std::string> made_by = request_.provenance;
   made_by["ranks"] = std::to_string(ranks_.size());
+  made_by["threads"] = std::to_string(n_threads());
   made_by["run"] = run_;
   return made_by;
 }

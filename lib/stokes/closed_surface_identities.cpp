@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/threads.hpp"
 #include "stokes/kernels/far_kernel.hpp"
 #include "stokes/kernels/identity_kernel.hpp"
 
@@ -34,8 +35,10 @@ Mat3 identities(const LayerSources& sources, int site) {
 }  // namespace
 
 void subtract_identities(LayerSources& sources, std::span<const int> sites, Net& u) {
-  for (const int i : sites) u.row(i) -= (identities(sources, i) * sources.surface.value(i, sources.bezier_f)).transpose();
-  sources.evaluations.self += static_cast<long long>(sites.size()) * sources.n_nodes();
+  each_item(sites.size(), [&](std::size_t k) {
+    u.row(sites[k]) -= (identities(sources, sites[k]) * sources.surface.value(sites[k], sources.bezier_f)).transpose();
+  });
+  sources.evaluations.mine().self += static_cast<long long>(sites.size()) * sources.n_nodes();
 }
 
 template <class Real>

@@ -114,27 +114,29 @@ void Layer::integrate(const LayerTargets& targets, const Near* kept, Net& u) {
 void Layer::add_near(const LayerTargets& targets, Net& u) {
   const auto clock = sources_.phases.time("near");
   LayerSurface& surface = sources_.surface;
-  for (const int i : targets.rows) {
+  each_item(targets.rows.size(), [&](std::size_t k) {
+    const int i = targets.rows[k];
     const Vec3 f0 = targets.f0.row(i);
     for (const Vec3& image : medium_->panel_shifts()) {
       if (i >= targets.first_image_row && image.isZero(0)) continue;
       const Vec3 at = targets.at.row(i).transpose() - image;
       const std::span<SelfPair> self_pairs = targets.sites && image.isZero(0) ? surface.self_pairs(i) : std::span<SelfPair>();
       for (const int e : surface.near(at, self_pairs))
-        u.row(i) += sources_.beyond_far_sum(e, surface.near_field.rule(e, at, self_pairs), nullptr, at, f0, sources_.evaluations.near).transpose();
+        u.row(i) += sources_.beyond_far_sum(e, surface.near_field.rule(e, at, self_pairs), nullptr, at, f0).transpose();
     }
-  }
+  });
 }
 
 void Layer::add_self(const LayerTargets& targets, Net& u) {
   const auto clock = sources_.phases.time("self");
   LayerSurface& surface = sources_.surface;
-  for (const int i : targets.rows)
-    for (SelfPair& pair : surface.self_pairs(i)) {
-      const PointTable& table = surface.self_field.rule(pair, surface.panels, surface.bezier);
-      u.row(i) +=
-          sources_.beyond_far_sum(pair.panel, table, &pair, targets.at.row(i), targets.f0.row(i), sources_.evaluations.self).transpose();
-    }
+  surface.with_rules(targets.rows, 1, [&](std::span<const int> rows, std::size_t) {
+    each_item(rows.size(), [&](std::size_t k) {
+      const int i = rows[k];
+      for (SelfPair& pair : surface.self_pairs(i))
+        u.row(i) += sources_.beyond_far_sum(pair.panel, *pair.table, &pair, targets.at.row(i), targets.f0.row(i)).transpose();
+    });
+  });
   if (sources_.desingularised()) subtract_identities(sources_, targets.rows, u);
 }
 
@@ -155,43 +157,54 @@ void Layer::set_far(const LayerTargets& targets, Net& u) {
 Layer::Near Layer::near(const Net& at, std::span<const int> targets, int first_image_row) {
   const auto clock = sources_.phases.time("near");
   LayerSurface& surface = sources_.surface;
-  Near kept{{0}, {}, {}};
-  for (const int i : targets) {
+  std::vector<Near> of_target(targets.size());
+  each_item(targets.size(), [&](std::size_t k) {
+    const int i = targets[k];
+    auto& [first, first_moment, panels, moments] = of_target[k];
     for (const Vec3& image : medium_->panel_shifts()) {
       if (i >= first_image_row && image.isZero(0)) continue;
       const Vec3 y = at.row(i).transpose() - image;
       for (const int e : surface.near(y, {})) {
-        const std::size_t first = kept.moments.size();
-        kept.panels.push_back(e);
-        kept.moments.resize(first + static_cast<std::size_t>(kernel_entries) * surface.panels[e].table->n_bernstein);
+        const std::size_t begin = moments.size();
+        panels.push_back(e);
+        moments.resize(begin + static_cast<std::size_t>(kernel_entries) * surface.panels[e].table->n_bernstein);
         const PointTable& table = surface.near_field.rule(e, y, {});
-        sources_.moments_beyond_far_sum(e, table, nullptr, y, &kept.moments[first]);
-        sources_.evaluations.near += table.points + surface.panels[e].table->n_nodes;
+        sources_.moments_beyond_far_sum(e, table, nullptr, y, &moments[begin]);
+        sources_.evaluations.mine().near += table.points + surface.panels[e].table->n_nodes;
       }
     }
+  });
+  Near kept{{0}, {0}, {}, {}};
+  for (Near& one : of_target) {
+    kept.panels.insert(kept.panels.end(), one.panels.begin(), one.panels.end());
+    kept.moments.insert(kept.moments.end(), one.moments.begin(), one.moments.end());
     kept.first.push_back(kept.panels.size());
+    kept.first_moment.push_back(kept.moments.size());
+    one = {};
   }
   return kept;
 }
 
 void Layer::add_kept(const LayerTargets& targets, const Near& kept, Net& u) const {
-  const double* m = kept.moments.data();
-  for (std::size_t k = 0; k < targets.rows.size(); ++k) {
-    const int i = targets.rows[k];
-    double sum[3] = {0, 0, 0};
-    for (std::size_t pair = kept.first[k]; pair < kept.first[k + 1]; ++pair) {
-      const Panel& panel = sources_.surface.panels[kept.panels[pair]];
-      const int n_b = panel.table->n_bernstein;
-      const double* f = &sources_.bezier_f[panel.first_bezier];
-      for (int b = 0; b < n_b; ++b, m += kernel_entries) {
-        const double f1 = f[b] - targets.f0(i, 0), f2 = f[n_b + b] - targets.f0(i, 1), f3 = f[2 * n_b + b] - targets.f0(i, 2);
-        sum[0] += m[0] * f1 + m[1] * f2 + m[2] * f3;
-        sum[1] += m[1] * f1 + m[3] * f2 + m[4] * f3;
-        sum[2] += m[2] * f1 + m[4] * f2 + m[5] * f3;
+  each_block(targets.rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+    const double* m = kept.moments.data() + kept.first_moment[begin];
+    for (std::size_t k = begin; k < end; ++k) {
+      const int i = targets.rows[k];
+      double sum[3] = {0, 0, 0};
+      for (std::size_t pair = kept.first[k]; pair < kept.first[k + 1]; ++pair) {
+        const Panel& panel = sources_.surface.panels[kept.panels[pair]];
+        const int n_b = panel.table->n_bernstein;
+        const double* f = &sources_.bezier_f[panel.first_bezier];
+        for (int b = 0; b < n_b; ++b, m += kernel_entries) {
+          const double f1 = f[b] - targets.f0(i, 0), f2 = f[n_b + b] - targets.f0(i, 1), f3 = f[2 * n_b + b] - targets.f0(i, 2);
+          sum[0] += m[0] * f1 + m[1] * f2 + m[2] * f3;
+          sum[1] += m[1] * f1 + m[3] * f2 + m[4] * f3;
+          sum[2] += m[2] * f1 + m[4] * f2 + m[5] * f3;
+        }
       }
+      for (int c = 0; c < 3; ++c) u(i, c) += sum[c];
     }
-    for (int c = 0; c < 3; ++c) u(i, c) += sum[c];
-  }
+  });
 }
 
 }  // namespace tanktread::stokes

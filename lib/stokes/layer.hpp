@@ -93,7 +93,8 @@ class Layer {
   /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density. For each pair of a point and a close panel,
   /// the corrections are stored as moments: kernel_entries per Bernstein polynomial of the panel.
   struct Near {
-    std::vector<std::size_t> first;  ///< for each target, index in `panels` at which the list of the target's close panels begins
+    std::vector<std::size_t> first, first_moment;  ///< for each target, index in `panels` at which the list of the target's close panels begins, and
+                                                   ///< index of its first moment
     std::vector<int> panels;
     std::vector<double> moments;
   };
@@ -143,7 +144,7 @@ class Layer {
   Eigen::VectorXd moments(const std::vector<double>& g) const { return sources_.moments(g); }
 
   /// Returns the number of kernel evaluations since construction.
-  const Evaluations& evaluations() const { return sources_.evaluations; }
+  Evaluations evaluations() const { return sources_.evaluations.sum(); }
   /// Returns the computing times since construction, divided into `setup`, `far`, `near`, `self` and `assembly`, and further phases for a lattice or
   /// a wall.
   const Phases& phases() const { return sources_.phases; }

@@ -115,14 +115,15 @@ class RowSums {
   RowSums(LayerSources& sources, const LayerMedium& medium, const Net* at, Copies copies)
       : sources_(sources), medium_(medium), at_(at), copies_(copies), shifts_(displacements(medium, copies)) {}
 
-  FarBasis<Real> basis;
-  std::vector<Real> sums;  ///< sums[n (m row + c) + l], with n = assembly_block and m = kernel_entries: integral of kernel entry c (11, 12, 13, 22,
-                           ///< 23, 33) times the basis function of control point `row`, at target l
-
-  void add(std::span<const int> targets, int rows) {
-    sums.assign(static_cast<std::size_t>(kernel_entries) * assembly_block * (rows + 1), Real(0));
-    skip_.assign(basis.panels.size(), 0u);
-    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], l);
+  /// Returns the sums of a block of targets: element n (m row + c) + l, with n = assembly_block and m = kernel_entries, is the integral of kernel
+  /// entry
+  /// c (11, 12, 13, 22, 23, 33) times the basis function of control point `row`, at target l. `rows`: number of control points in `basis`. The result
+  /// is valid until the next call by the same thread.
+  std::vector<Real>& of(std::span<const int> targets, const FarBasis<Real>& basis, int rows) {
+    Work& work = work_.mine();
+    work.sums.assign(static_cast<std::size_t>(kernel_entries) * assembly_block * (rows + 1), Real(0));
+    work.skip.assign(basis.panels.size(), 0u);
+    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(basis, targets[l], l, work);
     for (const Vec3& image : wrapped() ? medium_.node_shifts() : shifts_) {
       double place[3 * assembly_block];
       for (int l = 0; l < assembly_block; ++l) {
@@ -130,43 +131,50 @@ class RowSums {
         const Vec3 seen = (wrapped() ? medium_.wrapped(x0) : x0) - image;
         for (int c = 0; c < 3; ++c) place[assembly_block * c + l] = seen[c];
       }
-      for (std::size_t k = 0; k < basis.panels.size(); ++k) add_far_panel(k, place, static_cast<int>(targets.size()));
+      for (std::size_t k = 0; k < basis.panels.size(); ++k) add_far_panel(basis, k, place, static_cast<int>(targets.size()), work);
     }
+    return work.sums;
   }
 
  private:
+  struct Work {
+    std::vector<Real> sums, kernel;
+    std::vector<double> moments;
+    std::vector<std::uint32_t> skip;
+  };
+
   Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : sources_.surface.site(target); }
   bool wrapped() const { return copies_ == Copies::with_images; }  // whether far sums use nodes that are moved into the cell
 
   /// Adds the corrections by near-singular and singular quadrature for one target. A displaced panel is corrected if it is close to the target. The
   /// far sum that is corrected contains the nodes of displaced panels. l: index of the target in its block of sixteen.
-  void add_close_panels(int target, int l) {
+  void add_close_panels(const FarBasis<Real>& basis, int target, int l, Work& work) {
     LayerSurface& surface = sources_.surface;
     for (const Vec3& image : shifts_) {
       const Vec3 x0 = place_of(target) - image;
       const std::span<SelfPair> self_pairs = !at_ && image.isZero(0) ? surface.self_pairs(target) : std::span<SelfPair>();
       for (const int e : surface.near(x0, self_pairs))
-        if (basis.index[e] >= 0) add_panel(e, surface.near_field.rule(e, x0, self_pairs), nullptr, x0, l);
+        if (basis.index[e] >= 0) add_panel(basis, e, surface.near_field.rule(e, x0, self_pairs), nullptr, x0, l, work);
       for (SelfPair& pair : self_pairs)
-        if (basis.index[pair.panel] >= 0) add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
+        if (basis.index[pair.panel] >= 0) add_panel(basis, pair.panel, *pair.table, &pair, x0, l, work);
     }
   }
 
-  void add_panel(int e, const PointTable& table, SelfPair* pair, const Vec3& x0, int l) {
+  void add_panel(const FarBasis<Real>& basis, int e, const PointTable& table, SelfPair* pair, const Vec3& x0, int l, Work& work) {
     const Panels& panels = sources_.surface.panels;
     const auto k = static_cast<std::size_t>(basis.index[e]);
-    moments_.resize(static_cast<std::size_t>(kernel_entries) * panels[e].table->n_bernstein);
+    work.moments.resize(static_cast<std::size_t>(kernel_entries) * panels[e].table->n_bernstein);
     if (copies_ != Copies::surfaces) {
-      sources_.moments_beyond_far_sum(e, table, pair, x0, moments_.data());
+      sources_.moments_beyond_far_sum(e, table, pair, x0, work.moments.data());
     } else {
-      skip_[k] |= 1u << l;
-      sources_.panel_moments(e, table, pair, x0, moments_.data());
+      work.skip[k] |= 1u << l;
+      sources_.panel_moments(e, table, pair, x0, work.moments.data());
     }
-    add_moments(panels, e, &basis.rows[basis.first_row[k]], moments_.data(), &sums[l]);
-    (pair ? sources_.evaluations.self : sources_.evaluations.near) += table.points;
+    add_moments(panels, e, &basis.rows[basis.first_row[k]], work.moments.data(), &work.sums[l]);
+    (pair ? sources_.evaluations.mine().self : sources_.evaluations.mine().near) += table.points;
   }
 
-  void add_far_panel(std::size_t k, const double* place, int n_targets) {
+  void add_far_panel(const FarBasis<Real>& basis, std::size_t k, const double* place, int n_targets, Work& work) {
     const int first = sources_.surface.panels[basis.panels[k]].first_node;
     PanelNodes<Real> nodes = basis.nodes(sources_.surface, wrapped() ? medium_.nodes(sources_) : sources_.surface.node, k);
     switch (sources_.kernel()) {
@@ -175,9 +183,9 @@ class RowSums {
         for (int c = 0; c < 3; ++c) nodes.normal[c] = &sources_.normal[c][first];
         break;
     }
-    kernel_.resize(static_cast<std::size_t>(kernel_entries) * assembly_block * nodes.n_nodes);
-    far_moments(nodes, place, skip_[k], kernel_.data(), sums.data());
-    sources_.evaluations.far += static_cast<long long>(n_targets) * nodes.n_nodes;
+    work.kernel.resize(static_cast<std::size_t>(kernel_entries) * assembly_block * nodes.n_nodes);
+    far_moments(nodes, place, work.skip[k], work.kernel.data(), work.sums.data());
+    sources_.evaluations.mine().far += static_cast<long long>(n_targets) * nodes.n_nodes;
   }
 
   LayerSources& sources_;
@@ -185,10 +193,22 @@ class RowSums {
   const Net* at_;
   Copies copies_;
   std::vector<Vec3> shifts_;  // displacements of the panels that contribute
-  std::vector<Real> kernel_;
-  std::vector<double> moments_;
-  std::vector<std::uint32_t> skip_;
+  PerThread<Work> work_;
 };
+
+/// Calls use(some, first) for the blocks of sixteen targets, on all threads, while the pairs of these targets and panels have singular rules.
+/// `some` are the targets from index `first` on.
+template <class Use>
+void each_target_block(LayerSurface& surface, std::span<const int> targets, bool sites, const Use& use) {
+  constexpr std::size_t block = assembly_block;
+  const auto blocks = [&](std::span<const int> part, std::size_t begin) {
+    each_block(part.size(), block, [&](std::size_t first, std::size_t last) {
+      stop_here();
+      use(part.subspan(first, last - first), begin + first);
+    });
+  };
+  sites ? surface.with_rules(targets, block, blocks) : blocks(targets, 0);
+}
 
 /// Subtracts the term with the density f(x_i) at the site x_i from the double layer (2.2). With the sums A_iC of all control points C, this subtracts
 /// N_B(x_i) sum_C A_iC from the sum A_iB of each control point B. The subtracted term is thereby integrated by the same quadrature rules as the term
@@ -210,11 +230,10 @@ void subtract_density_at_site(const LayerSources& sources, int site, Real* sums)
 template <class Real>
 void add_medium_rows(LayerSources& sources, LayerMedium& medium, std::span<const int> targets, const Net* at, Rows<Real>& a) {
   const LayerSurface& surface = sources.surface;
-  std::vector<Mat3> block;
-  for (std::size_t k = 0; k < targets.size(); ++k) {
+  const auto add = [&](std::size_t k) {
     stop_here();
-    block.assign(static_cast<std::size_t>(surface.n_points), Mat3::Zero());
-    if (!medium.add_row(sources, at ? Vec3(at->row(targets[k]).transpose()) : surface.site(targets[k]), block)) return;
+    std::vector<Mat3> block(static_cast<std::size_t>(surface.n_points), Mat3::Zero());
+    if (!medium.add_row(sources, at ? Vec3(at->row(targets[k]).transpose()) : surface.site(targets[k]), block)) return false;
     if (properties(sources.kernel()).subtracts_density && !at) {
       Mat3 total = Mat3::Zero();
       for (const Mat3& of_point : block) total += of_point;
@@ -224,29 +243,31 @@ void add_medium_rows(LayerSources& sources, LayerMedium& medium, std::span<const
     for (std::size_t p = 0; p < block.size(); ++p)
       a.template block<3, 3>(3 * static_cast<Eigen::Index>(k), 3 * static_cast<Eigen::Index>(p)) +=
           (over_8_pi * block[p]).template cast<Real>();
-  }
+    return true;
+  };
+  if (targets.empty() || !add(0)) return;
+  each_item(targets.size() - 1, [&](std::size_t k) { add(k + 1); }, medium.any_thread());
 }
 
 /// Assembles the rows of the targets without the terms of the medium other than displaced images.
 template <class Real>
 void assemble_copies(LayerSources& sources, const LayerMedium& medium, std::span<const int> targets, const Net* at, Copies copies, Rows<Real>& a) {
   const auto clock = sources.phases.time("assembly");
-  constexpr std::size_t block = assembly_block;
   const Panels& panels = sources.surface.panels;
+  const int n = sources.surface.n_points;
   RowSums<Real> rows(sources, medium, at, copies);
-  const std::vector<int> row_of_point = indices(sources.surface.n_points);
-  rows.basis.clear(panels);
-  for (int e = 0; e < panels.size(); ++e) rows.basis.add(panels, e, row_of_point, sources.surface.n_points);
-  a.resize(3 * static_cast<Eigen::Index>(targets.size()), 3 * sources.surface.n_points);
-  for (std::size_t first = 0; first < targets.size(); first += block) {
-    stop_here();
-    const std::span<const int> some = targets.subspan(first, std::min(block, targets.size() - first));
-    rows.add(some, sources.surface.n_points);
+  const std::vector<int> row_of_point = indices(n);
+  FarBasis<Real> basis;
+  basis.clear(panels);
+  for (int e = 0; e < panels.size(); ++e) basis.add(panels, e, row_of_point, n);
+  a.resize(3 * static_cast<Eigen::Index>(targets.size()), 3 * n);
+  each_target_block(sources.surface, targets, !at, [&](std::span<const int> some, std::size_t first) {
+    std::vector<Real>& sums = rows.of(some, basis, n);
     for (std::size_t l = 0; l < some.size(); ++l) {
-      if (properties(sources.kernel()).subtracts_density && !at) subtract_density_at_site(sources, some[l], &rows.sums[l]);
-      write_rows(3 * static_cast<int>(first + l), sources.surface.n_points, &rows.sums[l], a);
+      if (properties(sources.kernel()).subtracts_density && !at) subtract_density_at_site(sources, some[l], &sums[l]);
+      write_rows(3 * static_cast<int>(first + l), n, &sums[l], a);
     }
-  }
+  });
 }
 
 template <class Real>
@@ -295,29 +316,32 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
   for (int e = 0; e < panels.size(); ++e)
     for (int a = 0; a < panels[e].functions; ++a) panels_of[panels.points(e)[a]].push_back(e);
   RowSums<double> rows(sources_, *medium_, nullptr, copies(*medium_));
-  std::vector<int> row_of_point;
+  struct Work {
+    std::vector<int> row_of_point, wanted, with_wanted;
+    FarBasis<double> basis;
+  };
+  PerThread<Work> works;
   entries.resize(kernel_entries * near.point.size());
-  for (std::size_t first = 0; first < sites.size(); first += block) {
-    stop_here();
-    const std::span<const int> some = sites.subspan(first, std::min(block, sites.size() - first));
-    std::vector<int> wanted(near.point.begin() + static_cast<std::ptrdiff_t>(near.first[first]),
-                            near.point.begin() + static_cast<std::ptrdiff_t>(near.first[first + some.size()]));
+  each_target_block(sources_.surface, sites, true, [&](std::span<const int> some, std::size_t first) {
+    auto& [row_of_point, wanted, with_wanted, basis] = works.mine();
+    wanted.assign(near.point.begin() + static_cast<std::ptrdiff_t>(near.first[first]),
+                  near.point.begin() + static_cast<std::ptrdiff_t>(near.first[first + some.size()]));
     sort_and_drop_repeated(wanted);
     const int spare = static_cast<int>(wanted.size());
     row_of_point.assign(static_cast<std::size_t>(sources_.surface.n_points), spare);
     for (int k = 0; k < spare; ++k) row_of_point[wanted[k]] = k;
-    std::vector<int> with_wanted;
+    with_wanted.clear();
     for (const int point : wanted) with_wanted.insert(with_wanted.end(), panels_of[point].begin(), panels_of[point].end());
     sort_and_drop_repeated(with_wanted);
-    rows.basis.clear(panels);
-    for (const int e : with_wanted) rows.basis.add(panels, e, row_of_point, spare);
-    rows.add(some, spare);
+    basis.clear(panels);
+    for (const int e : with_wanted) basis.add(panels, e, row_of_point, spare);
+    const std::vector<double>& sums = rows.of(some, basis, spare);
     for (std::size_t l = 0; l < some.size(); ++l)
       for (std::size_t j = near.first[first + l]; j < near.first[first + l + 1]; ++j)
         for (std::size_t c = 0; c < kernel_entries; ++c)
           entries[kernel_entries * j + c] =
-              over_8_pi * rows.sums[block * (kernel_entries * static_cast<std::size_t>(row_of_point[near.point[j]]) + c) + l];
-  }
+              over_8_pi * sums[block * (kernel_entries * static_cast<std::size_t>(row_of_point[near.point[j]]) + c) + l];
+  });
   if (sources_.desingularised()) subtract_identities(sources_, sites, near, entries);
 }
 

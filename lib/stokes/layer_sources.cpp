@@ -46,8 +46,10 @@ bool LayerSources::set_shape(const Net& x, Measure measure) {
 /// Sets `weight` without the factors of the surfaces.
 void LayerSources::set_weights() {
   weight = reference_.weight, weight.resize(static_cast<std::size_t>(n_nodes()));
-  for (int e = 0; e < surface.panels.size(); ++e)
-    if (!on_reference(e)) node_weights(surface.panels, e, surface.bezier, weight);
+  each_block(surface.panels.size(), panel_block, [&](int first, int last) {
+    for (int e = first; e < last; ++e)
+      if (!on_reference(e)) node_weights(surface.panels, e, surface.bezier, weight);
+  });
 }
 
 /// Multiplies arrays of values at the far nodes by the factors of the surfaces.
@@ -120,7 +122,7 @@ Net LayerSources::direct_sum(const NodeVectors& x, std::span<const Vec3> at, std
     case LayerKernel::single_layer: far_sums(charges(x, density), at, sums.data()); break;
     case LayerKernel::double_layer: far_sums(stresslets(x, density, normal), at, f0, sums.data()); break;
   }
-  evaluations.far += static_cast<long long>(at.size()) * n_nodes();
+  evaluations.mine().far += static_cast<long long>(at.size()) * n_nodes();
   return sums;
 }
 
@@ -134,7 +136,7 @@ Vec3 LayerSources::direct_sum(int e, const Vec3& at, const Vec3& f0) const {
   return sum;
 }
 
-Vec3 LayerSources::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count) {
+Vec3 LayerSources::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0) {
   const Panel& panel = surface.panels[e];
   const double *x = &surface.bezier[panel.first_bezier], *f = &bezier_f[panel.first_bezier];
   Vec3 better;
@@ -142,13 +144,13 @@ Vec3 LayerSources::beyond_far_sum(int e, const PointTable& table, SelfPair* pair
     case LayerKernel::single_layer: single_sum(table, x, f, area_weights_of(e, table, pair), at.data(), better.data()); break;
     case LayerKernel::double_layer: double_sum(table, x, f, at.data(), f0.data(), better.data()); break;
   }
-  count += table.points + panel.table->n_nodes;
+  (pair ? evaluations.mine().self : evaluations.mine().near) += table.points + panel.table->n_nodes;
   return factor(e) * better - direct_sum(e, at, f0);
 }
 
 const Pack* LayerSources::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
   const bool unstressed = on_reference(e), kept = pair && unstressed;
-  std::vector<Pack>& weights = kept ? pair->weights : point_weights_;
+  std::vector<Pack>& weights = kept ? pair->weights : scratch_.mine().weights;
   if (kept && !weights.empty()) return weights.data();
   weights.resize(table.packs());
   area_weights(table, &(unstressed ? reference_.bezier : surface.bezier)[surface.panels[e].first_bezier], weights.data());
@@ -157,10 +159,11 @@ const Pack* LayerSources::area_weights_of(int e, const PointTable& table, SelfPa
 
 void LayerSources::panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
   const double* bezier = &surface.bezier[surface.panels[e].first_bezier];
-  scratch_.resize(static_cast<std::size_t>(kernel_entries) * table.packs());
+  std::vector<Pack>& scratch = scratch_.mine().kernel;
+  scratch.resize(static_cast<std::size_t>(kernel_entries) * table.packs());
   switch (kernel_) {
-    case LayerKernel::single_layer: single_moments(table, bezier, area_weights_of(e, table, pair), at.data(), scratch_.data(), moments); break;
-    case LayerKernel::double_layer: double_moments(table, bezier, at.data(), scratch_.data(), moments); break;
+    case LayerKernel::single_layer: single_moments(table, bezier, area_weights_of(e, table, pair), at.data(), scratch.data(), moments); break;
+    case LayerKernel::double_layer: double_moments(table, bezier, at.data(), scratch.data(), moments); break;
   }
   if (factor_.empty()) return;
   for (int k = 0; k < kernel_entries * surface.panels[e].table->n_bernstein; ++k) moments[k] *= factor_[e];

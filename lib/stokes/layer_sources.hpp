@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/threads.hpp"
 #include "base/timing.hpp"
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
@@ -75,8 +76,9 @@ class LayerSources {
   Vec3 direct_sum(int e, const Vec3& at, const Vec3& f0) const;
 
   /// Returns the integral over panel e by the near-singular or singular rule `table` minus the contribution of the panel to the far sum. `pair`: the
-  /// pair of target and panel if the panel contains the target, otherwise null. `count` is increased by the number of kernel evaluations.
-  Vec3 beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count);
+  /// pair of target and panel if the panel contains the target, otherwise null. Several threads may call this function and the following
+  /// ones, for different targets.
+  Vec3 beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0);
 
   /// Computes the integrals of the kernel times each Bernstein polynomial (kernel_entries numbers for each: 11, 12, 13, 22, 23, 33) over panel e by
   /// the rule `table`, times the factor of the panel. moments_beyond_far_sum() subtracts the contribution of the panel to the far sum.
@@ -84,7 +86,7 @@ class LayerSources {
   void moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments);
 
   /// Returns the weights of a quadrature rule on panel e, times the area element. If the panel contains the target and the areas are unstressed
-  /// areas, the weights are kept in `pair`.
+  /// areas, the weights are kept in `pair`. The result is valid until the next call by the same thread.
   const Pack* area_weights_of(int e, const PointTable& table, SelfPair* pair);
 
   LayerSurface surface;
@@ -92,7 +94,7 @@ class LayerSources {
   std::vector<double> weight;     ///< quadrature weights of the far nodes, times area and the factor k_p of (2.1), if uses_weights
   NodeVectors density, normal;    ///< values at the far nodes. density: density f (times `weight` if uses_weights). normal: normal times
                                   ///< quadrature weight, area and factor k_p of (2.2)
-  Evaluations evaluations;        ///< kernel evaluations since construction
+  PerThread<Evaluations> evaluations;  ///< kernel evaluations since construction
   Phases phases;                  ///< computing times since construction
 
  private:
@@ -113,7 +115,10 @@ class LayerSources {
   Reference reference_;
   std::vector<double> bezier_field_;
   StressletMoments moments_;  // result of the latest call of stresslet_moments() or stresslet_moments_of_constant()
-  std::vector<Pack> point_weights_, scratch_;
+  struct Scratch {
+    std::vector<Pack> weights, kernel;
+  };
+  PerThread<Scratch> scratch_;
 };
 
 }  // namespace tanktread::stokes

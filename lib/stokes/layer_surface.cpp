@@ -126,10 +126,11 @@ std::span<SelfPair> LayerSurface::self_pairs(int i) {
   return self_field[i];
 }
 
-const std::vector<int>& LayerSurface::near(const Vec3& target, std::span<const SelfPair> self_pairs) {
-  near_.clear();
-  if (properties(options.rule).corrects_near) near_field.list(target, self_pairs, near_);
-  return near_;
+const std::vector<int>& LayerSurface::near(const Vec3& target, std::span<const SelfPair> self_pairs) const {
+  std::vector<int>& found = near_.mine();
+  found.clear();
+  if (properties(options.rule).corrects_near) near_field.list(target, self_pairs, found);
+  return found;
 }
 
 void LayerSurface::set_sources_of(TreeSum& tree, std::span<const Vec3> targets) const {

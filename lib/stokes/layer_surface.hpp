@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "base/threads.hpp"
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
@@ -52,9 +53,16 @@ class LayerSurface {
   /// has_singular_rules is false.
   std::span<SelfPair> self_pairs(int i);
 
+  /// Calls use(some, first) for parts of `sites` while their pairs have singular rules, see SelfField::with_rules().
+  template <class Use>
+  void with_rules(std::span<const int> sites, std::size_t multiple, const Use& use) {
+    self_field.with_rules(sites, multiple, panels, bezier, use);
+  }
+
   /// Returns the panels that need near-singular quadrature for a target, without the panels of `self_pairs`, which contain the target. The list is
   /// empty if corrects_near is false; then `near_field` has no shape, and NearField::rule must not be called.
-  const std::vector<int>& near(const Vec3& target, std::span<const SelfPair> self_pairs);
+  /// Several threads may call it; the result is valid until the next call by the same thread.
+  const std::vector<int>& near(const Vec3& target, std::span<const SelfPair> self_pairs) const;
 
   /// Sets the sources of `tree` to the far nodes of the fundamental panels, and its targets to all targets and their symmetry images. All ranks that
   /// share the sums must pass equal targets, so that clusters do not depend on which rank computes which rows.
@@ -72,7 +80,7 @@ class LayerSurface {
   Net placed_;
   surface::FundamentalElements fundamental_;
   PanelImages images_;
-  std::vector<int> near_;
+  mutable PerThread<std::vector<int>> near_;
 };
 
 }  // namespace tanktread::stokes

@@ -58,12 +58,20 @@ void BezierMap::points(int element, const Net& net, double* out) const {
 }
 
 void BezierMap::add_transposed(int element, const double* in, Net& net) const {
-  const auto& [degree, m, first, operation] = elements_[element];
-  const int* ids = points_.data() + first;
-  Room sums(3 * m);
-  three_sums(m, n_bezier(element), &by_bezier_[operation], in, sums.numbers);
+  std::vector<double> rows;
+  transposed(element, in, rows);
+  add_rows(element, rows, net);
+}
+
+void BezierMap::transposed(int element, const double* in, std::vector<double>& rows) const {
+  rows.resize(3 * static_cast<std::size_t>(elements_[element].functions));
+  three_sums(elements_[element].functions, n_bezier(element), &by_bezier_[elements_[element].operation], in, rows.data());
+}
+
+void BezierMap::add_rows(int element, const std::vector<double>& rows, Net& net) const {
+  const int m = elements_[element].functions, *ids = points_.data() + elements_[element].first;
   for (int a = 0; a < m; ++a)
-    for (int c = 0; c < 3; ++c) net(ids[a], c) += sums.numbers[c * m + a];
+    for (int c = 0; c < 3; ++c) net(ids[a], c) += rows[static_cast<std::size_t>(c * m + a)];
 }
 
 }  // namespace tanktread::surface

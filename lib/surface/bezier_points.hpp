@@ -60,6 +60,10 @@ class BezierMap {
   /// Bezier points into derivatives with respect to control points.
   void add_transposed(int element, const double* in, Net& net) const;
 
+  /// transposed() computes what add_transposed() adds to the control points of one element, and add_rows() adds it.
+  void transposed(int element, const double* in, std::vector<double>& rows) const;
+  void add_rows(int element, const std::vector<double>& rows, Net& net) const;
+
  private:
   struct Element {
     int degree, functions, first;  ///< degree p; number of functions; index in `points_` of the element's first control point

@@ -1,5 +1,6 @@
 #include "surface/geometry.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,15 +15,26 @@
 namespace tanktread::surface {
 namespace {
 
-/// Applies the transpose of the map from control points to Bezier points: adds derivatives with respect to the Bezier points of a group of elements
-/// to derivatives with respect to the control points.
-void add_transposed(const BezierMap& map, std::span<const int> group, const kernel::Lanes& dual, Net& net) {
-  const std::size_t lanes = pack_lanes();
-  double one[3 * kernel::most_bezier];
-  for (std::size_t l = 0; l < group.size(); ++l) {
-    for (int k = 0; k < 3 * map.n_bezier(group[0]); ++k) one[k] = dual.value[k * lanes + l];
-    map.add_transposed(group[l], one, net);
-  }
+/// Adds to `b` the derivative of an integral with respect to the control points. gradient(degree, x, g) computes the derivatives g of a group of
+/// elements with respect to their Bezier points x.
+template <class Gradient>
+void add_gradient(const BezierMap& map, const Net& net, std::span<const int> elements, const Gradient& gradient, Net& b) {
+  using Rows = std::array<std::vector<double>, most_lanes>;  // of each element of a group
+  each_group<Rows>(
+      map, elements,
+      [&](int degree, std::span<const int> group, Rows& rows) {
+        kernel::Lanes dual;
+        gradient(degree, points_of(map, net, group), dual);
+        const std::size_t lanes = pack_lanes();
+        double one[3 * kernel::most_bezier];
+        for (std::size_t l = 0; l < group.size(); ++l) {
+          for (int k = 0; k < 3 * map.n_bezier(group[0]); ++k) one[k] = dual.value[k * lanes + l];
+          map.transposed(group[l], one, rows[l]);
+        }
+      },
+      [&](std::span<const int> group, const Rows& rows) {
+        for (std::size_t l = 0; l < group.size(); ++l) map.add_rows(group[l], rows[l], b);
+      });
 }
 
 /// Returns the control points relative to their mean, because integrals by the divergence theorem lose digits if the origin is far from the
@@ -57,20 +69,13 @@ double Geometry::volume(const Net& net) const {
 
 void Geometry::volume_gradient(const Net& net, std::span<const int> elements, Net& b) const {
   b.setZero(map_.n_points(), 3);
-  kernel::Lanes gradient;
-  each_group(map_, elements, [&](int degree, std::span<const int> group) {
-    kernel::volume_gradient(degree, points_of(map_, net, group), gradient);
-    add_transposed(map_, group, gradient, b);
-  });
+  add_gradient(map_, net, elements, [](int degree, const kernel::Lanes& x, kernel::Lanes& g) { kernel::volume_gradient(degree, x, g); }, b);
 }
 
 void Geometry::add_moment_gradient(const Net& net, const Vec3& g, const Vec3& origin, std::span<const int> elements, Net& b) const {
   const Net here = net.rowwise() - origin.transpose();
-  kernel::Lanes gradient;
-  each_group(map_, elements, [&](int degree, std::span<const int> group) {
-    kernel::moment_gradient(degree, points_of(map_, here, group), g.data(), gradient);
-    add_transposed(map_, group, gradient, b);
-  });
+  add_gradient(
+      map_, here, elements, [&](int degree, const kernel::Lanes& x, kernel::Lanes& dual) { kernel::moment_gradient(degree, x, g.data(), dual); }, b);
 }
 
 Net Geometry::volume_gradient(const Net& net) const {
@@ -85,18 +90,20 @@ std::vector<double> Geometry::block_moments(const Net& net, std::span<const int>
   Vec3 mean;
   const Net here = about_mean(net, mean);
   std::vector<double> moments(static_cast<std::size_t>(n_moments) * n_blocks(), 0.);
-  for (const int b : blocks)
-    each_group(map_, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group) {
-      kernel::Moments part;
-      kernel::moments(degree, points_of(map_, here, group), part);
-      double* const sum = &moments[static_cast<std::size_t>(n_moments) * b];
-      for (std::size_t l = 0; l < group.size(); ++l) {
-        sum[0] += part.area[l];
-        sum[1] += part.volume[l];
-        for (int c = 0; c < 3; ++c) sum[2 + c] += part.first[c][l];
-        for (int k = 0; k < 6; ++k) sum[5 + k] += part.second[k][l];
-      }
-    });
+  each_item(blocks.size(), [&](std::size_t k) {
+    double* const sum = &moments[static_cast<std::size_t>(n_moments) * blocks[k]];
+    each_group<kernel::Moments>(
+        map_, elements_of(blocks.subspan(k, 1), map_.n_elements()),
+        [&](int degree, std::span<const int> group, kernel::Moments& part) { kernel::moments(degree, points_of(map_, here, group), part); },
+        [&](std::span<const int> group, const kernel::Moments& part) {
+          for (std::size_t l = 0; l < group.size(); ++l) {
+            sum[0] += part.area[l];
+            sum[1] += part.volume[l];
+            for (int c = 0; c < 3; ++c) sum[2 + c] += part.first[c][l];
+            for (int i = 0; i < 6; ++i) sum[5 + i] += part.second[i][l];
+          }
+        });
+  });
   return moments;
 }
 
@@ -165,14 +172,17 @@ Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v) {
   const Net here = about_mean(x, mean);
   double volume = 0, flux = 0;
   for (const DegreeGroup& of_degree : map.groups())
-    each_group(map, of_degree.elements, [&](int degree, std::span<const int> group) {
-      kernel::Transport part;
-      kernel::transport(degree, points_of(map, here, group), points_of(map, v, group), part);
-      for (std::size_t l = 0; l < group.size(); ++l) {
-        volume += part.volume[l], flux += part.flux[l];
-        for (int c = 0; c < 3; ++c) first[c] += part.first[c][l], flux_moment[c] += part.flux_moment[c][l];
-      }
-    });
+    each_group<kernel::Transport>(
+        map, of_degree.elements,
+        [&](int degree, std::span<const int> group, kernel::Transport& part) {
+          kernel::transport(degree, points_of(map, here, group), points_of(map, v, group), part);
+        },
+        [&](std::span<const int> group, const kernel::Transport& part) {
+          for (std::size_t l = 0; l < group.size(); ++l) {
+            volume += part.volume[l], flux += part.flux[l];
+            for (int c = 0; c < 3; ++c) first[c] += part.first[c][l], flux_moment[c] += part.flux_moment[c][l];
+          }
+        });
   return (flux_moment - flux / volume * first) / volume;
 }
 

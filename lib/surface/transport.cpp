@@ -113,16 +113,19 @@ std::vector<double> shape_velocity_sums(const BezierMap& map, const Net& x, cons
   const Net here = (x.rowwise() - x.colwise().mean()) / radius;
   std::vector<double> numbers(Sums::size, 0.);
   Sums sums(numbers.data());
-  each_group(map, elements, [&](int degree, std::span<const int> group) {
-    kernel::ShapeMotion part;
-    kernel::shape_motion(degree, points_of(map, here, group), points_of(map, v, group), part);
-    for (std::size_t l = 0; l < group.size(); ++l)
-      for (int i = 0, k = 0; i < n_harmonics; ++i) {
-        for (int j = i; j < n_harmonics; ++j) sums.products(j, i) += part.products[k++][l];
-        sums.motion[i] += part.motion[i][l];
-        for (int c = 0; c < 3; ++c) sums.normals(i, c) += part.normals[i][c][l];
-      }
-  });
+  each_group<kernel::ShapeMotion>(
+      map, elements,
+      [&](int degree, std::span<const int> group, kernel::ShapeMotion& part) {
+        kernel::shape_motion(degree, points_of(map, here, group), points_of(map, v, group), part);
+      },
+      [&](std::span<const int> group, const kernel::ShapeMotion& part) {
+        for (std::size_t l = 0; l < group.size(); ++l)
+          for (int i = 0, k = 0; i < n_harmonics; ++i) {
+            for (int j = i; j < n_harmonics; ++j) sums.products(j, i) += part.products[k++][l];
+            sums.motion[i] += part.motion[i][l];
+            for (int c = 0; c < 3; ++c) sums.normals(i, c) += part.normals[i][c][l];
+          }
+      });
   return numbers;
 }
 

@@ -28,8 +28,8 @@ from .mistakes import Mistake, expect
 from .results import Run
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]  # the source directory, unless the package is installed
-ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 def _program():
@@ -223,13 +223,15 @@ class Study:
     """Runs of decks with changed keys. Their results are kept in `directory`; a run with the same decks and settings is
     not repeated. `limit`: largest processor time of a run in seconds (None: no limit); it does not count
     the earlier parts of a resumed run. The limit of a run with several ranks holds for each rank and is rounded up to
-    whole seconds. `jobs`: number of simultaneous runs. `fresh`: if true, existing results are not used."""
+    whole seconds. `jobs`: number of simultaneous runs. `fresh`: if true, existing results are not used.
+    `threads`: number of threads of each run, or of each of its ranks (default: OMP_NUM_THREADS; if it is not set, the
+    cores divided by `jobs`, and one for several ranks); results do not depend on it."""
 
-    def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False):
+    def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False, threads=None):
         expect(isinstance(jobs, numbers.Integral) and jobs > 0, f"jobs must be a whole number above 0, but is {jobs}")
         expect(limit is None or 0 < limit < math.inf, f"limit must be a number above 0, but is {limit}")
         self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)
-        self.limit, self.jobs, self.fresh = limit, jobs, fresh
+        self.limit, self.jobs, self.fresh, self.threads = limit, jobs, fresh, threads
         self._made, self._running = set(), set()
         self._locks, self._lock = collections.defaultdict(threading.Lock), threading.Lock()
 
@@ -261,25 +263,28 @@ class Study:
         # If results exist without outcome.json, the study was killed during the run.
         if (where / "run.h5").exists() and unfinished and not self.fresh:
             earlier = _earlier(where, before, ranks)
-            made = self._make(program + ["--resume", str(where)])
+            made = self._make(program + ["--resume", str(where)], ranks)
             made |= {name: made[name] + seconds for name, seconds in earlier.items()}
         if made is None or made["code"] == 2:  # not resumed, or there is no checkpoint
             shutil.rmtree(where, ignore_errors=True)
             where.mkdir(parents=True)
             words = [str(deck_at(deck)) for deck in decks] + _set(settings)
-            made = self._make(program + words + ["--output", str(where)])
+            made = self._make(program + words + ["--output", str(where)], ranks)
         partial = note.with_suffix(".part")  # renamed when complete, so that outcome.json is never incomplete
         partial.write_text(json.dumps(made))
         partial.rename(note)
         return Outcome(where, made)
 
-    def _make(self, words):
+    def _make(self, words, ranks):
         _exists(self.program)
+        shared = 1 if ranks > 1 else max(1, len(os.sched_getaffinity(0)) // self.jobs)
+        threads = str(self.threads or os.environ.get("OMP_NUM_THREADS", shared))
         start = time.monotonic()
         bounds = ["setpriv", "--pdeathsig", "KILL"]  # a run must not outlive the study that made it
         bounds += ["prlimit", f"--cpu={math.ceil(self.limit)}"] if self.limit else []
+        environment = os.environ | ENVIRONMENT | {"OMP_NUM_THREADS": threads}
         with subprocess.Popen(bounds + words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                              env=os.environ | ENVIRONMENT, preexec_fn=self._start_timer) as process:
+                              env=environment, preexec_fn=self._start_timer) as process:
             self._running.add(process)
             said = process.stderr.read().strip().splitlines()
             _, status, usage = os.wait4(process.pid, 0)

@@ -2,6 +2,7 @@
 """Compares the results and the work of two programs on all decks of inputs/ and tests/decks/ (named decks/<name> here).
 
     tests/benchmark/compare.py OLD_PROGRAM NEW_PROGRAM [--decks NAME ...] [--differences FILE]
+    tests/benchmark/compare.py PROGRAM PROGRAM --exact --threads 1 3
 
 The difference of a series is the largest one over its rows, divided by the larger of two numbers: the largest absolute
 value of the series in the old run, and the natural unit of its dimension, made of R_C, the reciprocal rate of the flow
@@ -13,6 +14,9 @@ The script prints one row per deck. The exit code is 1 if a difference exceeds t
 YAML list of {deck, series, tolerance, reason}, where deck and series may be patterns like `*`. The series `exit code`
 and `Expect/<name>` stand for a changed exit code and for an expectation that is no longer met. Their difference is
 infinite, which the tolerance `.inf` allows.
+
+With --exact, every series, count and snapshot must be equal in all bits, except seconds. With --threads, the old program
+runs with the first number of threads and the new one with the second.
 
 The two runs of a deck are neighbours in the queue, so that other work on the machine slows both alike. Results are kept
 in DIR and are not computed again. They are kept separately for the old and the new program, and for each version of a
@@ -61,11 +65,13 @@ def study_of(program, role, arguments):
     """Returns the Study that runs a program. Its directory is named by the checksum of the program file. The study runs
     a copy of this file, so that the program may be rebuilt during the comparison."""
     digest = hashlib.sha1(pathlib.Path(program).read_bytes()).hexdigest()[:12]
-    directory = pathlib.Path(arguments.output).resolve() / f"{role}-{digest}"
+    threads = arguments.threads[role == "new"] if arguments.threads else None
+    directory = pathlib.Path(arguments.output).resolve() / (f"{role}-{digest}" + (f"-{threads}" if threads else ""))
     directory.mkdir(parents=True, exist_ok=True)
     if not (directory / "program").exists():
         shutil.copy2(program, directory / "program")
-    return tanktread.Study(directory / "program", directory, limit=arguments.limit, fresh=arguments.fresh)
+    return tanktread.Study(directory / "program", directory, limit=arguments.limit, fresh=arguments.fresh,
+                           threads=threads)
 
 
 def natural_unit(dimension, run):
@@ -133,6 +139,24 @@ def differences_of(old, new):
     return found, remark
 
 
+def contents_of(run):
+    """Returns {name: numbers} of everything in the results of a run that must not depend on the number of threads."""
+    found = {name: values for name, values in run.series.items() if run.units[name] != "s"}
+    for group in "final", "counts":
+        found |= {f"{group}/{name}": numpy.ravel(numpy.array(value, float)) for name, value in (run.summary or {}).get(group, {}).items()
+                  if name != "wall_seconds"}
+    for k, shot in enumerate(run.snapshots()):
+        found |= {f"snapshot {k}/{name}": values for name, values in shot.fields.items()} | {f"snapshot {k}/points": shot.points}
+    return found
+
+
+def exact_differences(*runs):
+    """Returns {name: 0 if the numbers of both runs have the same bits, otherwise infinity}."""
+    old, new = map(contents_of, runs)
+    return {name: 0.0 if name in old and name in new and numpy.asarray(old[name]).tobytes() == numpy.asarray(new[name]).tobytes() else math.inf
+            for name in old.keys() | new.keys()}
+
+
 def work_of(outcome, run):
     """Returns steps, velocity evaluations, solver iterations, kernel evaluations and processor seconds of a run; NaN if
     unknown."""
@@ -169,7 +193,7 @@ class Comparison:
         if any(codes):
             self.remarks.append(f"exit codes {codes[0]} and {codes[1]}")
         if all(runs):
-            series, remark = differences_of(*runs)
+            series, remark = (exact_differences(*runs), "") if arguments.exact else differences_of(*runs)
             found |= series
             met = [{one["name"] for one in (run.summary or {}).get("expect") or [] if one["passed"]} for run in runs]
             found |= {f"Expect/{key}": math.inf for key in met[0] - met[1]}
@@ -235,6 +259,8 @@ def main():
                         help="directory of the results (default: %(default)s)")
     parser.add_argument("--tolerance", type=float, default=1e-9,
                         help="largest difference that passes (default: %(default)s)")
+    parser.add_argument("--exact", action="store_true", help="require the same bits, also of snapshots")
+    parser.add_argument("--threads", type=int, nargs=2, metavar="N", help="numbers of threads of the two programs")
     parser.add_argument("--differences", metavar="FILE", help="YAML list of differences that are allowed")
     parser.add_argument("--limit", type=float, default=300, metavar="SECONDS",
                         help="largest processor time of a run (default: %(default)s)")

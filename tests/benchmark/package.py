@@ -1,5 +1,7 @@
-"""Imports the package tanktread of this source directory. Contains functions shared by several measurements."""
+"""Imports the package tanktread of this source directory. Contains functions shared by several measurements. Unless
+OMP_NUM_THREADS is set, measured runs use one thread, because other threads that wait use processor time too."""
 
+import os
 import pathlib
 import sys
 
@@ -18,6 +20,7 @@ except ModuleNotFoundError as error:
 plt = style.plt
 plt.switch_backend("Agg")
 plt.rcParams.update(style.STYLE)
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 INPUTS, SCENES = tanktread.SOURCE / "inputs", tanktread.SOURCE / "tests/benchmark/scenes"
 SHEAR, RATIO, SIDE = "inputs/shear_neo_hookean.yaml", "Particle/viscosity ratio", "Surface/elements per side"
 PENS = [{"color": color, "marker": mark, "ms": 5} for color, mark in zip(style.RUNS, style.MARKS)]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Checks the form of all files: C++ lines of at most 150 characters (aim: 140), #pragma once in headers, Debian's Python in scripts, scripts that are
+"""Checks the form of all files: C++ lines of at most 150 characters (aim: 140), #pragma once in headers, no threads but those of base/threads.hpp, Debian's Python in scripts, scripts that are
 executable, bash scripts that stop at the first error, and decks whose cost is stated equally in both places.
 
 Usage: form.py <source directory>
@@ -18,6 +18,15 @@ def cpp_errors(path, text):
             yield f"{path}:{number}: a tab, or a blank at the end of the line"
     if path.suffix == ".hpp" and "#pragma once" not in text:
         yield f"{path}: no #pragma once"
+
+
+THREADS = re.compile(r"\bstd::(?:jthread|thread|async|execution)\b|#pragma omp|\bpthread_create\b|\btbb::|\bKokkos::parallel_")
+
+
+def thread_errors(path, text):
+    """Yields means of starting threads other than base/threads.hpp in the program and its library."""
+    for match in THREADS.finditer(text) if path.stem != "threads" else ():
+        yield f"{path}: {match[0]}: loops on several threads use base/threads.hpp"
 
 
 def python_errors(path, text):
@@ -52,7 +61,7 @@ def main():
     for folder in ("app", "lib", "tests", "postproc", ".ci"):
         for path in sorted(p for p in (source / folder).rglob("*") if p.is_file()):
             if path.suffix in (".cpp", ".hpp"):
-                errors += cpp_errors(path, path.read_text())
+                errors += [*cpp_errors(path, path.read_text()), *(thread_errors(path, path.read_text()) if folder in ("app", "lib") else [])]
             elif path.suffix in (".py", ""):
                 errors += script_errors(path, path.read_text())
                 errors += python_errors(path, path.read_text()) if path.suffix == ".py" else []

@@ -76,8 +76,10 @@ class LayerMedium {
   virtual void add(LayerSources& sources, const LayerTargets& targets, Net& u) = 0;
 
   /// Adds the terms of add() to assembled rows of the target x0: block[B] is the 3 x 3 block of control point B, before the division by 8 pi. Returns
-  /// false if there are no such terms.
+  /// false if there are no such terms, without a change of `block`. Called by several threads for different targets if any_thread() is true.
   virtual bool add_row(LayerSources& sources, const Vec3& x0, std::vector<Mat3>& block) = 0;
+
+  virtual bool any_thread() const { return false; }  ///< whether several threads may call add_row()
 
   /// Adds to assembled rows `a` of a single layer at `sites` the part of the kernel that rows_include_images() does not cover.
   virtual void add_remainder(const LayerSources& /*sources*/, std::span<const int> /*sites*/, Rows<double>& /*a*/) const {}

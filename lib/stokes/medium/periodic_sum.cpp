@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/threads.hpp"
+
 namespace tanktread::stokes {
 
 namespace {
@@ -196,10 +198,10 @@ void PeriodicSum::apply(const std::vector<double> (&q)[6], std::vector<double>& 
   for (std::size_t b = 0; b < static_cast<std::size_t>(n); ++b)
     for (std::size_t c = 0; c < in; ++c) strengths.push_back(q[c][b]);
   const Differences from{&difference_, &differences_, box_.order};
-  for (int a = 0; a < n; ++a) {
+  each_item(n, [&](int a) {
     const Eigen::Array4d sum = in == 3 ? product<3>(from, table_.data(), a, strengths.data()) : product<6>(from, table_.data(), a, strengths.data());
     for (int i = 0; i < 3; ++i) u[static_cast<std::size_t>(far_block * (3 * (a / far_block) + i) + a % far_block)] = sum[i];
-  }
+  });
 }
 
 Eigen::MatrixXd PeriodicSum::lagrange(std::span<const Vec3> places) const {
@@ -235,28 +237,39 @@ Eigen::MatrixXd PeriodicSum::between_nodes(int component) const {
 
 void PeriodicSum::add_remainder(const Charges& sources, std::span<const Vec3> targets, double* u) const {
   const int in = kind_ == PeriodicKernel::Kind::stokeslet ? 3 : 6, n_nodes = box_.n_nodes();
+  constexpr int at_a_time = 4096;
   std::vector<double> at[3], q[6];
-  for (int k = 0; k < sources.n; ++k) {
-    const Vec3 s = in_box({sources.x[k], sources.y[k], sources.z[k]});
-    for (int c = 0; c < 3; ++c) at[c].push_back(s[c]);
+  for (auto& component : at) component.resize(static_cast<std::size_t>(sources.n));
+  std::vector<std::vector<double>> strengths(static_cast<std::size_t>((sources.n + at_a_time - 1) / at_a_time));  // of each block of sources
+  each_block(sources.n, at_a_time, [&](int first, int last) {
+    for (int k = first; k < last; ++k) {
+      const Vec3 s = in_box({sources.x[k], sources.y[k], sources.z[k]});
+      for (int c = 0; c < 3; ++c) at[c][static_cast<std::size_t>(k)] = s[c];
+    }
+    std::vector<double>& own = strengths[static_cast<std::size_t>(first / at_a_time)];
+    own.assign(static_cast<std::size_t>(in * n_nodes), 0);
+    std::array<double*, 6> at_nodes{};
+    for (int c = 0; c < in; ++c) at_nodes[static_cast<std::size_t>(c)] = &own[static_cast<std::size_t>(c * n_nodes)];
+    std::vector<Pack> scratch(static_cast<std::size_t>(in * n_nodes));
+    spread(in, box_, Charges{sources.n, at[0].data(), at[1].data(), at[2].data(), sources.q}.part(first, last - first), scratch.data(), at_nodes);
+  });
+  for (int c = 0; c < 6; ++c) {
+    q[c].assign(static_cast<std::size_t>(n_nodes), 0);
+    for (const std::vector<double>& own : strengths)
+      for (int k = 0; c < in && k < n_nodes; ++k) q[c][static_cast<std::size_t>(k)] += own[static_cast<std::size_t>(c * n_nodes + k)];
   }
-  Charges in_cell{sources.n, at[0].data(), at[1].data(), at[2].data(), sources.q};
-  std::array<double*, 6> at_nodes{};
-  for (int c = 0; c < 6; ++c) q[c].assign(static_cast<std::size_t>(n_nodes), 0), at_nodes[static_cast<std::size_t>(c)] = q[c].data();
-  std::vector<Pack> scratch(static_cast<std::size_t>(in * n_nodes));
-  spread(in, box_, in_cell, scratch.data(), at_nodes);
   std::vector<double> node_u(static_cast<std::size_t>(3 * far_block * ((n_nodes + far_block - 1) / far_block)), 0.);
   apply(q, node_u);
-  for (std::size_t first = 0; first < targets.size(); first += far_block) {
+  each_block(targets.size(), std::size_t{far_block}, [&](std::size_t first, std::size_t last) {
     double block[3 * far_block], sums[3 * far_block] = {};
     for (std::size_t l = 0; l < far_block; ++l) {
       const Vec3 s = in_box(targets[std::min(first + l, targets.size() - 1)]);
       for (std::size_t c = 0; c < 3; ++c) block[far_block * c + l] = s[static_cast<Eigen::Index>(c)];
     }
     interpolate(3, box_, node_u.data(), 1, block, sums);
-    for (std::size_t l = 0; l < std::min<std::size_t>(far_block, targets.size() - first); ++l)
+    for (std::size_t l = 0; l < last - first; ++l)
       for (std::size_t c = 0; c < 3; ++c) u[3 * (first + l) + c] += sums[far_block * c + l];
-  }
+  });
 }
 
 }  // namespace tanktread::stokes

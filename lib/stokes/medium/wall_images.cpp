@@ -41,13 +41,14 @@ WallImages::WallImages(const PlaneWall& wall, const LayerSources& sources, bool 
 void WallImages::add(LayerSources& sources, const LayerTargets& targets, Net& u) {
   add_far(sources, targets, u);
   const auto clock = sources.phases.time("near images");
-  for (const int i : targets.rows) {
+  each_item(targets.rows.size(), [&](std::size_t k) {
+    const int i = targets.rows[k];
     const Vec3 at = targets.at.row(i).transpose(), mirrored = sum_.wall().mirrored(at);
     for (const int e : sources.surface.near(mirrored, {})) {
       const PointTable& table = sources.surface.near_field.rule(e, mirrored, {});
       u.row(i) += beyond_far_sum(sources, e, table, mirrored, at, targets.f0.row(i)).transpose();
     }
-  }
+  });
 }
 
 /// Adds the far sum over the images. For a double layer this is sum_k T^I (f - m) n - (sum_k T^I n)(f0 - m) over the nodes k, with the image
@@ -72,7 +73,7 @@ void WallImages::add_far(LayerSources& sources, const LayerTargets& targets, Net
       break;
     }
   }
-  sources.evaluations.far += sum_.interactions();
+  sources.evaluations.mine().far += sum_.interactions();
   for (std::size_t k = 0; k < targets.far_rows.size(); ++k) u.row(targets.far_rows[k]) += sums.row(static_cast<Eigen::Index>(k));
 }
 
@@ -81,7 +82,7 @@ void WallImages::compute_image_stress(LayerSources& sources) {
     const Net sums = sum_.sum(sources.stresslet_moments_of_constant(c));
     image_stress_.resize(static_cast<std::size_t>(sums.rows()));
     for (std::size_t k = 0; k < image_stress_.size(); ++k) image_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
-    sources.evaluations.far += sum_.interactions();
+    sources.evaluations.mine().far += sum_.interactions();
   }
 }
 
@@ -94,7 +95,7 @@ Vec3 WallImages::beyond_far_sum(LayerSources& sources, int e, const PointTable& 
   const std::vector<double> x = turned(wall, &sources.surface.bezier[panel.first_bezier], n_b, true);
   const std::vector<double> f = turned(wall, &sources.bezier_f[panel.first_bezier], n_b, false);
   const Vec3 below = wall.in_axes(mirrored), value = wall.axes() * f0;
-  sources.evaluations.near += table.points + n;
+  sources.evaluations.mine().near += table.points + n;
   Vec3 better;
   Charges nodes{n, nullptr, nullptr, nullptr, {}};
   std::vector<double> strengths[6];
@@ -126,15 +127,16 @@ void WallImages::panel_moments(LayerSources& sources, int e, const Vec3& at, std
   const Vec3 mirrored = wall.mirrored(at), below = wall.in_axes(mirrored);
   const PointTable& table = sources.surface.near_field.rule(e, mirrored, {});
   const std::vector<double> x = turned(wall, &sources.surface.bezier[panel.first_bezier], t.n_bernstein, true);
-  scratch_.resize(static_cast<std::size_t>(9) * table.packs());
+  std::vector<Pack>& scratch = scratch_.mine();
+  scratch.resize(static_cast<std::size_t>(9) * table.packs());
   std::vector<double> own(static_cast<std::size_t>(9) * t.n_bernstein);
   switch (sources.kernel()) {
     case LayerKernel::single_layer:
-      image_single_moments(table, x.data(), sources.area_weights_of(e, table, nullptr), below.data(), scratch_.data(), own.data());
+      image_single_moments(table, x.data(), sources.area_weights_of(e, table, nullptr), below.data(), scratch.data(), own.data());
       break;
-    case LayerKernel::double_layer: image_double_moments(table, x.data(), below.data(), scratch_.data(), own.data()); break;
+    case LayerKernel::double_layer: image_double_moments(table, x.data(), below.data(), scratch.data(), own.data()); break;
   }
-  sources.evaluations.near += table.points;
+  sources.evaluations.mine().near += table.points;
   moments.resize(static_cast<std::size_t>(t.n_bernstein));
   for (std::size_t b = 0; b < moments.size(); ++b)
     moments[b] = sources.factor(e) *

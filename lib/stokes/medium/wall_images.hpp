@@ -21,6 +21,7 @@ class WallImages : public LayerMedium {
   bool shares_sums() const override { return true; }
   void add(LayerSources& sources, const LayerTargets& targets, Net& u) override;
   bool add_row(LayerSources& sources, const Vec3& x0, std::vector<Mat3>& block) override;
+  bool any_thread() const override { return true; }
 
  private:
   void add_far(LayerSources& sources, const LayerTargets& targets, Net& u);
@@ -30,7 +31,7 @@ class WallImages : public LayerMedium {
 
   ImageSum sum_;
   std::vector<Mat3> image_stress_;  // for each target, far sum of the double layer of the images; column c for the constant density e_c
-  std::vector<Pack> scratch_;
+  PerThread<std::vector<Pack>> scratch_;
 };
 
 }  // namespace tanktread::stokes

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "base/threads.hpp"
+
 namespace tanktread::stokes {
 namespace {
 
@@ -14,18 +16,19 @@ constexpr int nodes_in_cache = 4096;
 template <std::size_t Vectors, class Nodes, class Sum>
 void sums_by_blocks(const Nodes& nodes, const std::array<std::span<const Vec3>, Vectors>& given, double* u, const Sum& sum) {
   const int n = static_cast<int>(given[0].size());
-  double block[3 * Vectors * far_block], sums[3 * far_block];
   std::fill_n(u, 3 * given[0].size(), 0.);
   for (int node = 0; node < nodes.n; node += nodes_in_cache) {
     const Nodes part = nodes.part(node, std::min(nodes_in_cache, nodes.n - node));
-    for (int first = 0; first < n; first += far_block) {
+    each_item((n + far_block - 1) / far_block, [&](int number) {
+      double block[3 * Vectors * far_block], sums[3 * far_block];
+      const int first = number * far_block;
       for (int l = 0; l < far_block; ++l)  // unused lanes repeat the last target
         for (std::size_t v = 0; v < Vectors; ++v)
           for (std::size_t c = 0; c < 3; ++c) block[far_block * (3 * v + c) + l] = given[v][std::min(first + l, n - 1)][c];
       sum(part, block, sums);
       for (int l = 0; l < std::min(far_block, n - first); ++l)
         for (int c = 0; c < 3; ++c) u[3 * (first + l) + c] += sums[far_block * c + l];
-    }
+    });
   }
 }
 

@@ -71,6 +71,12 @@ NearField::NearField(const Panels& panels, double tolerance, int smooth_order, b
   n_surfaces_ = connected(panels, surface_);
   across_gaps_ = off_surface || n_surfaces_ > 1;
   for (auto& c : centre_) c.resize(panels.size());
+  for (int e = 0; e < panels.size(); ++e) {
+    if (e > 0 && panels[e].table == panels[e - 1].table) continue;
+    for (int degree = panels[e].table->degree, order = panels[e].table->order + 1; order <= largest_order_; ++order)
+      if (const auto [at, is_new] = whole_.try_emplace({degree, order}); is_new)
+        tabulate(quadrature::Rule(quadrature::tensor_gauss(order)), degree, at->second);
+  }
 }
 
 void NearField::view(int e) {
@@ -92,12 +98,13 @@ void NearField::view(int e) {
 
 void NearField::update(const std::vector<double>& bezier, const PanelImages& images) {
   bezier_ = &bezier;
-  for (int e = 0; e < panels_.size(); ++e)
-    if (!images.is_image(e)) view(e);
+  each_block(panels_.size(), panel_block, [&](int first, int last) {
+    for (int e = first; e < last; ++e)
+      if (!images.is_image(e)) view(e);
+  });
   std::vector<double> total(static_cast<std::size_t>(n_surfaces_), 0.);
   for (int e = 0; e < panels_.size(); ++e) total[static_cast<std::size_t>(surface_[e])] += views_[images.source[e]].area;
-  for (int e = 0; e < panels_.size(); ++e) {
-    if (images.is_image(e)) continue;
+  const auto demand = [&](int e) {
     View& view = views_[e];
     const double area = total[static_cast<std::size_t>(surface_[e])];
     view.demand = demand_;
@@ -108,7 +115,11 @@ void NearField::update(const std::vector<double>& bezier, const PanelImages& ima
     const auto& strictest = across_gaps_ ? view.across : view.demand;
     const double reach = view.radius + view.bulge + clearance(view.area, longest, strictest, panels_[e].table->order);
     reach_[e] = reach * reach;
-  }
+  };
+  each_block(panels_.size(), panel_block, [&](int first, int last) {
+    for (int e = first; e < last; ++e)
+      if (!images.is_image(e)) demand(e);
+  });
   for (int e = 0; e < panels_.size(); ++e) {
     if (images.is_image(e)) {
       const surface::Reflection& image = images.reflections[images.image[e]];
@@ -147,18 +158,19 @@ bool NearField::far_enough(int e, const Vec3& target, std::span<const SelfPair> 
   return power >= 1;
 }
 
-void NearField::list(const Vec3& target, std::span<const SelfPair> self_pairs, std::vector<int>& near) {
+void NearField::list(const Vec3& target, std::span<const SelfPair> self_pairs, std::vector<int>& near) const {
+  std::vector<int>& suspects = scratch_.mine().suspects;
   near.clear();
-  suspects_.clear();
-  vicinity_.list(target.data(), suspects_);
-  for (const int e : suspects_) {
+  suspects.clear();
+  vicinity_.list(target.data(), suspects);
+  for (const int e : suspects) {
     const bool on_it = std::any_of(self_pairs.begin(), self_pairs.end(), [&](const SelfPair& pair) { return pair.panel == e; });
     if (!on_it && !far_enough(e, target, self_pairs)) near.push_back(e);
   }
   std::sort(near.begin(), near.end());
 }
 
-const PointTable& NearField::rule(int panel, const Vec3& target, std::span<const SelfPair> self_pairs) {
+const PointTable& NearField::rule(int panel, const Vec3& target, std::span<const SelfPair> self_pairs) const {
   assert(bezier_ && "update() comes first");
   const NodeTable& t = *panels_[panel].table;
   const View& view = views_[panel];
@@ -167,16 +179,13 @@ const PointTable& NearField::rule(int panel, const Vec3& target, std::span<const
   const quadrature::Sight seen = sight(view, target, across);
   const int needed = quadrature::order_for(demand.error(view.area, seen.distance), std::min(seen.rho_u, seen.rho_v));
   const int order = std::max(needed, t.order + 1);
-  if (order <= largest_order_ && view.bulge <= 0.5 * seen.distance) {
-    const auto [at, is_new] = whole_.try_emplace({t.degree, order});
-    if (is_new) tabulate(quadrature::Rule(quadrature::tensor_gauss(order)), t.degree, at->second);
-    return at->second;
-  }
-  points_.clear();
+  if (order <= largest_order_ && view.bulge <= 0.5 * seen.distance) return whole_.at({t.degree, order});
+  auto& [suspects, points, parts] = scratch_.mine();
+  points.clear();
   const std::span<const double> bezier(bezier_->data() + panels_[panel].first_bezier, static_cast<std::size_t>(3) * t.n_bernstein);
-  quadrature::graded(bezier, t.degree, target, demand, points_);
-  tabulate(points_, t.degree, parts_);
-  return parts_;
+  quadrature::graded(bezier, t.degree, target, demand, points);
+  tabulate(points, t.degree, parts);
+  return parts;
 }
 
 }  // namespace tanktread::stokes

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/threads.hpp"
 #include "base/types.hpp"
 #include "quadrature/ellipse.hpp"
 #include "quadrature/graded.hpp"
@@ -16,7 +17,8 @@
 
 namespace tanktread::stokes {
 
-/// Selects near-singular quadrature rules that reach a tolerance. The rules depend on the current shape only, not on earlier shapes.
+/// Selects near-singular quadrature rules that reach a tolerance. The rules depend on the current shape only, not on earlier shapes. Several threads
+/// may call list() and rule().
 class NearField {
  public:
   /// `tolerance`: permitted error divided by the integral of 1/r over the closed surface that contains the panel, with r the distance from the
@@ -40,10 +42,11 @@ class NearField {
 
   /// Lists the panels whose far rule does not reach the tolerance at the target, in ascending order, except the panels of `self_pairs`, which contain
   /// the target.
-  void list(const Vec3& target, std::span<const SelfPair> self_pairs, std::vector<int>& near);
+  void list(const Vec3& target, std::span<const SelfPair> self_pairs, std::vector<int>& near) const;
 
-  /// Returns the rule for a panel that list() found for this target with the same `self_pairs`. The table is valid until the next call.
-  const PointTable& rule(int panel, const Vec3& target, std::span<const SelfPair> self_pairs);
+  /// Returns the rule for a panel that list() found for this target with the same `self_pairs`. The table is valid until the next call
+  /// by the same thread.
+  const PointTable& rule(int panel, const Vec3& target, std::span<const SelfPair> self_pairs) const;
 
  private:
   struct View {
@@ -69,10 +72,13 @@ class NearField {
   std::vector<double> centre_[3], reach_;  ///< centre_: centre of each panel. reach_: squared distance from the centre beyond which the far rule
                                            ///< reaches the tolerance
   Vicinity vicinity_;
-  std::vector<int> suspects_;
   std::map<std::pair<int, int>, PointTable> whole_;  ///< tensor Gauss rules on the whole panel, by (degree, order)
-  PointTable parts_;
-  quadrature::Rule points_;
+  struct Scratch {
+    std::vector<int> suspects;
+    quadrature::Rule points;
+    PointTable parts;
+  };
+  mutable PerThread<Scratch> scratch_;
 };
 
 }  // namespace tanktread::stokes

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/kept_once.hpp"
+#include "base/threads.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 #include "stokes/kernels/panel_kernel.hpp"
@@ -41,19 +42,23 @@ Panels::Panels(const spline::Space& space, const std::vector<int>& orders) {
 
 void Panels::bezier(const Net& net, std::vector<double>& points) const {
   points.resize(bezier_size_);
-  for (int e = 0; e < size(); ++e) {
-    const Panel& p = panels_[e];
-    extract(p.table->n_bernstein, p.functions, this->points(e), extraction(e), net.data(), &points[p.first_bezier]);
-  }
+  each_block(size(), panel_block, [&](int first, int last) {
+    for (int e = first; e < last; ++e) {
+      const Panel& p = panels_[e];
+      extract(p.table->n_bernstein, p.functions, this->points(e), extraction(e), net.data(), &points[p.first_bezier]);
+    }
+  });
 }
 
 void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]) {
   for (auto& component : value) component.resize(panels.n_nodes());
-  for (int e = 0; e < panels.size(); ++e) {
-    const NodeTable& t = *panels[e].table;
-    for (int c = 0; c < 3; ++c)
-      combine(t.n_bernstein, t.n_nodes, t.value.data(), &bezier[panels[e].first_bezier + c * t.n_bernstein], &value[c][panels[e].first_node]);
-  }
+  each_block(panels.size(), panel_block, [&](int first, int last) {
+    for (int e = first; e < last; ++e) {
+      const NodeTable& t = *panels[e].table;
+      for (int c = 0; c < 3; ++c)
+        combine(t.n_bernstein, t.n_nodes, t.value.data(), &bezier[panels[e].first_bezier + c * t.n_bernstein], &value[c][panels[e].first_node]);
+    }
+  });
 }
 
 namespace {
@@ -73,11 +78,13 @@ void panel_normals(const Panel& panel, const double* bezier, std::vector<double>
 
 void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]) {
   for (auto& component : normal) component.resize(panels.n_nodes());
-  std::vector<double> scratch;
-  for (int e = 0; e < panels.size(); ++e) {
-    const int first = panels[e].first_node;
-    panel_normals(panels[e], &bezier[panels[e].first_bezier], scratch, {&normal[0][first], &normal[1][first], &normal[2][first]});
-  }
+  each_block(panels.size(), panel_block, [&](int first, int last) {
+    std::vector<double> scratch;
+    for (int e = first; e < last; ++e) {
+      const int node = panels[e].first_node;
+      panel_normals(panels[e], &bezier[panels[e].first_bezier], scratch, {&normal[0][node], &normal[1][node], &normal[2][node]});
+    }
+  });
 }
 
 void node_weights(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double>& weight) {
@@ -90,7 +97,9 @@ void node_weights(const Panels& panels, int e, const std::vector<double>& bezier
 
 void node_weights(const Panels& panels, const std::vector<double>& bezier, std::vector<double>& weight) {
   weight.resize(panels.n_nodes());
-  for (int e = 0; e < panels.size(); ++e) node_weights(panels, e, bezier, weight);
+  each_block(panels.size(), panel_block, [&](int first, int last) {
+    for (int e = first; e < last; ++e) node_weights(panels, e, bezier, weight);
+  });
 }
 
 }  // namespace tanktread::stokes

@@ -10,6 +10,8 @@
 
 namespace tanktread::stokes {
 
+constexpr int panel_block = 64;  ///< number of panels that a thread takes at a time in loops over panels that do little work per panel
+
 /// Bernstein polynomials of one degree and their derivatives at the q x q Gauss nodes of the unit square, q = `order`: value[n_nodes b + k] is
 /// polynomial b at node k = q j + i, which is node i along s and node j along t.
 struct NodeTable {

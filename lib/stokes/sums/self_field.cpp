@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/threads.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 #include "stokes/sums/layer_rule.hpp"
@@ -22,9 +23,12 @@ int radial_points(double tolerance) { return std::max(4, static_cast<int>(std::c
 /// their elements.
 double distortion_allowed(double tolerance) { return 0.5 * std::min(1., std::pow(1e4 * tolerance, 1. / 6)); }
 
-/// Maximum number of cached rules (most_tables), and of the points of all cached rules (most_points, 136 bytes each). The limit is needed because
-/// metrics change in a long run, and a strongly deformed shape may need rules of 25,000 points.
+/// Number of kept rules (most_tables), or of the points of all kept rules (most_points, 136 bytes each), beyond which the rules are discarded. The
+/// limit is needed because metrics change in a long run, and a strongly deformed shape may need rules of 25,000 points.
 constexpr std::size_t most_tables = 1000, most_points = 1'000'000;
+
+/// Number of sites whose rules are made before the limit is compared again, and number of sites whose metrics a thread computes at a time.
+constexpr std::size_t sites_at_a_time = 256, sites_of_block = 16;
 
 /// Returns sum_ij B_i(s) B_j(t) p_ij for the Bezier points p_ij. Terms with B_i = 0 or B_j = 0 are skipped: at corners and on sides of a panel these
 /// are most of them.
@@ -42,7 +46,7 @@ Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
 
 /// Evaluates the Bernstein polynomials for a pair of site and panel if they are not yet stored. For the first panel of a site they are evaluated at
 /// construction. For all other panels they are evaluated at first use, because only the rank that owns the target needs them.
-void fill(SelfPair& pair, int degree) {
+void set_polynomials(SelfPair& pair, int degree) {
   if (!pair.bernstein.empty()) return;
   const int n = degree + 1;
   pair.bernstein.resize(static_cast<std::size_t>(4) * n);
@@ -62,16 +66,16 @@ SelfField::SelfField(const spline::Space& space, const Sites& sites, const quadr
     for (const spline::Site& site : places) {
       SelfPair& pair = pairs_.emplace_back();
       pair.panel = site.element, pair.s = site.s, pair.t = site.t;
-      if (&site == &places.front()) fill(pair, space.elements[site.element].degree);
+      if (&site == &places.front()) set_polynomials(pair, space.elements[site.element].degree);
     }
     first_.push_back(pairs_.size());
   }
 }
 
-const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier) {
-  assert(properties(options_.rule).has_singular_rules);
+/// Sets the metric of a pair and the orders of its rule for the current shape. If they have changed, discards the rule and the weights of the pair.
+void SelfField::choose(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier) const {
   const int degree = panels[pair.panel].table->degree, n = degree + 1;
-  fill(pair, degree);
+  set_polynomials(pair, degree);
   quadrature::MetricBin bin;
   quadrature::PolarOrders orders;
   if (properties(options_.rule).follows_tolerance) {
@@ -84,12 +88,50 @@ const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const st
     else
       orders = raised_orders(pair, degree, points, bin, a1, a2);
   }
-  if (!pair.table || bin != pair.bin || orders != pair.orders) {
-    pair.bin = bin, pair.orders = orders;
-    pair.weights.clear();
-    pair.table = &made(pair, degree);
+  if (pair.table && bin == pair.bin && orders == pair.orders) return;
+  pair.bin = bin, pair.orders = orders;
+  pair.weights.clear();
+  pair.table = nullptr;
+}
+
+/// Sets the rules of the pairs of the first sites. Returns the number of these sites: as many as there is memory for rules, and a multiple of
+/// `multiple` unless it is all of them.
+std::size_t SelfField::prepare(std::span<const int> sites, std::size_t multiple, const Panels& panels, const std::vector<double>& bezier) {
+  if (!properties(options_.rule).has_singular_rules) return sites.size();
+  const auto key = [&](const SelfPair& pair) { return Key{panels[pair.panel].table->degree, pair.s, pair.t, pair.bin, pair.orders}; };
+  const std::size_t at_a_time = multiple * ((sites_at_a_time + multiple - 1) / multiple);
+  for (std::size_t first = 0; first < sites.size(); first += at_a_time) {
+    const std::span<const int> some = sites.subspan(first, std::min(at_a_time, sites.size() - first));
+    each_block(some.size(), sites_of_block, [&](std::size_t from, std::size_t to) {
+      for (std::size_t k = from; k < to; ++k)
+        for (SelfPair& pair : (*this)[some[k]]) choose(pair, panels, bezier);
+    });
+    std::vector<SelfPair*> missing;
+    const auto look_up = [&] {
+      for (const int i : some)
+        for (SelfPair& pair : (*this)[i]) {
+          if (pair.table) continue;
+          if (const auto found = tables_.find(key(pair)); found != tables_.end()) pair.table = found->second.get();
+          else missing.push_back(&pair);
+        }
+    };
+    look_up();
+    if (!missing.empty() && (tables_.size() > most_tables || points_ > most_points)) {
+      if (first > 0) return first;
+      forget_rules();
+      missing.clear();
+      look_up();
+    }
+    std::vector<std::pair<const SelfPair*, PointTable*>> fresh;
+    for (SelfPair* pair : missing) {
+      std::unique_ptr<PointTable>& table = tables_[key(*pair)];
+      if (!table) fresh.emplace_back(pair, (table = std::make_unique<PointTable>()).get());
+      pair->table = table.get();
+    }
+    each_item(fresh.size(), [&](std::size_t k) { fill(*fresh[k].first, panels[fresh[k].first->panel].table->degree, *fresh[k].second); });
+    for (const auto& [pair, table] : fresh) points_ += static_cast<std::size_t>(table->points);
   }
-  return *pair.table;
+  return sites.size();
 }
 
 /// Returns higher orders of the polar rule for a distorted element. Returns zeros if the corners of the element are close to the positions predicted
@@ -111,28 +153,23 @@ quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degre
   return quadrature::polar_orders(pair.s, pair.t, bin, radial_, options_.tolerance, corner, affine);
 }
 
-const PointTable& SelfField::made(const SelfPair& pair, int degree) {
-  const Key key{degree, pair.s, pair.t, pair.bin, pair.orders};
-  if (const auto found = tables_.find(key); found != tables_.end()) return *found->second;
-  std::size_t points = 0;
-  for (const auto& [other, kept] : tables_) points += static_cast<std::size_t>(kept->points);
-  if (tables_.size() > most_tables || points > most_points) forget_rules();
-  auto& table = tables_[key] = std::make_unique<PointTable>();
+/// Makes the rule of a pair.
+void SelfField::fill(const SelfPair& pair, int degree, PointTable& table) const {
   const auto& [s, t, bin, orders] = std::tie(pair.s, pair.t, pair.bin, pair.orders);
   if (!properties(options_.rule).follows_tolerance)
-    tabulate(quadrature::lachat_watson(s, t, options_.points), degree, *table);
+    tabulate(quadrature::lachat_watson(s, t, options_.points), degree, table);
   else if (!orders.radial)
-    tabulate(quadrature::polar(s, t, bin, quadrature::polar_orders(s, t, bin, radial_, options_.tolerance)), degree, *table);
+    tabulate(quadrature::polar(s, t, bin, quadrature::polar_orders(s, t, bin, radial_, options_.tolerance)), degree, table);
   else if (orders.angular == std::array<int, 4>{})
-    tabulate(quadrature::Rule(quadrature::tensor_gauss(orders.radial)), degree, *table);
+    tabulate(quadrature::Rule(quadrature::tensor_gauss(orders.radial)), degree, table);
   else
-    tabulate(quadrature::polar(s, t, bin, orders), degree, *table);
-  return *table;
+    tabulate(quadrature::polar(s, t, bin, orders), degree, table);
 }
 
 void SelfField::forget_rules() {
   for (SelfPair& pair : pairs_) pair.table = nullptr, pair.weights.clear();
   tables_.clear();
+  points_ = 0;
 }
 
 void SelfField::forget_weights() {

@@ -24,7 +24,7 @@ struct SelfPair {
   quadrature::MetricBin bin;       ///< metric of the panel at the site, rounded to a bin; the rule was constructed for this bin
   quadrature::PolarOrders orders;  ///< higher orders of the rule if the panel is distorted, otherwise 0. If only the angular orders are 0, the rule
                                    ///< is a tensor Gauss rule of the radial order
-  const PointTable* table = nullptr;
+  const PointTable* table = nullptr;  ///< rule; null if it has to be looked up
   std::vector<Pack> weights;      ///< weights of the rule times the area element of the unstressed surface
   std::vector<double> bernstein;  ///< Bernstein polynomials and their derivatives at the site: B_i(s), B_j(t), B_i'(s), B_j'(t)
   double s = 0, t = 0;
@@ -39,9 +39,19 @@ class SelfField {
   /// Returns the pairs of site i and a panel that contains it, one pair per panel.
   std::span<SelfPair> operator[](int i) { return {&pairs_[first_[i]], first_[i + 1] - first_[i]}; }
 
-  /// Returns the singular quadrature rule of a site and panel for the current metric at the site. If the rule changes, discards the stored weights of
-  /// the pair. Must not be called if has_singular_rules is false.
-  const PointTable& rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier);
+  /// Calls use(some, first) for parts of `sites` in their order, where `some` are the sites from index `first` on. During a call, the pairs of these
+  /// sites have the singular quadrature rules (SelfPair::table) for the current metrics at the sites. If a rule has changed, the stored weights of
+  /// the
+  /// pair have been discarded. A part has as many sites as there is memory for rules; its number of sites is a multiple of `multiple`, except in the
+  /// last part. If has_singular_rules is false, calls use(sites, 0).
+  template <class Use>
+  void with_rules(std::span<const int> sites, std::size_t multiple, const Panels& panels, const std::vector<double>& bezier, const Use& use) {
+    for (std::size_t first = 0; first < sites.size();) {
+      const std::span<const int> some = sites.subspan(first, prepare(sites.subspan(first), multiple, panels, bezier));
+      use(some, first);
+      first += some.size();
+    }
+  }
 
   /// Discards all stored weights.
   void forget_weights();
@@ -55,7 +65,9 @@ class SelfField {
   std::pair<int, Eigen::VectorXd> basis(int i, const Panels& panels) const;
 
  private:
-  const PointTable& made(const SelfPair& pair, int degree);
+  std::size_t prepare(std::span<const int> sites, std::size_t multiple, const Panels& panels, const std::vector<double>& bezier);
+  void choose(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier) const;
+  void fill(const SelfPair& pair, int degree, PointTable& table) const;
   void forget_rules();
   quadrature::PolarOrders raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::MetricBin bin, const Vec3& a1,
                                         const Vec3& a2) const;
@@ -72,6 +84,7 @@ class SelfField {
     auto operator<=>(const Key&) const = default;
   };
   std::map<Key, std::unique_ptr<PointTable>> tables_;
+  std::size_t points_ = 0;  // number of points of all rules
 };
 
 }  // namespace tanktread::stokes

@@ -34,6 +34,19 @@ void append_images(const double* block, std::size_t size, const surface::Reflect
   }
 }
 
+/// Returns the clusters of trees by their distance from the root of their tree. Clusters come before their children.
+std::vector<std::vector<int>> levels(const std::vector<Cluster>& all) {
+  std::vector<int> level(all.size(), 0);
+  std::vector<std::vector<int>> by_level;
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    by_level.resize(std::max(by_level.size(), static_cast<std::size_t>(level[c]) + 1));
+    by_level[static_cast<std::size_t>(level[c])].push_back(static_cast<int>(c));
+    if (!all[c].leaf())
+      for (const int child : all[c].child) level[static_cast<std::size_t>(child)] = level[c] + 1;
+  }
+  return by_level;
+}
+
 void reflect(ChebyshevBox& box, const surface::Reflection& image) {
   Eigen::Map<Vec3> centre(box.centre);
   centre = image(centre);
@@ -82,6 +95,7 @@ void TreeSum::set_sources(const std::vector<double> (&x)[3], std::span<const int
     }
     ++n_trees_;
   }
+  levels_[0] = levels(sources_.all()), levels_[1] = levels(targets_);
 }
 
 /// Returns the row of the sums that belongs to position k in the order of the target trees. Each tree starts at a new block of far_block targets.
@@ -97,6 +111,34 @@ void TreeSum::want(std::span<const int> rows) {
     for (int k = 0; k < n_trees_; ++k) pair_up(targets_[k * target_tree_.all().size()], sources_.all().front(), image);
   if (parts_ > 1) keep_part();
   mark_sources();
+  collect();
+}
+
+/// Collects the pairs that contribute to the Chebyshev nodes of each target cluster and to the targets of each leaf. The targets of a cluster are
+/// those of its leaves.
+void TreeSum::collect() {
+  std::vector<std::vector<int>> to_nodes(targets_.size()), to_points(targets_.size());
+  std::vector<int> below;
+  for (int k = 0; k < static_cast<int>(pairs_.size()); ++k) {
+    if (pairs_[k].target_nodes) {
+      to_nodes[pairs_[k].target].push_back(k);
+      continue;
+    }
+    for (below.assign(1, pairs_[k].target); !below.empty();) {
+      const int t = below.back();
+      below.pop_back();
+      if (targets_[t].leaf()) to_points[t].push_back(k);
+      else below.insert(below.end(), targets_[t].child, targets_[t].child + 2);
+    }
+  }
+  shares_.clear();
+  const auto add = [&](int first_block, int n, std::vector<int>& pairs) {
+    if (!pairs.empty()) shares_.push_back({first_block, first_block + blocks_of(n), std::move(pairs)});
+  };
+  for (std::size_t t = 0; t < targets_.size(); ++t) {
+    add(targets_[t].first_block, targets_[t].n_nodes(), to_nodes[t]);
+    add(targets_[t].first / far_block, targets_[t].n_points(), to_points[t]);
+  }
 }
 
 /// Keeps only the pairs of clusters that belong to the part of the sum set by share(). Each part has an equal share of the work. A part contains
@@ -131,7 +173,16 @@ void TreeSum::sum(const std::array<const double*, 6>& strengths, double* values)
   target_u_.assign(target_at_.size() / 3 * out_, 0);
   node_u_.assign(node_at_.size() / 3 * out_, 0);
   has_nodes_.assign(targets_.size(), 0);
-  for (const Pair& pair : pairs_) add(pair);
+  each_item(shares_.size(), [&](std::size_t k) {
+    const Share& share = shares_[k];
+    for (const int pair : share.pairs) add(pairs_[pair], share.first_block, share.last_block);
+  });
+  for (const Pair& pair : pairs_) {
+    const Cluster &target = targets_[pair.target], &source = sources_.all()[pair.source];
+    if (pair.target_nodes) has_nodes_[pair.target] = 1;
+    interactions_ += static_cast<long long>(pair.target_nodes ? target.n_nodes() : target.n_points()) *
+                     (pair.source_nodes ? source.n_nodes() : source.n_points());
+  }
   interpolate_downwards();
   for (const Cluster& t : targets_) {
     if (!t.leaf()) continue;
@@ -155,17 +206,20 @@ void TreeSum::spread_strengths(const std::array<const double*, 6>& strengths) {
   const auto spread_to = [&](const Cluster& c, const Charges& from) {
     std::array<double*, 6> to{};
     for (int d = 0; d < in_; ++d) to[d] = &node_q_[d][c.first_node];
-    scratch_.resize(std::max(scratch_.size(), static_cast<std::size_t>(in_) * c.n_nodes()));
-    spread(in_, c, from, scratch_.data(), to);
+    std::vector<Pack>& scratch = scratch_.mine();
+    scratch.resize(std::max(scratch.size(), static_cast<std::size_t>(in_) * c.n_nodes()));
+    spread(in_, c, from, scratch.data(), to);
   };
-  for (auto c = all.rbegin(); c != all.rend(); ++c) {
-    if (!in_use_[&*c - all.data()]) continue;
-    if (c->leaf())
-      spread_to(*c, points.part(c->first, c->n_points()));
-    else
-      for (const int k : c->child)
-        spread_to(*c, all[k].bare ? points.part(all[k].first, all[k].n_points()) : nodes.part(all[k].first_node, all[k].n_nodes()));
-  }
+  for (auto level = levels_[0].rbegin(); level != levels_[0].rend(); ++level)
+    each_item(level->size(), [&](std::size_t number) {
+      const Cluster& c = all[(*level)[number]];
+      if (!in_use_[&c - all.data()]) return;
+      if (c.leaf())
+        spread_to(c, points.part(c.first, c.n_points()));
+      else
+        for (const int k : c.child)
+          spread_to(c, all[k].bare ? points.part(all[k].first, all[k].n_points()) : nodes.part(all[k].first_node, all[k].n_nodes()));
+    });
 }
 
 /// Marks the rows `wanted` and the target clusters that contain a target of these rows.
@@ -209,43 +263,37 @@ long long TreeSum::work(const Pair& pair) const {
   return static_cast<long long>(blocks_of(pair.target_nodes ? target.n_nodes() : target.n_points())) * n;
 }
 
-void TreeSum::add(const Pair& pair) {
-  const Cluster &target = targets_[pair.target], &source = sources_.all()[pair.source];
+/// Adds the interactions of a pair at the blocks first_block .. last_block - 1 of the target's Chebyshev nodes or of its targets.
+void TreeSum::add(const Pair& pair, int first_block, int last_block) {
+  const Cluster& source = sources_.all()[pair.source];
   const bool target_nodes = pair.target_nodes, source_nodes = pair.source_nodes;
-  const std::size_t block = target_nodes ? target.first_block : target.first / far_block;
-  const double* at = (target_nodes ? node_at_ : target_at_).data() + 3 * far_block * block;
-  double* u = (target_nodes ? node_u_ : target_u_).data() + out_ * far_block * block;
-  const int n = target_nodes ? target.n_nodes() : target.n_points();
+  const double* at = (target_nodes ? node_at_ : target_at_).data() + static_cast<std::size_t>(3) * far_block * first_block;
+  double* u = (target_nodes ? node_u_ : target_u_).data() + static_cast<std::size_t>(out_) * far_block * first_block;
   const Charges from = source_nodes ? charges(sources_.nodes(), node_q_).part(source.first_node, source.n_nodes())
                                     : charges(sources_.points(), q_).part(source.first, source.n_points());
   const Vec3& beyond = images_[static_cast<std::size_t>(pair.image)];
   double sums[6 * far_block], seen[3 * far_block];
-  for (int b = 0; b < blocks_of(n); ++b, at += 3 * far_block, u += out_ * far_block) {
+  for (int b = first_block; b < last_block; ++b, at += 3 * far_block, u += out_ * far_block) {
     for (int c = 0; c < 3; ++c)
       for (int l = 0; l < far_block; ++l) seen[far_block * c + l] = at[far_block * c + l] - beyond[c];
     kernel_(from, seen, sums);
     for (int l = 0; l < out_ * far_block; ++l) u[l] += sums[l];
   }
-  if (target_nodes) has_nodes_[pair.target] = 1;
-  interactions_ += static_cast<long long>(n) * from.n;
 }
 
 /// Interpolates the values at the Chebyshev nodes of each target cluster to the nodes of its children. In a leaf, and for a child that has no nodes,
 /// interpolates to the targets themselves.
 void TreeSum::interpolate_downwards() {
   const std::vector<Cluster>& all = targets_;
-  for (std::size_t t = 0; t < all.size(); ++t) {
-    if (!has_nodes_[t]) continue;
+  const auto give_to_children = [&](int t) {
+    if (!has_nodes_[t]) return;
     const double* from = &node_u_[static_cast<std::size_t>(out_) * far_block * all[t].first_block];
     const auto give = [&](int n, int block, const std::vector<double>& at, std::vector<double>& u) {
       const std::size_t first = static_cast<std::size_t>(far_block) * block;
       interpolate(out_, all[t], from, blocks_of(n), &at[3 * first], &u[out_ * first]);
     };
     const auto give_points = [&](const Cluster& c) { give(c.n_points(), c.first / far_block, target_at_, target_u_); };
-    if (all[t].leaf()) {
-      give_points(all[t]);
-      continue;
-    }
+    if (all[t].leaf()) return give_points(all[t]);
     for (const int child : all[t].child) {
       if (!wanted_[child]) continue;
       if (all[child].bare) {
@@ -255,7 +303,8 @@ void TreeSum::interpolate_downwards() {
       give(all[child].n_nodes(), all[child].first_block, node_at_, node_u_);
       has_nodes_[child] = 1;
     }
-  }
+  };
+  for (const std::vector<int>& level : levels_[1]) each_item(level.size(), [&](std::size_t k) { give_to_children(level[k]); });
 }
 
 }  // namespace tanktread::stokes

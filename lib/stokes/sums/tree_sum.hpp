@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/threads.hpp"
 #include "base/types.hpp"
 #include "stokes/kernels/cluster_kernel.hpp"
 #include "stokes/kernels/far_kernel.hpp"
@@ -63,10 +64,17 @@ class TreeSum {
     int target, source, image;
     bool target_nodes, source_nodes;
   };
+  /// The sums at the Chebyshev nodes of a target cluster, or at the targets in a leaf, in blocks of far_block. `pairs`: indices in pairs_ of all
+  /// pairs that contribute, in ascending order.
+  struct Share {
+    int first_block, last_block;
+    std::vector<int> pairs;
+  };
   void pair_up(const Cluster& target, const Cluster& source, int image);
   void add_pair(const Cluster& target, bool target_nodes, const Cluster& source, bool source_nodes, int image);
   long long work(const Pair& pair) const;
-  void add(const Pair& pair);
+  void add(const Pair& pair, int first_block, int last_block);
+  void collect();
   void interpolate_downwards();
 
   int part_ = 0, parts_ = 1;
@@ -83,8 +91,10 @@ class TreeSum {
   std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: true if the sum of the row is requested. wanted_: true if the target cluster contains
                                                 // a requested row. has_nodes_: true if the target cluster has values at its Chebyshev nodes
   std::vector<Pair> pairs_;                     // pairs of clusters whose interactions this part sums
+  std::vector<Share> shares_;                   // shares of the sums, whose targets are disjoint
+  std::vector<std::vector<int>> levels_[2];     // source clusters [0] and target clusters [1] by their distance from the root
   std::vector<char> in_use_;                    // flags of the source clusters whose Chebyshev nodes are used
-  std::vector<Pack> scratch_;
+  PerThread<std::vector<Pack>> scratch_;
   long long interactions_ = 0;
 };
 

@@ -24,7 +24,6 @@ void Vicinity::set_points(int n, const double* x, const double* y, const double*
   for (int c = 0; c < 3; ++c)
     for (int k = 0; k < n; ++k) centre_[c][k] = at[c][number_[k]];
   for (int k = 0; k < n; ++k) square_[k] = square[number_[k]];
-  holds_.resize(leaf);
 }
 
 /// Appends to the tree a box for the balls number_[first] .. number_[last - 1], and its descendants. Reorders these entries of number_. During this
@@ -53,7 +52,8 @@ void Vicinity::split(int first, int last) {
   boxes_[at].after = static_cast<int>(boxes_.size());
 }
 
-void Vicinity::list(const double* point, std::vector<int>& holding) {
+void Vicinity::list(const double* point, std::vector<int>& holding) const {
+  char holds[leaf];
   for (std::size_t b = 0; b < boxes_.size();) {
     const Box& box = boxes_[b];
     double square = 0;
@@ -64,9 +64,9 @@ void Vicinity::list(const double* point, std::vector<int>& holding) {
     const bool near = square < box.square;
     if (near && box.leaf) {
       const int n = box.last - box.first;
-      mark_within(n, &centre_[0][box.first], &centre_[1][box.first], &centre_[2][box.first], &square_[box.first], point, holds_.data());
+      mark_within(n, &centre_[0][box.first], &centre_[1][box.first], &centre_[2][box.first], &square_[box.first], point, holds);
       for (int k = 0; k < n; ++k)
-        if (holds_[k]) holding.push_back(number_[box.first + k]);
+        if (holds[k]) holding.push_back(number_[box.first + k]);
     }
     b = near ? b + 1 : static_cast<std::size_t>(box.after);
   }

@@ -14,8 +14,8 @@ class Vicinity {
   /// Sets n balls by centres and squared radii.
   void set_points(int n, const double* x, const double* y, const double* z, const double* square);
 
-  /// Lists the indices of the balls that contain the point, in no particular order.
-  void list(const double* point, std::vector<int>& holding);
+  /// Appends to `holding` the indices of the balls that contain the point, in no particular order. Several threads may call it.
+  void list(const double* point, std::vector<int>& holding) const;
 
  private:
   struct Box {
@@ -29,7 +29,6 @@ class Vicinity {
   std::vector<Box> boxes_;
   std::vector<int> number_;
   std::vector<double> centre_[3], square_;
-  std::vector<char> holds_;
 };
 
 }  // namespace tanktread::stokes

@@ -36,7 +36,6 @@ class FrozenOperator {
   double unit_ = 1;
   std::vector<std::uint16_t> entries_;       // six entries (11, 12, 13, 22, 23, 33) of each symmetric 3 x 3 block. Entry e = 0 .. 5 of the block for
                                              // row `target` and control point p of n is at (6 target + e) n + p
-  mutable std::vector<double> f1_, f2_, f3_;
 };
 
 /// Adds to u[0 .. 2] the sum over n points p of the symmetric 3 x 3 block of p times the vector (f1[p], f2[p], f3[p]). `entries`: six consecutive

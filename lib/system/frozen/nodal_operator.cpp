@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/indices.hpp"
+#include "base/threads.hpp"
 #include "stokes/kernels/far_kernel.hpp"
 #include "stokes/kernels/kernels.hpp"
 #include "stokes/sums/far_sums.hpp"
@@ -81,14 +82,14 @@ void NodalOperator::find_near(const Surface& surface, double reach) {
 /// Computes the blocks K_iC of (4.11) for near control points: subtracts the terms of the trapezoidal rule from the assembled blocks of the single
 /// layer A.
 void NodalOperator::subtract_rule(const Surface& surface) {
-  for (std::size_t k = 0; k < targets_.size(); ++k) {
+  each_item(targets_.size(), [&](std::size_t k) {
     for (std::size_t j = near_.first[k]; j < near_.first[k + 1]; ++j) {
       Mat3 rule = Mat3::Zero();
       for (Eigen::SparseMatrix<double>::InnerIterator entry(surface.values, near_.point[j]); entry; ++entry)
         rule += weights_[entry.row()] * entry.value() * stokes::stokeslet(surface.sites.row(entry.row()).transpose() - at_[k]);
       for (std::size_t c = 0; c < 6; ++c) entries_[6 * j + c] -= rule(stokes::upper[c][0], stokes::upper[c][1]);
     }
-  }
+  });
 }
 
 /// Computes the point forces w_B (R f)_B of the trapezoidal rule (4.11), weight times density f, at all nodes.
@@ -118,15 +119,18 @@ void NodalOperator::sum(Net& u) {
 void NodalOperator::apply(const Net& f, Net& u) {
   spread(f);
   sum(u);
-  for (std::size_t k = 0; k < targets_.size(); ++k) {
-    Vec3 row = Vec3::Zero();
-    for (std::size_t j = near_.first[k]; j < near_.first[k + 1]; ++j) {
-      const double* a = &entries_[6 * j];
-      const double f1 = f(near_.point[j], 0), f2 = f(near_.point[j], 1), f3 = f(near_.point[j], 2);
-      row += Vec3(a[0] * f1 + a[1] * f2 + a[2] * f3, a[1] * f1 + a[3] * f2 + a[4] * f3, a[2] * f1 + a[4] * f2 + a[5] * f3);
+  constexpr std::size_t targets_at_a_time = 64;
+  each_block(targets_.size(), targets_at_a_time, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      Vec3 row = Vec3::Zero();
+      for (std::size_t j = near_.first[k]; j < near_.first[k + 1]; ++j) {
+        const double* a = &entries_[6 * j];
+        const double f1 = f(near_.point[j], 0), f2 = f(near_.point[j], 1), f3 = f(near_.point[j], 2);
+        row += Vec3(a[0] * f1 + a[1] * f2 + a[2] * f3, a[1] * f1 + a[3] * f2 + a[4] * f3, a[2] * f1 + a[4] * f2 + a[5] * f3);
+      }
+      u.row(targets_[k]) += row.transpose();
     }
-    u.row(targets_[k]) += row.transpose();
-  }
+  });
 }
 
 }  // namespace tanktread::coupling

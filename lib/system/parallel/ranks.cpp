@@ -57,13 +57,23 @@ struct KokkosArguments {
 struct Session::Impl {
   Impl(int* argc, char*** argv) {
     KokkosArguments kokkos(argc, argv);
-    if (launched())
-      Tpetra::initialize(&kokkos.count, &kokkos.begin);  // MPI, then Kokkos
-    else
+    if (launched()) {
+      int provided = 0;
+      MPI_Init_thread(&kokkos.count, &kokkos.begin, MPI_THREAD_FUNNELED, &provided);  // only the thread that starts loops calls MPI
+      Tpetra::initialize(&kokkos.count, &kokkos.begin);
+    } else {
       Kokkos::initialize(kokkos.count, kokkos.begin);
+    }
     begin_agreements();
   }
-  ~Impl() { Tpetra::isInitialized() ? Tpetra::finalize() : Kokkos::finalize(); }
+  ~Impl() {
+    if (Tpetra::isInitialized()) {
+      Tpetra::finalize();
+      MPI_Finalize();
+    } else {
+      Kokkos::finalize();
+    }
+  }
 };
 
 namespace {
@@ -79,19 +89,46 @@ Session::Session(int* argc, char*** argv) : impl_(std::make_unique<Impl>(argc, a
 Session::~Session() = default;
 int Session::rank() const { return communicator()->getRank(); }
 
-std::string crowding() {
-  if (communicator()->getSize() == 1) return {};
+namespace {
+
+/// Returns the cores on which this rank may run. If they are not known, the result has more cores than any computer.
+cpu_set_t own_cores() {
+  cpu_set_t mine;
+  if (sched_getaffinity(0, sizeof mine, &mine) != 0) std::memset(&mine, 0xff, sizeof mine);
+  return mine;
+}
+
+/// Returns the cores on which each rank of this node may run. Collective.
+std::vector<cpu_set_t> cores_on_node() {
+  const cpu_set_t mine = own_cores();
+  if (communicator()->getSize() == 1) return {mine};
   MPI_Comm node = MPI_COMM_NULL;
-  int ranks = 0, length = 0;
-  char name[MPI_MAX_PROCESSOR_NAME + 1] = {};
+  int ranks = 0;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
   MPI_Comm_size(node, &ranks);
-  MPI_Get_processor_name(name, &length);
-  cpu_set_t mine;  // cores on which this rank may run
-  if (sched_getaffinity(0, sizeof mine, &mine) != 0) std::memset(&mine, 0xff, sizeof mine);  // not known: no limit
   std::vector<cpu_set_t> all(static_cast<std::size_t>(ranks));
   MPI_Allgather(&mine, sizeof mine, MPI_BYTE, all.data(), sizeof mine, MPI_BYTE, node);
   MPI_Comm_free(&node);
+  return all;
+}
+
+}  // namespace
+
+int cores_per_rank() {
+  const std::vector<cpu_set_t> all = cores_on_node();
+  cpu_set_t any;
+  CPU_ZERO(&any);
+  for (const cpu_set_t& one : all) CPU_OR(&any, &any, &one);
+  return std::max(1, CPU_COUNT(&any) / static_cast<int>(all.size()));
+}
+
+std::string crowding() {
+  if (communicator()->getSize() == 1) return {};
+  int length = 0;
+  char name[MPI_MAX_PROCESSOR_NAME + 1] = {};
+  MPI_Get_processor_name(name, &length);
+  const cpu_set_t mine = own_cores();
+  const std::vector<cpu_set_t> all = cores_on_node();
   const auto is_within = [&mine](const cpu_set_t& other) {
     cpu_set_t both;
     CPU_AND(&both, &mine, &other);

@@ -30,6 +30,9 @@ class Session {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Returns the number of cores of this node on which its ranks may run, divided by the number of these ranks; at least 1. Collective.
+int cores_per_rank();
+
 /// Returns a warning if more ranks than there are cores share the cores of a node; otherwise an empty text. A rank may run on the cores of its CPU
 /// affinity mask, which cpusets and the binding by the launcher limit. Ranks share the cores of a mask if their masks are subsets of it. Collective.
 std::string crowding();
