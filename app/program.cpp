@@ -59,7 +59,8 @@ void declare_options(CLI::App& app, Arguments& arguments) {
       "state the expectation again, a miss is reported and does not fail the run.\n"
       "Exit codes: 0 done, and all binding expectations are met; 1 an expectation is missed; 2 a mistake in the deck or the command line; "
       "3 the run failed; 4 the run was stopped by a signal or at its wall-clock limit, and --resume continues it if it is a run in time. For any "
-      "code but 0, Open MPI's mpirun prints a page and waits for seconds; `mpirun -q --mca odls_base_sigkill_timeout 0` does not.");
+      "code but 0, Open MPI's mpirun prints a page and waits for seconds; in its version 4, `mpirun -q --mca odls_base_sigkill_timeout 0` does "
+      "not.");
   app.add_option("deck", arguments.decks, "the deck, and overlays that are laid over it key by key");
   app.add_option("--set", arguments.settings, "'Section/key=value': one key, after all decks (repeatable)")->allow_extra_args(false);
   app.add_option("--accuracy", arguments.accuracy,

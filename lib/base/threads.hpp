@@ -23,10 +23,11 @@ int requested_threads(int otherwise);
 int n_threads();      ///< number of threads of a loop
 int thread_number();  ///< number of the calling thread: 0 for the thread that starts the loops, 1 .. n_threads() - 1 for the others in a loop
 
-/// A loop with its body as plain pointers. Use each_item().
-void run_items(std::ptrdiff_t n, void (*body)(const void* work, std::ptrdiff_t item), const void* work);
+/// A loop with its body as plain pointers. Use each_item(). `seconds`: expected seconds per item, which are measured and updated at every call.
+void run_items(std::ptrdiff_t n, void (*body)(const void* work, std::ptrdiff_t item), const void* work, double& seconds);
 
-/// Calls work(i) for i = 0 .. n - 1, on all threads. The calls begin in ascending order. They must not write to what another call reads or writes.
+/// Calls work(i) for i = 0 .. n - 1, on all threads if the loop is expected to take longer than
+/// their start. The calls begin in ascending order. They must not write to what another call reads or writes.
 /// If calls throw, rethrows the exception of the lowest i after the loop, as a loop on one thread would; later calls may not be made. A loop inside
 /// a loop runs on the calling thread. Calls must not use MPI, Teuchos, Tpetra, HDF5 or YAML. `any_thread`: false if only the calling thread may make
 /// the calls, for example of functions from outside the library that do not say otherwise.
@@ -36,8 +37,10 @@ void each_item(std::integral auto n, const Work& work, bool any_thread = true) {
     for (decltype(n) i = 0; i < n; ++i) work(i);
     return;
   }
+  static double seconds = 0;  // per item of this loop of the code
   run_items(
-      static_cast<std::ptrdiff_t>(n), [](const void* of, std::ptrdiff_t i) { (*static_cast<const Work*>(of))(static_cast<decltype(n)>(i)); }, &work);
+      static_cast<std::ptrdiff_t>(n), [](const void* of, std::ptrdiff_t i) { (*static_cast<const Work*>(of))(static_cast<decltype(n)>(i)); }, &work,
+      seconds);
 }
 
 /// Calls work(first, last) for the blocks of `size` successive indices, or fewer in the last block, into which 0 .. n - 1 are divided. For loops

@@ -14,6 +14,7 @@
 #include <Tpetra_MultiVector.hpp>
 
 #include "base/errors.hpp"
+#include "base/threads.hpp"
 #include "deck/value.hpp"
 #include "spline/sparse_systems.hpp"
 
@@ -129,7 +130,7 @@ struct DirectSolver::Impl {
   /// Returns A^-1 times the columns.
   Eigen::MatrixXd solved(Eigen::MatrixXd all) const {
     if (iterative) {
-      for (auto column : all.colwise()) column = iterative->solve(column);
+      each_item(all.cols(), [&](Eigen::Index c) { all.col(c) = iterative->solve(all.col(c)); });
     } else if (inverse.size() == 0) {
       all = substituted(all);
     } else if (all.cols() <= 3) {  // column by column, because Eigen's product with few columns would copy the inverse first

@@ -70,12 +70,15 @@ struct Part {
     return std::ranges::any_of(relaxed_curvature, [](const std::vector<Pack>& c0) { return !c0.empty(); });
   }
 
-  /// Adds to the control points of `sum` the rows that use(Points, rows) sets for each batch (see transpose()), or zero where it sets nothing.
+  /// Adds to the control points of `sum` the rows that use(Points, rows) sets for each batch (see transpose()). It returns false if they are zero.
   template <class Use>
   void add_rows(Net& sum, const Use& use) const {
-    std::vector<double> rows = sums.rows();
-    each_batch([&](const Points& at) { use(at, &rows[3 * at.batch.row]); });
-    sums.add(rows, sum);
+    const auto rows = std::make_unique_for_overwrite<double[]>(3 * sums.n_rows());
+    each_batch([&](const Points& at) {
+      double* const own = &rows[3 * at.batch.row];
+      if (!use(at, own)) std::fill_n(own, 3 * at.batch.used * at.batch.functions, 0.);
+    });
+    sums.add(rows.get(), sum);
   }
 };
 
@@ -159,14 +162,16 @@ void Membrane::load(const Net& x, std::span<const int> elements, Net& d) const {
     tangents(at.group, at.batch, x, a);
     stresses(at.material.law, at.n, at.reference, a, p);
     transpose(at.group, at.batch, p, rows);
+    return true;
   });
   if (!mine->bends()) return;
   mine->add_rows(d, [&](const Part::Points& at, double* rows) {
-    if (!at.c0) return;
+    if (!at.c0) return false;
     Pack j[15 * max_gauss], p[15 * max_gauss];
     jets(at.group, at.batch, x, j);
     bending_stresses(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, j, p);
     jet_transpose(at.group, at.batch, p, rows);
+    return true;
   });
 }
 
@@ -231,20 +236,22 @@ LinearLoad::LinearLoad(LinearLoad&&) noexcept = default;
 void LinearLoad::apply(const Net& u, Net& hu) const {
   hu.setZero(membrane_->space().n_points, 3);
   points_->part->add_rows(hu, [&](const Part::Points& at, double* rows) {
-    if (points_->of_group[at.g].empty()) return;
+    if (points_->of_group[at.g].empty()) return false;
     Pack gradient[6 * max_gauss], p[6 * max_gauss];
     tangents(at.group, at.batch, u, gradient);
     membrane::apply(at.n, &points_->of_group[at.g][at.first], gradient, p);
     transpose(at.group, at.batch, p, rows);
+    return true;
   });
   if (points_->jets.empty() || !points_->part->bends()) return;
   points_->part->add_rows(hu, [&](const Part::Points& at, double* rows) {
-    if (!at.c0) return;
+    if (!at.c0) return false;
     Pack gradient[15 * max_gauss], p[15 * max_gauss];
     jets(at.group, at.batch, u, gradient);
     const Pack* now = &points_->jets[at.g][15 * at.first];
     bending_apply(at.material.bending.modulus, at.n, at.group.weight.data(), at.c0, now, gradient, p);
     jet_transpose(at.group, at.batch, p, rows);
+    return true;
   });
 }
 

@@ -98,8 +98,8 @@ PointSums::PointSums(const spline::Space& space, std::vector<Group>& groups) : f
   each_row([&](int point, std::size_t row) { row_[next[static_cast<std::size_t>(point)]++] = static_cast<int>(row); });
 }
 
-void PointSums::add(const std::vector<double>& rows, Net& sum) const {
-  constexpr std::size_t points_at_a_time = 256;
+void PointSums::add(const double* rows, Net& sum) const {
+  constexpr std::size_t points_at_a_time = 512;
   each_block(first_.size() - 1, points_at_a_time, [&](std::size_t begin, std::size_t end) {
     for (std::size_t point = begin; point < end; ++point) {
       double* const to = sum.data() + 3 * point;

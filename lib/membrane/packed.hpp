@@ -70,9 +70,8 @@ class PointSums {
   /// Sets the member `row` of the batches of `groups`.
   PointSums(const spline::Space& space, std::vector<Group>& groups);
 
-  /// Returns memory for the rows of all batches: component c of row r has the index 3 r + c.
-  std::vector<double> rows() const { return std::vector<double>(3 * static_cast<std::size_t>(n_rows_)); }
-  void add(const std::vector<double>& rows, Net& sum) const;  ///< adds the rows to the control points of `sum`
+  std::size_t n_rows() const { return n_rows_; }                 ///< number of rows of all batches
+  void add(const double* rows, Net& sum) const;  ///< adds the rows to the control points of `sum`. Component c of row r is rows[3 r + c]
 
  private:
   std::size_t n_rows_ = 0;

@@ -49,18 +49,24 @@ Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& loca
 }
 
 IncompleteSolver::IncompleteSolver() {
-  solver_.preconditioner().setDroptol(dropped);
-  solver_.preconditioner().setFillfactor(fill);
-  solver_.setTolerance(1e-14);
-  solver_.setMaxIterations(30);
+  factors_.setDroptol(dropped);
+  factors_.setFillfactor(fill);
 }
 
 bool IncompleteSolver::factor(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a) {
-  solver_.compute(a);
-  return solver_.info() == Eigen::Success;
+  a_ = &a;
+  return factors_.compute(a).info() == Eigen::Success;
 }
 
-Eigen::VectorXd IncompleteSolver::solve(const Eigen::VectorXd& b) const { return solver_.solve(b); }
-Eigen::VectorXd IncompleteSolver::solve(const Eigen::VectorXd& b, const Eigen::VectorXd& start) const { return solver_.solveWithGuess(b, start); }
+Eigen::VectorXd IncompleteSolver::solve(const Eigen::VectorXd& b) const { return solve(b, Eigen::VectorXd::Zero(b.size())); }
+
+/// Calls the function of Eigen's BiCGSTAB, which itself stores the number of iterations and cannot be used by several threads.
+Eigen::VectorXd IncompleteSolver::solve(const Eigen::VectorXd& b, const Eigen::VectorXd& start) const {
+  Eigen::VectorXd x = start;
+  Eigen::Index iterations = 30;
+  double error = 1e-14;
+  Eigen::internal::bicgstab(*a_, b, x, factors_, iterations, error);
+  return x;
+}
 
 }  // namespace tanktread::spline

@@ -31,12 +31,13 @@ class IncompleteSolver {
   bool factor(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a);
 
   /// Returns x = A^-1 b with a relative residual of 1e-14; if this is not reached, the result of 30 iterations. The iteration begins at `start`, if
-  /// given, otherwise at 0.
+  /// given, otherwise at 0. Several threads may call it.
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
   Eigen::VectorXd solve(const Eigen::VectorXd& b, const Eigen::VectorXd& start) const;
 
  private:
-  Eigen::BiCGSTAB<Eigen::SparseMatrix<double, Eigen::RowMajor>, Eigen::IncompleteLUT<double>> solver_;
+  const Eigen::SparseMatrix<double, Eigen::RowMajor>* a_ = nullptr;
+  Eigen::IncompleteLUT<double> factors_;
 };
 
 }  // namespace tanktread::spline

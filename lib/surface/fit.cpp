@@ -3,6 +3,7 @@
 #include <deque>
 #include <stdexcept>
 
+#include "base/threads.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 
@@ -42,7 +43,7 @@ Net LeastSquaresFit::fit_image(const Net& net, const std::function<Vec3(const Ve
     map_.add_transposed(e, bezier.data(), right);
   }
   Net fitted = net;
-  for (int c = 0; c < 3; ++c) fitted.col(c) = solver_.solve(right.col(c), net.col(c));
+  each_item(3, [&](int c) { fitted.col(c) = solver_.solve(right.col(c), net.col(c)); });
   if (!((matrix_ * fitted - right).norm() <= 1e-10 * right.norm())) throw std::logic_error("a least-squares fit did not converge");
   return fitted;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "base/indices.hpp"
+#include "base/threads.hpp"
 #include "spline/bernstein.hpp"
 
 namespace tanktread::surface {
@@ -131,10 +132,12 @@ Patches::Patches(const BezierMap& map, const Net& net, std::span<const int> elem
   points_.resize(size);
   double* next = points_.data();
   for (const int e : elements) {
-    map.points(e, net, next);
     patches_.push_back({map.degree(e), next});
     next += 3 * map.n_bezier(e);
   }
+  each_block(elements.size(), std::size_t{block_size}, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) map.points(elements[k], net, &points_[static_cast<std::size_t>(patches_[k].points - points_.data())]);
+  });
 }
 
 }  // namespace tanktread::surface

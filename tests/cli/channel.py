@@ -126,7 +126,7 @@ def an_iterated_wall_gives_the_result_of_a_factored_one():
 
 def a_profile_from_a_file_gives_the_result_of_the_constriction():
     s = numpy.linspace(-1, 1, 41)
-    rows = "".join(f"{a},{f!r}\n" for a, f in zip(s, 1 - 0.15 * (1 + numpy.cos(numpy.pi * s))))
+    rows = "".join(f"{a},{float(f)!r}\n" for a, f in zip(s, 1 - 0.15 * (1 + numpy.cos(numpy.pi * s))))
     pathlib.Path("same.csv").write_text("s,f\n" + rows)
     lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", "profile: file, points: same.csv")
     short = ["Time/end when past=-2", "Channel/azimuthal elements=12", "Channel/axial elements=36"]

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "base/groups.hpp"
+#include "base/threads.hpp"
 #include "spline/bernstein.hpp"
 #include "spline/point_search.hpp"
 #include "surface/patch.hpp"
@@ -134,14 +135,22 @@ Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>
 }
 
 /// Calls use(patch, nodes, jets) for every element, in reverse order. If `use` sets values at nodes, a node shared by several elements thus keeps the
-/// value from the element with the lowest index.
+/// value from the element with the lowest index. The jets are computed by all threads.
 template <class Use>
 void Nodes::each_cell(const Net& net, Use use) const {
-  std::vector<surface::Jet> here;
-  for (int e = map_.n_elements(); e-- > 0;) {
-    const Points points = jets(e, net, here);
-    use(surface::Patch{map_.degree(e), points.data()}, std::span(mesh_.connectivity).subspan(static_cast<std::size_t>(mesh_.offsets[e]), here.size()),
-        here);
+  constexpr int at_a_time = 256;
+  std::vector<Points> points(at_a_time);
+  std::vector<std::vector<surface::Jet>> all(at_a_time);
+  for (int end = map_.n_elements(); end > 0; end -= at_a_time) {
+    const int some = std::min(at_a_time, end);
+    each_block(some, 16, [&](int first, int last) {
+      for (int k = first; k < last; ++k) points[k] = jets(end - 1 - k, net, all[k]);
+    });
+    for (int k = 0; k < some; ++k) {
+      const int e = end - 1 - k;
+      const auto nodes = std::span(mesh_.connectivity).subspan(static_cast<std::size_t>(mesh_.offsets[e]), all[k].size());
+      use(surface::Patch{map_.degree(e), points[k].data()}, nodes, all[k]);
+    }
   }
 }
 

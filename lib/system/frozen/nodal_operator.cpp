@@ -94,7 +94,15 @@ void NodalOperator::subtract_rule(const Surface& surface) {
 
 /// Computes the point forces w_B (R f)_B of the trapezoidal rule (4.11), weight times density f, at all nodes.
 void NodalOperator::spread(const Net& f) {
-  const Net values = values_ * f;
+  constexpr Eigen::Index rows_at_a_time = 128;
+  Net values(values_.rows(), 3);
+  each_block(values_.rows(), rows_at_a_time, [&](Eigen::Index first, Eigen::Index last) {
+    for (Eigen::Index k = first; k < last; ++k) {
+      Vec3 sum = Vec3::Zero();
+      for (ByRows::InnerIterator entry(values_, k); entry; ++entry) sum += entry.value() * f.row(entry.col()).transpose();
+      values.row(k) = sum.transpose();
+    }
+  });
   for (std::size_t b = 0; b < row_.size(); ++b)
     for (int c = 0; c < 3; ++c) {
       const auto node = static_cast<Eigen::Index>(b);
@@ -119,7 +127,7 @@ void NodalOperator::sum(Net& u) {
 void NodalOperator::apply(const Net& f, Net& u) {
   spread(f);
   sum(u);
-  constexpr std::size_t targets_at_a_time = 64;
+  constexpr std::size_t targets_at_a_time = 128;
   each_block(targets_.size(), targets_at_a_time, [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       Vec3 row = Vec3::Zero();

@@ -90,7 +90,7 @@ def work(run, axis, *, parts: bool = True):
         slope = numpy.polyfit(numpy.log(seconds), numpy.log(errors), 1)[0]
         changes = changes_by_part(runs[k], settings[k:k + 2], request, study) if parts else {}
         words = f"{request['request']}: slope {slope:.1f}"
-        words += f", mainly {max(changes, key=changes.get)}" if changes else ""
+        words += f", mainly {max(changes, key=lambda part: changes[part])}" if changes else ""
         axis.loglog(seconds, errors, "o-", ms=4, color=color, label=words)
         axis.axhline(request["allowed"], linewidth=0.8, **style.GUIDE | {"color": color})
         listed = ", ".join(f"{part} {change:.2g}" for part, change in changes.items())
@@ -127,7 +127,7 @@ def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None,
         families.setdefault(family, []).append((points, seconds, evaluations, errors[-1].max()))
         log.info(f"{run.name}: {points:.0f} control points, {family}: largest error {errors[-1].max():.2e}, "
                  f"{evaluations:.0f} evaluations, {seconds:.2f} s")
-    room = 0.1 * min(map(numpy.median, errors)), 30 * errors[0].max()  # limits that leave space for the legend
+    room = 0.1 * min(float(numpy.median(one)) for one in errors), 30 * errors[0].max()  # limits that leave space for the legend
     over_time.set(xlabel=time_label(runs), ylabel="error", ylim=room)
     over_time.legend(loc="upper left", ncols=2)
     for (family, rows), color in style.coloured(sorted(families.items())):
