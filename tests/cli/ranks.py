@@ -134,8 +134,8 @@ def more_ranks_than_cores_are_reported():
     cores = sorted(os.sched_getaffinity(0))[:2]
 
     def said(*pinned):
-        parts = [["-n", "1", "taskset", "-c", str(core), PROGRAM, deck(DECK), "--check", "--quiet"] for core in pinned]
-        words = ["mpirun", *(str(word) for k, part in enumerate(parts) for word in [":"] * (k > 0) + part)]
+        pin = f"cores=({' '.join(map(str, pinned))}); exec taskset -c ${{cores[$OMPI_COMM_WORLD_RANK]}} \"$0\" \"$@\""
+        words = ["mpirun", "-n", str(len(pinned)), "bash", "-c", pin, str(PROGRAM), str(deck(DECK)), "--check", "--quiet"]
         return subprocess.run(words, capture_output=True, text=True, check=True).stderr
 
     one = said(cores[0], cores[0])

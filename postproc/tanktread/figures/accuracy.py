@@ -127,7 +127,8 @@ def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None,
         families.setdefault(family, []).append((points, seconds, evaluations, errors[-1].max()))
         log.info(f"{run.name}: {points:.0f} control points, {family}: largest error {errors[-1].max():.2e}, "
                  f"{evaluations:.0f} evaluations, {seconds:.2f} s")
-    room = 0.1 * min(float(numpy.median(one)) for one in errors), 30 * errors[0].max()  # limits that leave space for the legend
+    least = min(float(numpy.median(one)) for one in errors)
+    room = 0.1 * least, 30 * errors[0].max()  # limits that leave space for the legend
     over_time.set(xlabel=time_label(runs), ylabel="error", ylim=room)
     over_time.legend(loc="upper left", ncols=2)
     for (family, rows), color in style.coloured(sorted(families.items())):
