@@ -9,6 +9,7 @@
 #include "base/indices.hpp"
 #include "base/kernel.hpp"
 #include "base/stop.hpp"
+#include "base/threads.hpp"
 
 namespace tanktread {
 inline namespace INSTRUCTIONS {
@@ -35,16 +36,18 @@ void factor_panel(Matrix& all, Eigen::Block<Matrix> panel, int first, int* order
 }  // namespace
 
 void factor(int n, double* a, int* row_of) {
-  constexpr int width = 64;  // the product for one panel takes about a second for n = 10,000
+  constexpr int columns_at_a_time = 128, width = 64;  // the product for one panel takes about a second for n = 10,000
   Matrix all(a, n, n);
   std::vector<int> order = indices(n);
   for (int first = 0; first < n; first += width) {
     stop_here();
     const int columns = std::min(width, n - first), rest = n - first - columns;
     factor_panel(all, all.block(first, first, n - first, columns), first, order.data());
-    auto right = all.block(first, first + columns, columns, rest);
-    all.block(first, first, columns, columns).triangularView<Eigen::UnitLower>().solveInPlace(right);
-    all.bottomRightCorner(rest, rest).noalias() -= all.block(first + columns, first, rest, columns) * right;
+    each_block(rest, columns_at_a_time, [&](int from, int to) {
+      auto right = all.block(first, first + columns + from, columns, to - from);
+      all.block(first, first, columns, columns).triangularView<Eigen::UnitLower>().solveInPlace(right);
+      all.block(first + columns, first + columns + from, rest, to - from).noalias() -= all.block(first + columns, first, rest, columns) * right;
+    });
   }
   for (int i = 0; i < n; ++i) row_of[order[static_cast<std::size_t>(i)]] = i;
 }

@@ -1,6 +1,7 @@
 #include "base/threads.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -22,13 +23,23 @@ class Threads {
   int before_ = n_threads();
 };
 
+/// Takes so long that a loop over some of these items uses all threads.
+void work() {
+  const auto begin = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - begin < std::chrono::microseconds(50)) continue;
+}
+
 TEST(Threads, EveryItemIsDoneOnce) {
   for (const int n : {1, 2, 5}) {
     const Threads threads(n);
-    for (const int items : {0, 1, 2, 1000}) {
+    for (const int items : {0, 1, 2, 100}) {
       std::vector<int> done(static_cast<std::size_t>(items), 0);
-      for (int repeat = 0; repeat < 20; ++repeat) each_item(items, [&](int i) { ++done[static_cast<std::size_t>(i)]; });
-      EXPECT_EQ(done, std::vector<int>(done.size(), 20)) << n;
+      for (int repeat = 0; repeat < 5; ++repeat)
+        each_item(items, [&](int i) {
+          work();
+          ++done[static_cast<std::size_t>(i)];
+        });
+      EXPECT_EQ(done, std::vector<int>(done.size(), 5)) << n;
     }
   }
 }
@@ -47,18 +58,21 @@ TEST(Threads, BlocksDoNotDependOnTheirNumber) {
 TEST(Threads, SeveralWorkAtTheSameTime) {
   const Threads threads(2);
   std::atomic<int> inside = 0;
-  each_item(2, [&](int) {  // ends only if both items are begun
-    ++inside;
-    while (inside < 2) continue;
-  });
+  for (const bool together : {false, true})  // the first loop shows that the items take long
+    each_item(4, [&](int) {
+      work();
+      ++inside;
+      while (together && inside < 6) continue;  // the second loop ends only if two items are begun at the same time
+    });
 }
 
 TEST(Threads, TheFailureOfTheLowestItemIsThrown) {
   const Threads threads(3);
-  for (int repeat = 0; repeat < 200; ++repeat) {
+  for (int repeat = 0; repeat < 20; ++repeat) {
     std::vector<int> done(64, 0);
     try {
       each_item(64, [&](int i) {
+        work();
         if (i % 10 == 7) throw std::runtime_error(std::to_string(i));
         if (i == 63) throw std::bad_alloc();
         done[static_cast<std::size_t>(i)] = 1;
@@ -76,6 +90,7 @@ TEST(Threads, ALoopInALoopRunsOnItsThread) {
   const Threads threads(2);
   PerThread<int> count;
   each_item(8, [&](int) {
+    work();
     const int mine = thread_number();
     each_item(8, [&](int) {
       EXPECT_EQ(thread_number(), mine);
@@ -87,13 +102,13 @@ TEST(Threads, ALoopInALoopRunsOnItsThread) {
 
 TEST(Threads, OnlyTheCallingThreadMakesCallsThatDemandIt) {
   const Threads threads(2);
-  each_item(100, [](int) { EXPECT_EQ(thread_number(), 0); }, false);
+  each_item(100, [](int) { work(), EXPECT_EQ(thread_number(), 0); }, false);
 }
 
 TEST(Threads, TheThreadThatStartsALoopAnswersAStop) {
   const Threads threads(2);
   set_stop_request([] { return thread_number() == 0; });
-  EXPECT_THROW(each_item(1000, [](int) { stop_here(); }), Stopped);
+  EXPECT_THROW(each_item(1000, [](int) { work(), stop_here(); }), Stopped);
   set_stop_request({});
 }
 
