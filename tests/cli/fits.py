@@ -33,7 +33,7 @@ Tanktread:
   Flow: { type: quiescent }
   Particle: { shape: sphere, radius: 1.0, initial shape: { stretch: [1.2, 1.0, 0.9], volume: own } }
   Membrane: { law: neo-Hookean, shear modulus: 1.0 }
-  Surface: { elements per side: 8 }
+  Surface: { elements per side: 5 }
   Time: { final time: 1.0e-6 }
 """
 
@@ -142,7 +142,7 @@ def a_known_value_contributes_to_the_fit():
 
 
 def an_unknown_at_a_bound_is_reported():
-    deck(STILL.replace("per side: 8", "per side: 3"))
+    deck(STILL.replace("per side: 5", "per side: 3"))
     data = [{"series": "length_x1", "value": 2.4, "error": 0.03}, {"series": "length_x3", "value": 1.8, "error": 0.03}]  # radius 1, error 0.01
     for given, bound in (({"start": 1.1, "from": 1.05}, "from"), ({"start": 0.9, "to": 0.97}, "to"), ({"start": 1.1, "from": 0.98, "to": 1.2}, None)):
         said = _fit({"deck": "deck.yaml", "unknown": {"Particle/radius": given}, "experiments": {"still": {"data": data}}})

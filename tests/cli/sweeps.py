@@ -378,7 +378,7 @@ def a_killed_sweep_continues():
         process.wait()
         check(_rows() and all(row["status"] == "done" for row in _rows()), "the table of a killed sweep", _rows())
         with h5py.File("results/study/table.h5") as file:
-            check(len(file["columns/D"]) == len(_rows()), "the other table")
+            check(abs(len(file["columns/D"]) - len(_rows())) <= 1, "the other table")  # SIGKILL may come between the two files
     kept = {path: path.stat().st_mtime_ns for path in pathlib.Path("results/study/runs").glob("*/outcome.json") if '"code": 0' in path.read_text()}
     check(kept, "nothing was done before")
     _sweep("study.yaml", "--jobs", "2")
