@@ -38,7 +38,7 @@ void subtract_identities(LayerSources& sources, std::span<const int> sites, Net&
   each_item(sites.size(), [&](std::size_t k) {
     u.row(sites[k]) -= (identities(sources, sites[k]) * sources.surface.value(sites[k], sources.bezier_f)).transpose();
   });
-  sources.evaluations.mine().self += static_cast<long long>(sites.size()) * sources.n_nodes();
+  sources.counts.mine().self += static_cast<long long>(sites.size()) * sources.n_nodes();
 }
 
 template <class Real>

@@ -31,7 +31,7 @@ void ClusterSums::set_sums(LayerSources& sources, const LayerMedium& medium, con
     case LayerKernel::single_layer: set_sums_of_forces(sources, medium, targets, u); break;
     case LayerKernel::double_layer: set_sums_of_stresslets(sources, targets, u); break;
   }
-  sources.evaluations.mine().far += tree_.interactions();
+  sources.counts.mine().far += tree_.interactions();
 }
 
 /// Sets the nodes and targets of the tree of clusters, and for a double layer computes the sum of T_ijk n_k over all far nodes at the targets. The
@@ -63,7 +63,7 @@ void ClusterSums::place(LayerSources& sources, const LayerMedium& medium, const 
   stress_.resize(6 * at_.size());
   const auto& normal = sources.normal;
   tree_.sum<NormalStressKernel>({normal[0].data(), normal[1].data(), normal[2].data()}, stress_.data());
-  sources.evaluations.mine().far += tree_.interactions();
+  sources.counts.mine().far += tree_.interactions();
 }
 
 /// Computes the far sums of the single layer by clusters. In a symmetric scene the sources are the nodes of the fundamental panels, and the sums at

@@ -122,7 +122,7 @@ void Layer::add_near(const LayerTargets& targets, Net& u) {
       const Vec3 at = targets.at.row(i).transpose() - image;
       const std::span<SelfPair> self_pairs = targets.sites && image.isZero(0) ? surface.self_pairs(i) : std::span<SelfPair>();
       for (const int e : surface.near(at, self_pairs))
-        u.row(i) += sources_.beyond_far_sum(e, surface.near_field.rule(e, at, self_pairs), nullptr, at, f0).transpose();
+        u.row(i) += sources_.beyond_far_sum(e, surface.near_field.rule(e, at, self_pairs), nullptr, at, f0, sources_.counts.mine().near).transpose();
     }
   });
 }
@@ -134,7 +134,8 @@ void Layer::add_self(const LayerTargets& targets, Net& u) {
     each_item(rows.size(), [&](std::size_t k) {
       const int i = rows[k];
       for (SelfPair& pair : surface.self_pairs(i))
-        u.row(i) += sources_.beyond_far_sum(pair.panel, *pair.table, &pair, targets.at.row(i), targets.f0.row(i)).transpose();
+        u.row(i) += sources_.beyond_far_sum(pair.panel, *pair.table, &pair, targets.at.row(i), targets.f0.row(i), sources_.counts.mine().self)
+                        .transpose();
     });
   });
   if (sources_.desingularised()) subtract_identities(sources_, targets.rows, u);
@@ -170,7 +171,7 @@ Layer::Near Layer::near(const Net& at, std::span<const int> targets, int first_i
         moments.resize(begin + static_cast<std::size_t>(kernel_entries) * surface.panels[e].table->n_bernstein);
         const PointTable& table = surface.near_field.rule(e, y, {});
         sources_.moments_beyond_far_sum(e, table, nullptr, y, &moments[begin]);
-        sources_.evaluations.mine().near += table.points + surface.panels[e].table->n_nodes;
+        sources_.counts.mine().near += table.points + surface.panels[e].table->n_nodes;
       }
     }
   });

@@ -144,7 +144,7 @@ class Layer {
   Eigen::VectorXd moments(const std::vector<double>& g) const { return sources_.moments(g); }
 
   /// Returns the number of kernel evaluations since construction.
-  Evaluations evaluations() const { return sources_.evaluations.sum(); }
+  Evaluations evaluations() const { return sources_.evaluations + sources_.counts.sum(); }
   /// Returns the computing times since construction, divided into `setup`, `far`, `near`, `self` and `assembly`, and further phases for a lattice or
   /// a wall.
   const Phases& phases() const { return sources_.phases; }

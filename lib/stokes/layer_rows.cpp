@@ -171,7 +171,7 @@ class RowSums {
       sources_.panel_moments(e, table, pair, x0, work.moments.data());
     }
     add_moments(panels, e, &basis.rows[basis.first_row[k]], work.moments.data(), &work.sums[l]);
-    (pair ? sources_.evaluations.mine().self : sources_.evaluations.mine().near) += table.points;
+    (pair ? sources_.counts.mine().self : sources_.counts.mine().near) += table.points;
   }
 
   void add_far_panel(const FarBasis<Real>& basis, std::size_t k, const double* place, int n_targets, Work& work) {
@@ -185,7 +185,7 @@ class RowSums {
     }
     work.kernel.resize(static_cast<std::size_t>(kernel_entries) * assembly_block * nodes.n_nodes);
     far_moments(nodes, place, work.skip[k], work.kernel.data(), work.sums.data());
-    sources_.evaluations.mine().far += static_cast<long long>(n_targets) * nodes.n_nodes;
+    sources_.counts.mine().far += static_cast<long long>(n_targets) * nodes.n_nodes;
   }
 
   LayerSources& sources_;

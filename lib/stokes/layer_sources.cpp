@@ -122,7 +122,7 @@ Net LayerSources::direct_sum(const NodeVectors& x, std::span<const Vec3> at, std
     case LayerKernel::single_layer: far_sums(charges(x, density), at, sums.data()); break;
     case LayerKernel::double_layer: far_sums(stresslets(x, density, normal), at, f0, sums.data()); break;
   }
-  evaluations.mine().far += static_cast<long long>(at.size()) * n_nodes();
+  counts.mine().far += static_cast<long long>(at.size()) * n_nodes();
   return sums;
 }
 
@@ -136,7 +136,7 @@ Vec3 LayerSources::direct_sum(int e, const Vec3& at, const Vec3& f0) const {
   return sum;
 }
 
-Vec3 LayerSources::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0) {
+Vec3 LayerSources::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count) {
   const Panel& panel = surface.panels[e];
   const double *x = &surface.bezier[panel.first_bezier], *f = &bezier_f[panel.first_bezier];
   Vec3 better;
@@ -144,7 +144,7 @@ Vec3 LayerSources::beyond_far_sum(int e, const PointTable& table, SelfPair* pair
     case LayerKernel::single_layer: single_sum(table, x, f, area_weights_of(e, table, pair), at.data(), better.data()); break;
     case LayerKernel::double_layer: double_sum(table, x, f, at.data(), f0.data(), better.data()); break;
   }
-  (pair ? evaluations.mine().self : evaluations.mine().near) += table.points + panel.table->n_nodes;
+  count += table.points + panel.table->n_nodes;
   return factor(e) * better - direct_sum(e, at, f0);
 }
 

@@ -76,9 +76,9 @@ class LayerSources {
   Vec3 direct_sum(int e, const Vec3& at, const Vec3& f0) const;
 
   /// Returns the integral over panel e by the near-singular or singular rule `table` minus the contribution of the panel to the far sum. `pair`: the
-  /// pair of target and panel if the panel contains the target, otherwise null. Several threads may call this function and the following
-  /// ones, for different targets.
-  Vec3 beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0);
+  /// pair of target and panel if the panel contains the target, otherwise null. `count` is increased by the number of kernel evaluations.
+  /// Several threads may call this function and the following ones, for different targets.
+  Vec3 beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count);
 
   /// Computes the integrals of the kernel times each Bernstein polynomial (kernel_entries numbers for each: 11, 12, 13, 22, 23, 33) over panel e by
   /// the rule `table`, times the factor of the panel. moments_beyond_far_sum() subtracts the contribution of the panel to the far sum.
@@ -94,7 +94,8 @@ class LayerSources {
   std::vector<double> weight;     ///< quadrature weights of the far nodes, times area and the factor k_p of (2.1), if uses_weights
   NodeVectors density, normal;    ///< values at the far nodes. density: density f (times `weight` if uses_weights). normal: normal times
                                   ///< quadrature weight, area and factor k_p of (2.2)
-  PerThread<Evaluations> evaluations;  ///< kernel evaluations since construction
+  Evaluations evaluations;        ///< kernel evaluations since construction, of code that is called from one thread
+  PerThread<Evaluations> counts;  ///< kernel evaluations since construction, of loops
   Phases phases;                  ///< computing times since construction
 
  private:

@@ -73,7 +73,7 @@ void WallImages::add_far(LayerSources& sources, const LayerTargets& targets, Net
       break;
     }
   }
-  sources.evaluations.mine().far += sum_.interactions();
+  sources.counts.mine().far += sum_.interactions();
   for (std::size_t k = 0; k < targets.far_rows.size(); ++k) u.row(targets.far_rows[k]) += sums.row(static_cast<Eigen::Index>(k));
 }
 
@@ -82,7 +82,7 @@ void WallImages::compute_image_stress(LayerSources& sources) {
     const Net sums = sum_.sum(sources.stresslet_moments_of_constant(c));
     image_stress_.resize(static_cast<std::size_t>(sums.rows()));
     for (std::size_t k = 0; k < image_stress_.size(); ++k) image_stress_[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
-    sources.evaluations.mine().far += sum_.interactions();
+    sources.counts.mine().far += sum_.interactions();
   }
 }
 
@@ -95,7 +95,7 @@ Vec3 WallImages::beyond_far_sum(LayerSources& sources, int e, const PointTable& 
   const std::vector<double> x = turned(wall, &sources.surface.bezier[panel.first_bezier], n_b, true);
   const std::vector<double> f = turned(wall, &sources.bezier_f[panel.first_bezier], n_b, false);
   const Vec3 below = wall.in_axes(mirrored), value = wall.axes() * f0;
-  sources.evaluations.mine().near += table.points + n;
+  sources.counts.mine().near += table.points + n;
   Vec3 better;
   Charges nodes{n, nullptr, nullptr, nullptr, {}};
   std::vector<double> strengths[6];
@@ -136,7 +136,7 @@ void WallImages::panel_moments(LayerSources& sources, int e, const Vec3& at, std
       break;
     case LayerKernel::double_layer: image_double_moments(table, x.data(), below.data(), scratch.data(), own.data()); break;
   }
-  sources.evaluations.mine().near += table.points;
+  sources.counts.mine().near += table.points;
   moments.resize(static_cast<std::size_t>(t.n_bernstein));
   for (std::size_t b = 0; b < moments.size(); ++b)
     moments[b] = sources.factor(e) *
