@@ -35,7 +35,7 @@ Tanktread:
   Flow: {type: simple shear}
   Domain: {side lengths: [5, 5, 5]}
   Particles:
-    one: {Interface: {}, Membrane: {law: surface tension, capillary number: 0.2}, viscosity ratio: 2, Surface: {elements per side: 4}}
+    one: {Interface: {}, Membrane: {law: surface tension, capillary number: 0.2}, Surface: {elements per side: 4}}
     other: {center: [0, 0, 2.5], Membrane: {capillary number: 0.3}, Surface: {elements per side: 4}}
   Time: {final time: 0.01}
 """
