@@ -26,11 +26,11 @@ int thread_number();  ///< number of the calling thread: 0 for the thread that s
 /// A loop with its body as plain pointers. Use each_item(). `seconds`: expected seconds per item, which are measured and updated at every call.
 void run_items(std::ptrdiff_t n, void (*body)(const void* work, std::ptrdiff_t item), const void* work, double& seconds);
 
-/// Calls work(i) for i = 0 .. n - 1, on all threads if the loop is expected to take longer than
-/// their start. The calls begin in ascending order. They must not write to what another call reads or writes.
-/// If calls throw, rethrows the exception of the lowest i after the loop, as a loop on one thread would; later calls may not be made. A loop inside
-/// a loop runs on the calling thread. Calls must not use MPI, Teuchos, Tpetra, HDF5 or YAML. `any_thread`: false if only the calling thread may make
-/// the calls, for example of functions from outside the library that do not say otherwise.
+/// Calls work(i) for i = 0 .. n - 1, on all threads if the loop is expected to take longer than their start. The calls begin in ascending order.
+/// They must not write to what another call reads or writes. If calls throw, rethrows the exception of the lowest i after the loop, as a loop on
+/// one thread would; later calls may not be made. A loop inside a loop runs on the calling thread. Calls must not use MPI, Teuchos, Tpetra, HDF5 or
+/// YAML. `any_thread`: false if only the calling thread may make the calls, for example of functions from outside the library that do not say
+/// otherwise.
 template <class Work>
 void each_item(std::integral auto n, const Work& work, bool any_thread = true) {
   if (n_threads() == 1 || n <= 1 || !any_thread) {

@@ -70,7 +70,7 @@ class PointSums {
   /// Sets the member `row` of the batches of `groups`.
   PointSums(const spline::Space& space, std::vector<Group>& groups);
 
-  std::size_t n_rows() const { return n_rows_; }                 ///< number of rows of all batches
+  std::size_t n_rows() const { return n_rows_; }  ///< number of rows of all batches
   void add(const double* rows, Net& sum) const;  ///< adds the rows to the control points of `sum`. Component c of row r is rows[3 r + c]
 
  private:

@@ -116,9 +116,8 @@ class RowSums {
       : sources_(sources), medium_(medium), at_(at), copies_(copies), shifts_(displacements(medium, copies)) {}
 
   /// Returns the sums of a block of targets: element n (m row + c) + l, with n = assembly_block and m = kernel_entries, is the integral of kernel
-  /// entry
-  /// c (11, 12, 13, 22, 23, 33) times the basis function of control point `row`, at target l. `rows`: number of control points in `basis`. The result
-  /// is valid until the next call by the same thread.
+  /// entry c (11, 12, 13, 22, 23, 33) times the basis function of control point `row`, at target l. `rows`: number of control points in `basis`.
+  /// The result is valid until the next call by the same thread.
   std::vector<Real>& of(std::span<const int> targets, const FarBasis<Real>& basis, int rows) {
     Work& work = work_.mine();
     work.sums.assign(static_cast<std::size_t>(kernel_entries) * assembly_block * (rows + 1), Real(0));

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Checks the form of all files: C++ lines of at most 150 characters (aim: 140), #pragma once in headers, no threads but those of base/threads.hpp, Debian's Python in scripts, scripts that are
-executable, bash scripts that stop at the first error, and decks whose cost is stated equally in both places.
+"""Checks the form of all files: C++ lines of at most 150 characters (aim: 140), #pragma once in headers, no threads but those of
+base/threads.hpp, Debian's Python in scripts, scripts that are executable, bash scripts that stop at the first error, and decks whose cost is stated equally in both places.
 
 Usage: form.py <source directory>
 """
