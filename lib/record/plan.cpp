@@ -27,6 +27,8 @@ using Lines = output::Entries<std::string>;
 
 std::string on_ranks(int ranks) { return formatted("on %d rank%s", ranks, ranks > 1 ? "s" : ""); }
 
+std::string kernels_line() { return instructions() + formatted(", %d thread%s", n_threads(), n_threads() > 1 ? "s" : ""); }
+
 std::string surface_line(const Body& body) {
   return formatted("%d control points, %d elements: %s", body.space.n_points, static_cast<int>(body.space.elements.size()),
                    body.space.description.c_str());
@@ -231,7 +233,7 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("time", free ? scene.time.scheme + " for centre and orientation" : "steady");
   lines.emplace_back("solvers", solvers_line(scene, {}));
   lines.emplace_back("assembled", formatted("%.1f MB on every rank, factored", (scene.tube.present ? 144e-6 : 72e-6) * n * n));
-  lines.emplace_back("kernels", instructions() + formatted(", %d thread%s", n_threads(), n_threads() > 1 ? "s" : ""));
+  lines.emplace_back("kernels", kernels_line());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   if (only.adaptation.enabled)
     lines.emplace_back("mesh", "refined once at the initial position, where the shape, a film or the traction needs it");
@@ -258,7 +260,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
     lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   }
   lines.emplace_back("far sum", tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target with every node");
-  lines.emplace_back("kernels", instructions() + formatted(", %d thread%s", n_threads(), n_threads() > 1 ? "s" : ""));
+  lines.emplace_back("kernels", kernels_line());
   if (scene.has_gaps())
     lines.emplace_back("contact",
                        formatted(scene.contact.limiter ? "gaps between particles are kept at %g R_C or above by repulsive forces (4.23)"
