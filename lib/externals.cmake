@@ -24,7 +24,7 @@ function(external name)
 endfunction()
 
 foreach(name teuchosparameterlist teuchosparser teuchoscomm teuchosnumerics teuchoscore
-    nox amesos2 stratimikosbelos belos thyratpetra thyracore tpetra kokkoscore)
+    nox amesos2 stratimikosbelos belostpetra belos thyratpetra thyracore tpetra kokkoscore)
   find_library(TRILINOS_${name} NAMES trilinos_${name} ${name} REQUIRED)
   if(name MATCHES teuchos)
     list(APPEND teuchos ${TRILINOS_${name}})

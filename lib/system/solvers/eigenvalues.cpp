@@ -4,14 +4,12 @@
 
 #include <AnasaziBasicEigenproblem.hpp>
 #include <AnasaziBlockKrylovSchurSolMgr.hpp>
-#include <AnasaziThyraAdapter.hpp>
+#include <AnasaziTpetraAdapter.hpp>
 #include <Teuchos_LAPACK.hpp>
 #include <Teuchos_ParameterList.hpp>
-#include <Thyra_DefaultSpmdVectorSpace.hpp>
 
 #include "base/errors.hpp"
-#include "system/parallel/agreement.hpp"
-#include "system/solvers/thyra_blocks.hpp"
+#include "system/solvers/vectors.hpp"
 
 namespace tanktread::coupling {
 
@@ -64,16 +62,14 @@ std::vector<Eigenpair> eigenpairs(Eigen::MatrixXd a) {
 }
 
 std::vector<Eigenpair> largest_eigenpairs(const Apply& a, Eigen::Index n, int number, int block, double tolerance) {
-  using Vectors = Thyra::MultiVectorBase<double>;
-  using Operator = Thyra::LinearOpBase<double>;
-  const auto space = vector_space({{"shape", n}});
-  const auto map = Teuchos::rcp(new FunctionOperator(space));
-  map->function = a;
+  const auto map = replicated(n);
   Eigen::VectorXd start(n * block);
-  for (Eigen::Index i = 0; i < start.size(); ++i) start[i] = std::sin(1.0 + static_cast<double>(i * i % 7919));  // pseudo-random, equal on every run
-  const Teuchos::RCP<Vectors> first = Thyra::createMembers<double>(space, block);
-  for (int k = 0; k < block; ++k) Thyra::assign(first->col(k).ptr(), *vector_of(space, start.segment(k * n, n)));
-  const auto problem = Teuchos::rcp(new Anasazi::BasicEigenproblem<double, Vectors, Operator>(map, first));
+  for (Eigen::Index i = 0; i < start.size(); ++i)
+    start[i] = std::sin(1.0 + static_cast<double>(i * i % 7919));  // pseudo-random, equal on every run
+  const auto first = Teuchos::rcp(new Vectors(map, static_cast<std::size_t>(block)));
+  for (int k = 0; k < block; ++k) set_column(*first, static_cast<std::size_t>(k), start.segment(k * n, n));
+  const auto problem =
+      Teuchos::rcp(new Anasazi::BasicEigenproblem<double, Vectors, Operator>(Teuchos::rcp(new FunctionOperator(map, a)), first));
   problem->setHermitian(false);
   problem->setNEV(number);
   if (!problem->setProblem()) throw not_found;
@@ -84,9 +80,9 @@ std::vector<Eigenpair> largest_eigenpairs(const Apply& a, Eigen::Index n, int nu
   if (manager.solve() != Anasazi::Converged) throw not_found;
   const auto& solution = problem->getSolution();
   Eigen::VectorXcd values(solution.numVecs);
-  Eigen::MatrixXd columns(n, solution.Evecs->domain()->dim());
+  Eigen::MatrixXd columns(n, static_cast<Eigen::Index>(solution.Evecs->getNumVectors()));
   for (int k = 0; k < solution.numVecs; ++k) values[k] = {solution.Evals[k].realpart, solution.Evals[k].imagpart};
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = numbers_of(*solution.Evecs->col(k));
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = column(*solution.Evecs, static_cast<std::size_t>(k));
   return unpacked(values, columns);
 }
 

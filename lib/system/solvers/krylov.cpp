@@ -2,47 +2,36 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
+#include <BelosLinearProblem.hpp>
+#include <BelosSolverFactory_Tpetra.hpp>
+#include <BelosTpetraAdapter.hpp>
 #include <Teuchos_ParameterList.hpp>
 #include <Teuchos_TimeMonitor.hpp>
-#include <Thyra_BelosLinearOpWithSolveFactory_decl.hpp>
-#include <Thyra_DefaultIdentityLinearOp.hpp>
-#include <Thyra_LinearOpWithSolveFactoryHelpers.hpp>
+#include <Teuchos_oblackholestream.hpp>
 
 #include "base/errors.hpp"
 #include "deck/value.hpp"
 #include "deck/words.hpp"
+#include "system/solvers/belos_choice.hpp"
 #include "system/solvers/chosen_preconditioner.hpp"
-#include "system/solvers/thyra_blocks.hpp"
+#include "system/solvers/vectors.hpp"
 
 namespace tanktread::coupling {
 
 namespace {
 
-constexpr const char* block_gmres = "Block GMRES";
+using Problem = Belos::LinearProblem<double, Vectors, Operator>;
+using Solver = Belos::SolverManager<double, Vectors, Operator>;
 
-constexpr double least_recursive_residual = 1e-12;  // relative residual below which the residual that Belos updates recursively is only round-off
+constexpr double least_recursive_residual =
+    1e-12;  // relative residual below which the residual that Belos updates recursively is only round-off
 
-/// Returns a map from the names of Belos' factory to the names of Stratimikos. "GMRES" is mapped to flexible GMRES, which detects convergence without
-/// an additional product.
-const std::map<std::string, std::string>& solver_types() {
-  static const std::map<std::string, std::string> types = {{"GMRES", block_gmres},
-                                                           {"FLEXIBLE GMRES", block_gmres},
-                                                           {"BLOCK GMRES", block_gmres},
-                                                           {"PSEUDOBLOCK GMRES", "Pseudo Block GMRES"},
-                                                           {"GCRODR", "GCRODR"},
-                                                           {"BICGSTAB", "BiCGStab"},
-                                                           {"TFQMR", "TFQMR"},
-                                                           {"CG", "Pseudo Block CG"},
-                                                           {"PSEUDOBLOCK CG", "Pseudo Block CG"},
-                                                           {"BLOCK CG", "Block CG"},
-                                                           {"MINRES", "MINRES"},
-                                                           {"RCG", "RCG"},
-                                                           {"FIXED POINT", "Fixed Point"}};
-  return types;
+Teuchos::RCP<Solver> belos_solver(const std::string& name, const Teuchos::RCP<Teuchos::ParameterList>& list) {
+  return Belos::SolverFactory<double, Vectors, Operator>().create(name, list);
 }
 
 /// Disables Trilinos' timers. Without MPI, the timers make a system call in each vector operation, which takes a third of the time of a small solve.
@@ -70,73 +59,75 @@ std::vector<std::pair<std::string, double>> residuals_of(const LinearSystem& sys
 
 }  // namespace
 
-BelosFactory belos_factory(const IterativeOptions& options) {
+BelosChoice belos_choice(const IterativeOptions& options) {
   std::string name = *options.solver;
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  const auto type = solver_types().find(name);
-  if (type == solver_types().end())
+  if (const std::vector<std::string> names = Krylov::names(); std::ranges::find(names, name) == names.end())
     throw UserError(options.path + "/iterative solver must be the name of a solver of Belos that can be used here, as " +
                     deck::alternatives(Krylov::names()) + ", but is " + deck::in_quotes(deck::shortened(*options.solver, 80)) + ".");
-  const auto factory = Teuchos::rcp(new Thyra::BelosLinearOpWithSolveFactory<double>);
-  const auto all = Teuchos::rcp(new Teuchos::ParameterList);
-  all->set("Solver Type", type->second);
-  Teuchos::ParameterList& own = all->sublist("Solver Types").sublist(type->second);
-  own.set("Maximum Iterations", 200);
-  if (name.ends_with("GMRES")) own.set("Num Blocks", options.restart);
-  const bool flexible = name == "GMRES" || name == "FLEXIBLE GMRES";
-  if (flexible) own.set("Flexible Gmres", true);
-  if (options.belos) {
-    const std::string path = options.path + "/Belos";
-    deck::check_foreign(path, *options.belos, factory->getValidParameters()->sublist("Solver Types").sublist(type->second));
-    for (const char* output : {"Verbosity", "Output Style", "Output Frequency"})
-      if (options.belos->isParameter(output))
-        throw UserError(path + "/" + output + " cannot be set, because the output of Belos is not shown.");
-    own.setParameters(*options.belos);
-  }
-  factory->setParameterList(all);
-  return {factory, flexible};
+  BelosChoice choice{name, Teuchos::rcp(new Teuchos::ParameterList), name == "GMRES" || name == "FLEXIBLE GMRES"};
+  if (choice.flexible) choice.name = "BLOCK GMRES";  // Belos' own "GMRES" is another method, which is not flexible
+  choice.list->set("Maximum Iterations", 200);
+  if (name.ends_with("GMRES")) choice.list->set("Num Blocks", options.restart);
+  if (choice.flexible) choice.list->set("Flexible Gmres", true);
+  if (!options.belos) return choice;
+  const std::string path = options.path + "/Belos";
+  deck::check_foreign(path, *options.belos, *belos_solver(choice.name, Teuchos::null)->getValidParameters());
+  for (const char* output : {"Verbosity", "Output Style", "Output Frequency"})
+    if (options.belos->isParameter(output))
+      throw UserError(path + "/" + output + " cannot be set, because the output of Belos is not shown.");
+  choice.list->setParameters(*options.belos);
+  return choice;
 }
 
 struct Krylov::Impl {
-  BelosFactory belos;
+  BelosChoice belos;
   ChosenPreconditioner chosen;
   long generation = 0;  // value of generation_ at the latest solve
   Blocks blocks;
-  Teuchos::RCP<const Space> space;
   Teuchos::RCP<FunctionOperator> product, preconditioner;
-  Teuchos::RCP<ThyraVector> unknowns, right;
-  Teuchos::RCP<Thyra::LinearOpWithSolveBase<double>> solver;
+  Teuchos::RCP<Vectors> unknowns, right;
+  Teuchos::RCP<Problem> problem;
+  Teuchos::RCP<Solver> solver;
 
   void prepare(const LinearSystem& system) {
-    if (space.is_null() || blocks != system.blocks || preconditioner.is_null() == bool(system.precondition)) {
+    if (solver.is_null() || blocks != system.blocks || problem->getRightPrec().is_null() == (belos.flexible || system.precondition)) {
       blocks = system.blocks;
       chosen.forget();
-      space = vector_space(blocks);
-      unknowns = Thyra::createMember(space);
-      right = Thyra::createMember(space);
-      product = Teuchos::rcp(new FunctionOperator(space));
-      preconditioner = system.precondition ? Teuchos::rcp(new FunctionOperator(space)) : Teuchos::null;
-      solver = belos.factory->createOp();
-      Teuchos::RCP<const Thyra::LinearOpBase<double>> from_right = preconditioner;
-      if (belos.flexible && !system.precondition) from_right = Thyra::identity<double>(space);
-      if (from_right.is_null())
-        Thyra::initializeOp<double>(*belos.factory, product, solver.ptr());
-      else
-        Thyra::initializePreconditionedOp<double>(*belos.factory, product, Thyra::rightPrec<double>(from_right), solver.ptr());
+      const auto map = replicated(std::accumulate(blocks.begin(), blocks.end(), Eigen::Index(0),
+                                                  [](Eigen::Index sum, const UnknownBlock& block) { return sum + block.size; }));
+      unknowns = Teuchos::rcp(new Vectors(map, 1));
+      right = Teuchos::rcp(new Vectors(map, 1));
+      product = Teuchos::rcp(new FunctionOperator(map));
+      preconditioner = Teuchos::rcp(new FunctionOperator(map));
+      problem = Teuchos::rcp(new Problem(product, unknowns, right));
+      if (belos.flexible || system.precondition) problem->setRightPrec(preconditioner);  // without one, block GMRES is no longer flexible
+      solver = belos_solver(belos.name, Teuchos::rcp(new Teuchos::ParameterList(*belos.list)));
+      solver->setProblem(problem);
     }
     product->function = system.product;
-    if (!preconditioner.is_null()) preconditioner->function = system.precondition;
+    preconditioner->function = system.precondition;
+  }
+
+  /// Sets the tolerance, relative to the norm of the right-hand side. (Belos' own default refers to the norm of the initial residual.)
+  void set_tolerance(double tolerance) const {
+    const auto list = Teuchos::rcp(new Teuchos::ParameterList);
+    list->set("Convergence Tolerance", tolerance);
+    list->set("Output Stream", Teuchos::RCP<std::ostream>(new Teuchos::oblackholestream));
+    const auto valid = solver->getValidParameters();
+    for (const char* scaling : {"Implicit Residual Scaling", "Explicit Residual Scaling", "Residual Scaling"})
+      if (valid->isParameter(scaling)) list->set(scaling, std::string("Norm of RHS"));
+    solver->setParameters(list);
   }
 };
 
 std::vector<std::string> Krylov::names() {
-  std::vector<std::string> names;
-  for (const auto& [name, type] : solver_types()) names.push_back(name);
-  return names;
+  return {"BICGSTAB", "BLOCK CG",       "BLOCK GMRES",       "CG",  "FIXED POINT", "FLEXIBLE GMRES", "GCRODR", "GMRES",
+          "MINRES",   "PSEUDOBLOCK CG", "PSEUDOBLOCK GMRES", "RCG", "TFQMR"};
 }
 
 Krylov::Krylov(const IterativeOptions& options) : impl_(std::make_unique<Impl>()) {
-  impl_->belos = belos_factory(options);
+  impl_->belos = belos_choice(options);
   impl_->chosen = ChosenPreconditioner(options.preconditioner);
 }
 
@@ -149,22 +140,21 @@ bool Krylov::uses_own_preconditioner() const { return impl_->chosen.keeps_own();
 SolveReport Krylov::solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const {
   if (std::exchange(impl_->generation, generation_) != generation_) impl_->chosen.forget();
   impl_->prepare(impl_->chosen.join(system));
-  const Teuchos::RCP<ThyraVector>&unknowns = impl_->unknowns, &right = impl_->right;
-  set(unknowns, x);
-  set(right, b);
-  if (numbers_of(*right).squaredNorm() == 0) {
+  set_column(*impl_->unknowns, 0, x);
+  set_column(*impl_->right, 0, b);
+  if (column(*impl_->right).squaredNorm() == 0) {
     x.setZero();
     return {0, true, {}};
   }
-  const Thyra::SolveCriteria<double> criteria({Thyra::SOLVE_MEASURE_NORM_RESIDUAL, Thyra::SOLVE_MEASURE_NORM_RHS}, tolerance);
   SolveReport report;
+  impl_->set_tolerance(tolerance);
+  impl_->problem->setProblem();
   try {
-    const auto status = Thyra::solve<double>(*impl_->solver, Thyra::NOTRANS, *right, unknowns.ptr(), Teuchos::constOptInArg(criteria));
+    report.converged = impl_->solver->solve() == Belos::Converged;
     Timers::stop();
-    report.iterations = status.extraParameters->get<int>("Iteration Count");
-    report.converged = status.solveStatus == Thyra::SOLVE_STATUS_CONVERGED;
-    x = numbers_of(*unknowns);
-  } catch (const Thyra::CatastrophicSolveFailure&) {  // thrown by Belos if values are not finite or a Krylov basis breaks down
+    report.iterations = impl_->solver->getNumIters();
+    x = column(*impl_->unknowns);
+  } catch (const Belos::BelosError&) {  // thrown if values are not finite or a Krylov basis breaks down
     x.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   impl_->chosen.refresh();
@@ -172,14 +162,16 @@ SolveReport Krylov::solve(const LinearSystem& system, const Eigen::VectorXd& b, 
   const bool in_doubt = report.converged && tolerance < least_recursive_residual;
   if (report.converged && !in_doubt) return report;
   report.residuals = residuals_of(system, b, x);
-  report.converged = in_doubt && std::ranges::all_of(report.residuals, [&](const auto& residual) { return residual.second <= 2 * tolerance; });
+  report.converged =
+      in_doubt && std::ranges::all_of(report.residuals, [&](const auto& residual) { return residual.second <= 2 * tolerance; });
   return report;
 }
 
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance) {
   if (report.converged) return;
   std::ostringstream text;
-  text << "the solver did not bring " << system << " to the relative residual " << tolerance << ": after " << report.iterations << " iterations";
+  text << "the solver did not bring " << system << " to the relative residual " << tolerance << ": after " << report.iterations
+       << " iterations";
   const char* separator = " it is ";
   for (const auto& [name, residual] : report.residuals) text << std::exchange(separator, ", ") << residual << " of the " << name;
   throw RunFailure(text.str());

@@ -49,7 +49,7 @@ struct SolveReport {
 /// `system`: name of the system in the message.
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
-/// A Belos solver with its parameter list, called through Thyra (thyra_blocks.hpp).
+/// A Belos solver with its parameter list, on Tpetra vectors (vectors.hpp).
 class Krylov {
  public:
   /// Returns the names of the available solvers: the names of Belos' factory.

@@ -11,19 +11,93 @@
 #include <NOX_StatusTest_Generic.H>
 #include <NOX_Thyra_Group.H>
 #include <NOX_Thyra_Vector.H>
+#include <Teuchos_DefaultSerialComm.hpp>
 #include <Teuchos_ParameterList.hpp>
 #include <Teuchos_oblackholestream.hpp>
+#include <Thyra_BelosLinearOpWithSolveFactory_decl.hpp>
 #include <Thyra_DefaultIdentityLinearOp.hpp>
 #include <Thyra_DefaultPreconditioner.hpp>
+#include <Thyra_DefaultSpmdVectorSpace.hpp>
+#include <Thyra_DetachedVectorView.hpp>
 #include <Thyra_StateFuncModelEvaluatorBase.hpp>
 
 #include "base/errors.hpp"
+#include "system/parallel/agreement.hpp"
+#include "system/solvers/belos_choice.hpp"
 #include "system/solvers/chosen_preconditioner.hpp"
-#include "system/solvers/thyra_blocks.hpp"
+#include "system/solvers/vectors.hpp"
 
 namespace tanktread::coupling {
 
 namespace {
+
+// NOX needs Thyra: vectors, operators and linear solvers. Every rank holds all numbers, as in vectors.hpp.
+using Space = Thyra::VectorSpaceBase<double>;
+using ThyraVector = Thyra::VectorBase<double>;
+
+Teuchos::RCP<const Space> vector_space(Eigen::Index n) {
+  return Thyra::defaultSpmdVectorSpace<double>(Teuchos::rcp(new Teuchos::SerialComm<Thyra::Ordinal>), n, n);
+}
+
+Eigen::VectorXd numbers_of(const ThyraVector& vector) {
+  const Thyra::ConstDetachedVectorView<double> view(vector);
+  return Eigen::Map<const Eigen::VectorXd>(view.values(), view.subDim());
+}
+
+/// Returns a vector with the numbers of the first rank.
+Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, const Eigen::VectorXd& numbers) {
+  const Teuchos::RCP<ThyraVector> vector = Thyra::createMember(space);
+  const Thyra::DetachedVectorView<double> view(vector);
+  Eigen::Map<Eigen::VectorXd>(view.values(), numbers.size()) = numbers;
+  take_first({view.values(), static_cast<std::size_t>(numbers.size())});
+  return vector;
+}
+
+/// Linear operator defined by a function (apply_together).
+class ThyraOperator : public Thyra::LinearOpBase<double> {
+ public:
+  explicit ThyraOperator(Teuchos::RCP<const Space> space) : space_(std::move(space)) {}
+
+  Apply function;
+
+  Teuchos::RCP<const Space> range() const override { return space_; }
+  Teuchos::RCP<const Space> domain() const override { return space_; }
+
+ private:
+  bool opSupportedImpl(Thyra::EOpTransp transpose) const override { return transpose == Thyra::NOTRANS; }
+  void applyImpl(Thyra::EOpTransp, const Thyra::MultiVectorBase<double>& x, const Teuchos::Ptr<Thyra::MultiVectorBase<double>>& y,
+                 double alpha, double beta) const override {
+    Eigen::VectorXd image(space_->dim());
+    for (Thyra::Ordinal c = 0; c < x.domain()->dim(); ++c) {
+      const Thyra::ConstDetachedVectorView<double> in(x.col(c));
+      const Thyra::DetachedVectorView<double> out(y->col(c));
+      apply_together(function, image.size(), in.values(), image.data());
+      Eigen::Map<Eigen::VectorXd> result(out.values(), image.size());
+      result = beta == 0 ? Eigen::VectorXd(alpha * image) : Eigen::VectorXd(alpha * image + beta * result);
+    }
+  }
+
+  Teuchos::RCP<const Space> space_;
+};
+
+/// Returns a factory of linear solvers of Belos for the systems of Newton's method.
+Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solvers(const IterativeOptions& options) {
+  const BelosChoice choice = belos_choice(options);
+  const auto plain = [](std::string name) {  // Thyra's names of the solvers differ from those of Belos in spaces and capitals
+    std::erase(name, ' ');
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return name;
+  };
+  const auto factory = Teuchos::rcp(new Thyra::BelosLinearOpWithSolveFactory<double>);
+  const auto all = Teuchos::rcp(new Teuchos::ParameterList);
+  for (const auto& known : factory->getValidParameters()->sublist("Solver Types"))
+    if (plain(known.first) == plain(choice.name)) {
+      all->set("Solver Type", known.first);
+      all->sublist("Solver Types").sublist(known.first) = *choice.list;
+    }
+  factory->setParameterList(all);
+  return factory;
+}
 
 /// Returns the unit in which positions and residuals are passed to NOX: 2^-20 times the length of a displacement of norm 1, rounded to a power of 2.
 /// The unit is small, so that the numbers are large. With a larger unit, differences of residuals near the solution could be below 1e-16. NOX treats
@@ -45,8 +119,8 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   using OutArgs = Thyra::ModelEvaluatorBase::OutArgs<double>;
 
   Model(const FixedPoint::Map& g, const FixedPoint::Norm& norm, double unit, const Net& start, const std::string& preconditioner)
-      : g_(g), norm_(norm), unit_(unit), space_(vector_space({{"places", start.size()}})), chosen_(preconditioner) {
-    if (chosen_.join(LinearSystem()).precondition) preconditioner_ = Teuchos::rcp(new FunctionOperator(space_));
+      : g_(g), norm_(norm), unit_(unit), space_(vector_space(start.size())), chosen_(preconditioner) {
+    if (chosen_.join(LinearSystem()).precondition) preconditioner_ = Teuchos::rcp(new ThyraOperator(space_));
   }
 
   /// Returns the right preconditioner of Newton's linear systems.
@@ -57,7 +131,7 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
 
   Teuchos::RCP<const Space> get_x_space() const override { return space_; }
   Teuchos::RCP<const Space> get_f_space() const override { return space_; }
-  Teuchos::RCP<Thyra::LinearOpBase<double>> create_W_op() const override { return Teuchos::rcp(new FunctionOperator(space_)); }
+  Teuchos::RCP<Thyra::LinearOpBase<double>> create_W_op() const override { return Teuchos::rcp(new ThyraOperator(space_)); }
   InArgs createInArgs() const override {
     Thyra::ModelEvaluatorBase::InArgsSetup<double> in;
     in.setModelEvalDescription("fixed point");
@@ -84,13 +158,16 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
     if (!out.get_f().is_null()) Thyra::assign(out.get_f().ptr(), *vector_of(space_, numbers(f_, unit_)));
     if (out.get_W_op().is_null()) return;
     chosen_.refresh();
-    newton_ = {{{"places", x.size()}}, on_nets(x.rows(), [this, x, f = f_](const Net& direction) -> Net {
-      const double size = norm_(direction), e = size > 0 ? 1e-4 / size : 1;
-      const Net y = x + e * direction;
-      return (g_(y) - y - f) / e;
-    }), {}};
+    newton_ = {{{"places", x.size()}},
+               on_nets(x.rows(),
+                       [this, x, f = f_](const Net& direction) -> Net {
+                         const double size = norm_(direction), e = size > 0 ? 1e-4 / size : 1;
+                         const Net y = x + e * direction;
+                         return (g_(y) - y - f) / e;
+                       }),
+               {}};
     const LinearSystem joined = chosen_.join(newton_);
-    dynamic_cast<FunctionOperator&>(*out.get_W_op()).function = joined.product;
+    dynamic_cast<ThyraOperator&>(*out.get_W_op()).function = joined.product;
     if (!preconditioner_.is_null()) preconditioner_->function = joined.precondition;
   }
 
@@ -99,7 +176,7 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   double unit_;
   Teuchos::RCP<const Space> space_;
   mutable ChosenPreconditioner chosen_;
-  Teuchos::RCP<FunctionOperator> preconditioner_;
+  Teuchos::RCP<ThyraOperator> preconditioner_;
   mutable LinearSystem newton_;
   mutable Net x_, f_;  // x_: argument of the latest evaluation. f_: residual F(x_)
 };
@@ -111,12 +188,14 @@ Net net(const NOX::Abstract::Vector& vector, double unit) {
 /// Convergence test: stops at the tolerance in the given norm, or after `most` iterations.
 class Test : public NOX::StatusTest::Generic {
  public:
-  Test(const FixedPoint::Norm& norm, double unit, double tolerance, int most) : norm_(norm), unit_(unit), tolerance_(tolerance), most_(most) {}
+  Test(const FixedPoint::Norm& norm, double unit, double tolerance, int most)
+      : norm_(norm), unit_(unit), tolerance_(tolerance), most_(most) {}
   NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const NOX::Abstract::Group& group = solver.getSolutionGroup();
     const double residual = group.isF() ? norm_(net(group.getF(), unit_)) : std::numeric_limits<double>::quiet_NaN();
     if (residual <= tolerance_) return status_ = NOX::StatusTest::Converged;
-    return status_ = !std::isfinite(residual) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
+    return status_ =
+               !std::isfinite(residual) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
   }
   NOX::StatusTest::StatusType getStatus() const override { return status_; }
   std::ostream& print(std::ostream& stream, int) const override { return stream; }
@@ -156,8 +235,9 @@ std::string unread_path(const Teuchos::ParameterList& given, const Teuchos::Para
 
 Teuchos::ParameterList defaults(const std::string& method, int depth) {
   Teuchos::ParameterList list("NOX");
-  const Teuchos::RCP<std::ostream> nowhere = Teuchos::rcp(new Teuchos::oblackholestream);  // discards error messages, because a time step that
-                                                                                           // fails is repeated with a shorter step
+  const Teuchos::RCP<std::ostream> nowhere =
+      Teuchos::rcp(new Teuchos::oblackholestream);  // discards error messages, because a time step that
+                                                    // fails is repeated with a shorter step
   list.sublist("Printing").set("Output Information", 0).set("Output Stream", nowhere).set("Error Stream", nowhere);
   if (method == "anderson") {
     list.set("Nonlinear Solver", "Anderson Accelerated Fixed-Point");
@@ -183,7 +263,7 @@ struct FixedPoint::Impl {
 
 FixedPoint::FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear, int depth)
     : impl_(std::make_unique<Impl>()) {
-  impl_->linear_solver = belos_factory(linear).factory;
+  impl_->linear_solver = linear_solvers(linear);
   impl_->preconditioner = linear.preconditioner;
   impl_->list = defaults(method, depth);
   if (list) impl_->list.setParameters(impl_->given = unread_copy(*list));
@@ -206,12 +286,12 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
   const RCP<Thyra::PreconditionerFactoryBase<double>> no_factory;
   const RCP<const Weights> unweighted;
   const bool scaled = false, updated = false;
-  const auto group =
-      Teuchos::rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model, derivative, impl_->linear_solver, preconditioner, no_factory,
-                                         unweighted, unweighted, RCP<Weights>(), scaled, updated));
+  const auto group = Teuchos::rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model, derivative, impl_->linear_solver, preconditioner,
+                                                        no_factory, unweighted, unweighted, RCP<Weights>(), scaled, updated));
   const auto list = impl_->last = Teuchos::rcp(new Teuchos::ParameterList(impl_->list));
   auto& anderson = list->sublist("Anderson Parameters");
-  if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
+  if (anderson.isType<int>("Storage Depth"))
+    anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
   RCP<NOX::Solver::Generic> solver;
   const auto failed = [&] { return NonlinearReport{solver.is_null() ? 0 : solver->getNumIterations(), false}; };
   try {
@@ -223,7 +303,8 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
     return failed();
   } catch (const Thyra::CatastrophicSolveFailure&) {
     return failed();
-  } catch (const std::runtime_error& error) {  // exactly this type: thrown by Anderson's method if differences of iterates are linearly dependent
+  } catch (const std::runtime_error&
+               error) {  // exactly this type: thrown by Anderson's method if differences of iterates are linearly dependent
     if (typeid(error) != typeid(std::runtime_error)) throw;
     return failed();
   } catch (const Teuchos::Exceptions::InvalidParameter& error) {
