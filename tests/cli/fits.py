@@ -180,10 +180,10 @@ def an_edge_in_an_image_is_found_to_a_twentieth_of_a_pixel():
     generator = numpy.random.default_rng(1)
     for noise, bound in (0.0, 0.015), (0.02, 0.05):  # without the correction of the shift by blur, the error is 0.024
         image, edge = _picture(noise, generator)
-        points, error = outline.edge(image, outline.body(image, "picture"), 60)
-        off = edge.distances(points)
+        found = outline.outline(image, "picture", 60)
+        off = edge.distances(found.points)
         check(numpy.sqrt((off**2).mean()) < bound, f"noise {noise}: {numpy.sqrt((off ** 2).mean()):.3f} pixels")
-        check(noise == 0 or 0.6 < off.std() / error < 1.6, f"stated {error:.3f}, found {off.std():.3f}")
+        check(noise == 0 or 0.6 < off.std() / found.noise < 1.6, f"stated {found.noise:.3f}, found {off.std():.3f}")
     from matplotlib.image import imsave
     imsave("picture.png", image, cmap="gray", vmin=0, vmax=1)
     imsave("cut.png", image[:, 100:], cmap="gray", vmin=0, vmax=1)
@@ -191,7 +191,7 @@ def an_edge_in_an_image_is_found_to_a_twentieth_of_a_pixel():
     check(said.returncode == 0 and "60 points" in said.stdout, said)
     datum = fit_data.OutlineData({"outline": "edge.csv", "scale": 1.0}, "edge", pathlib.Path())
     check(abs(edge.distances(datum.points * [1, -1])).max() < 0.2, "the points in the file")
-    close(datum.error, error, 0.1 * error, "the error in the file")  # the image in the file is rounded to 256 levels
+    close(datum.error, found.error, 0.1 * found.error, "the error in the file")  # the image in the file is rounded to 256 levels
     said = package("outline", "cut.png")
     check(said.returncode == 2 and "does not close" in said.stderr and said.stderr.count("\n") == 1, said)
 

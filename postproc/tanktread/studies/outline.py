@@ -1,104 +1,312 @@
-"""Finds the outline of a particle in a picture (PNG) with subpixel accuracy, and the standard error of its points.
+"""Finds the outline of a particle in a picture with subpixel accuracy, and the standard error of its points.
 
     tanktread-outline picture.png -o profile.csv --overlay check.png
 
-The result is a table of points for tanktread-fit, in pixels. The origin is the upper left corner of the picture. x1
-points to the right and x3 up, so that x3 is negative; the fit is not affected.
+The picture is a PNG, TIFF or JPEG. The result is a table of points for tanktread-fit, in pixels. The origin is the
+upper left corner of the picture. x1 points to the right and x3 up, so that x3 is negative; the fit is not affected.
 
-The particle must be darker or brighter than its surroundings, and lie completely within the picture. If there are
-several particles, the largest one is taken. The edge is found on rays from the centre of the particle:
+The outline is the outermost closed edge. The particle must lie completely within the picture. Edges that end at the
+frame of the picture, such as channel walls, and slow changes of the light are ignored. If there are several particles,
+the largest one is taken; `--region` chooses another one.
 
-1. The brightness profile is averaged over all rays. The average edge is the position of the sharp step that encloses
-   the same integral of brightness, because blur does not change this integral.
-2. The profile of each ray is fitted by the average profile, shifted along the ray, by least squares.
-3. Each point of the outline is averaged from the neighbouring rays. No ray is used twice, so that the errors of the
-   points are independent.
+Many particles have a rim: a dark ring in bright field, a bright halo in phase contrast. It has an outer and an inner
+edge, and `--edge` says which one is the outline. Without this option,
+
+- of a bright halo around a darker body the inner edge is taken, because the halo is light beside the body;
+- of a rim narrower than a twentieth of the particle the middle is taken, and the stated error is a fifth of the width
+  of the rim, so that both edges lie within three errors;
+- of a wider rim with a sharp outer edge around a body that is not as bright as the surroundings, the outer edge is
+  taken.
+
+The command prints which edge was taken, and the edges that enclose it. It refuses other wide rims.
+
+The stated error consists of the scatter of the points by noise, which is independent for each point, and of the width
+of the edge, which is the same for all points.
+
+The edge is found on normals to a first outline, which is the ridge of the gradient of the smoothed picture:
+
+1. The brightness is averaged over all normals. The edges are the steep parts of the average profile. An edge lies where
+   the brightness is halfway between the values on its two sides.
+2. The profile of each normal is fitted by the average profile, shifted along the normal, by least squares.
+3. Each point of the outline is averaged from the neighbouring normals. No normal is used twice, so that the errors of
+   the points by noise are independent.
 4. Blur of variance s moves a curved edge towards its centre of curvature by s/2 times the curvature. This shift is
    corrected.
 """
 
+import dataclasses
+
 import numpy
 import scipy.ndimage
-from matplotlib.image import imread
+import scipy.signal
 
 from ..figures import style
-from ..interpolation import mean
-from ..mistakes import Mistake, command_line, expect, log
+from ..mistakes import command_line, expect, log
+from . import picture as pictures
 
-WINDOW = 8   # half the length, in pixels, of the part of a ray around the edge whose brightness is used
-FINE = 0.25  # distance between samples of a ray, in pixels
-
-
-def grey(path):
-    """Returns the brightness of a picture, 0 to 1, shape (rows, columns), with the uppermost row first. Transparent
-    pixels are shown on white."""
-    try:
-        picture = imread(path)
-        picture = numpy.atleast_3d(picture.astype(float) / (255 if picture.dtype.kind == "u" else 1))
-    except Exception as error:  # imread raises exceptions of many types
-        raise Mistake(f"{path} is no picture that can be read: {error}") from None
-    return (1 + (picture[..., :3] - 1) * picture[..., 3:].prod(2, keepdims=True)).mean(2)
+FINE = 0.25       # distance between samples on a normal, in pixels
+NOTICED = 0.1     # an edge has at least this fraction of the largest step and of the largest slope of the profile
+WEAK = 0.3        # an edge of a rim is weak if its step is less than this fraction of the step of the other edge
+RIM = 0.12        # two edges of opposite sign belong to a rim if their distance is at most this fraction of the size
+NARROW = 0.05     # a rim is narrow up to this fraction of the size: a fifth of it is 1 % of the size
+LINE = 3.75       # a rim whose width is less than this multiple of its blur is a line (a Gaussian profile: 3.6)
+ALIKE = 0.5       # smallest correlation of the profile of a part of the outline with the average profile
+LARGEST = 0.01    # largest accepted error of a point, as a fraction of the size
+EDGES = ("outer", "middle", "inner")
 
 
-def frame(picture):
-    """Returns the values of the pixels on the four sides of a picture."""
-    return numpy.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
+@dataclasses.dataclass
+class Edge:
+    """A steep part of a profile. `at`: offset where the brightness is halfway between the values at the two ends.
+    `centroid`: offset of the sharp step with the same integral. `low`, `high`: offsets of the ends. `step`: brightness
+    at `high` minus brightness at `low`. `blur`: standard deviation of the Gaussian with the same slope. Lengths in
+    pixels; offsets increase outwards."""
+    at: float
+    centroid: float
+    low: float
+    high: float
+    step: float
+    blur: float
+
+    def width(self):
+        """Returns the part of the stated error that is due to the width of the edge: a tenth of the distance in which a
+        quarter of the step becomes three quarters, because the level at which an edge is seen depends on the optics and
+        the camera, and the distance of the two definitions of its position."""
+        return float(numpy.hypot(0.135 * self.blur, self.at - self.centroid))
 
 
-def body(picture, path):
-    """Returns a mask (rows, columns) of the particle: the largest connected region that Otsu's threshold separates from
-    most pixels of the frame, with holes filled."""
-    smooth = scipy.ndimage.gaussian_filter(picture, 2)
-    numbers, edges = numpy.histogram(smooth, 256)
-    middles = (edges[1:] + edges[:-1]) / 2
-    below, sums = numpy.cumsum(numbers), numpy.cumsum(numbers * middles)
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        between = below * (below[-1] - below) * (sums / below - (sums[-1] - sums) / (below[-1] - below)) ** 2
-    level = middles[numpy.nanargmax(between)]
-    labels, count = scipy.ndimage.label((smooth > level) != (numpy.median(frame(smooth)) > level))
-    expect(count, f"{path}: nothing is set off from its surroundings")
-    mask = scipy.ndimage.binary_fill_holes(labels == 1 + numpy.argmax(numpy.bincount(labels.ravel())[1:]))
-    expect(mask.sum() > 200, f"{path}: what is set off is {int(mask.sum())} pixels large, too small for an outline")
-    expect(not frame(mask).any(), f"{path}: the outline does not close within the picture")
-    return mask
+@dataclasses.dataclass
+class Choice:
+    """The edge that is taken. `first`, `last`: the edges between whose middles it lies in the middle. `width`: part of
+    the stated error in pixels. `text`: which edge it is, for the reader."""
+    first: Edge
+    last: Edge
+    width: float
+    text: str
+
+    at = property(lambda self: (self.first.at + self.last.at) / 2)
 
 
-def edge(picture, mask, points):
-    """Returns points (n, 2) of the edge as (column, row), and the standard error of a point, in pixels. Each point is
-    the middle value of a parabola fitted to an odd number of neighbouring rays, about two pixels apart."""
-    row, column = scipy.ndimage.center_of_mass(mask)
-    each = max(2, int(numpy.sqrt(mask.sum() * numpy.pi) / points)) // 2 * 2 + 1
-    angle = 2 * numpy.pi * numpy.arange(points * each) / (points * each)
-    ray, middle = numpy.array([numpy.sin(angle), numpy.cos(angle)])[:, :, None], numpy.reshape([row, column], (2, 1, 1))
-    radius = numpy.arange(0, numpy.hypot(*mask.shape), FINE)
-    inside = scipy.ndimage.map_coordinates(mask.astype(float), middle + ray * radius, order=1) > 0.5
-    found = radius[inside.shape[1] - 1 - inside[:, ::-1].argmax(1)]
-    reach = min(WINDOW, 0.5 * found.min())
-    off = numpy.linspace(-reach, reach, 1 + 2 * int(WINDOW / FINE))
+@dataclasses.dataclass
+class Outline:
+    """`points`: (n, 2) as (column, row). `noise`: standard error of a point by noise, `width`: error of all points by
+    the width of the edge, in pixels. `text`: which edge was taken. `enclosing`: texts about edges that enclose it."""
+    points: numpy.ndarray
+    noise: float
+    width: float
+    text: str
+    enclosing: list
 
-    def profiles():
-        """Returns the brightness along the window of each ray, scaled to 1 inside and 0 outside the particle."""
-        values = scipy.ndimage.map_coordinates(picture, middle + ray * (found[:, None] + off), order=3, mode="nearest")
-        ends = numpy.stack([values[:, :len(off) // 5].mean(1), values[:, -len(off) // 5:].mean(1)])
-        ends = scipy.ndimage.gaussian_filter1d(ends, len(angle) / 40, axis=1, mode="wrap")[:, :, None]
-        return (values - ends[1]) / (ends[0] - ends[1])
+    error = property(lambda self: float(numpy.hypot(self.noise, self.width)), doc="the stated error of a point, pixels")
 
-    # Blur conserves the area of a disc, so the radius of the edge is the radius of the disc with the same sum of
-    # brightness. Rings are therefore weighted by their radius.
+
+def size_of(points):
+    """Returns the diameter of the circle that has the area of a closed polygon (n, 2)."""
+    x, y = points.T
+    return numpy.sqrt(2 / numpy.pi * abs(x @ numpy.roll(y, 1) - y @ numpy.roll(x, 1)))
+
+
+def first_outline(region, path):
+    """Returns points (n, 2) as (row, column) on the edge of a region, less than one pixel apart, in the order of their
+    angle."""
+    middle = region.middle()
+    count = max(90, 4 * int(numpy.sqrt(region.inside.sum())) * region.step)
+    angle = 2 * numpy.pi * numpy.arange(count) / count
+    ray = numpy.stack([numpy.sin(angle), numpy.cos(angle)], axis=-1)
+    radius = numpy.arange(0, numpy.hypot(*region.gradient.shape), 0.5)
+    places = middle[:, None, None] + ray.T[:, :, None] * radius
+    inside = scipy.ndimage.map_coordinates(region.inside.astype(float), places / region.step, order=1) > 0.5
+    last = inside.shape[1] - 1 - inside[:, ::-1].argmax(1)
+    hollow = (~inside & (radius < radius[last][:, None])).sum() / inside.sum()
+    expect(hollow < 0.02, f"{path}: the outline is met more than once on rays from its centre")
+    gradient = scipy.ndimage.map_coordinates(region.gradient, places, order=1, mode="constant")
+    # the region ends where the gradient exceeds its threshold, and the ridge is the next maximum outwards
+    rising = (numpy.diff(gradient, axis=1) > 0) | (numpy.arange(len(radius) - 1) < last[:, None])
+    found = radius[rising.argmin(1)]
+    near = scipy.ndimage.median_filter(found, 2 * (count // 40) + 1, mode="wrap")
+    found = numpy.where(abs(found - near) > numpy.maximum(3 * region.step, 0.1 * near), near, found)
+    found = scipy.ndimage.gaussian_filter1d(found, count / found.mean() / 2, mode="wrap")
+    return middle + found[:, None] * ray
+
+
+def with_normals(points, count):
+    """Returns `count` points with equal distances on a closed curve through the points (n, 2), which are ordered from
+    the direction of columns to that of rows, and outward unit normals."""
+    closed = numpy.concatenate([points, points[:1]])
+    along = numpy.concatenate([[0], numpy.cumsum(numpy.linalg.norm(numpy.diff(closed, axis=0), axis=1))])
+    even = along[-1] * numpy.arange(count) / count
+    points = numpy.stack([numpy.interp(even, along, one) for one in closed.T], axis=-1)
+    smooth = scipy.ndimage.gaussian_filter1d(points, 3 * count / along[-1], axis=0, mode="wrap")
+    tangent = numpy.roll(smooth, -1, axis=0) - numpy.roll(smooth, 1, axis=0)
+    return points, tangent[:, ::-1] * [-1, 1] / numpy.linalg.norm(tangent, axis=1)[:, None]
+
+
+class Normals:
+    """Brightness of a picture on normals to a curve. `shift` (n,): offset of the edge on each normal, in pixels."""
+
+    def __init__(self, picture, points, normals):
+        self.picture, self.points, self.normals = picture, points, normals
+        self.coefficients = scipy.ndimage.spline_filter(picture, 3, mode="mirror")
+        self.shift = numpy.zeros(len(points))
+
+    def values(self, off):
+        """Returns the brightness (n, len(off)) at offsets from the edge; NaN outside of the picture."""
+        places = (self.points + self.shift[:, None] * self.normals).T[:, :, None] + self.normals.T[:, :, None] * off
+        values = scipy.ndimage.map_coordinates(self.coefficients, places, order=3, prefilter=False, mode="mirror")
+        rows, columns = self.picture.shape
+        outside = (places < 0).any(0) | (places[0] > rows - 1) | (places[1] > columns - 1)
+        return numpy.where(outside, numpy.nan, values)
+
+    def profile(self, off):
+        """Returns the median brightness over all normals at each offset, which ignores what lies beside a small part of
+        the outline, smoothed over half a pixel, and its standard error. NaN where half of the normals have left the
+        picture."""
+        values = self.values(off)
+        seen = numpy.isfinite(values).mean(0) > 0.5
+        profile = numpy.full(len(off), numpy.nan)
+        profile[seen] = scipy.ndimage.gaussian_filter1d(numpy.nanmedian(values[:, seen], axis=0), 0.5 / FINE)
+        # differences of neighbours are free of slow changes along the outline; 0.6745: median of |normal deviates|;
+        # 1.25: standard error of a median divided by that of a mean
+        noise = numpy.nanmedian(abs(numpy.diff(values[:, seen], axis=0))) / 0.6745 / numpy.sqrt(2)
+        return profile, 1.25 * noise / numpy.sqrt(len(values))
+
+    def align(self, first, last, reach):
+        """Shifts each normal so that its brightness between the offsets `first` and `last` agrees best with the average
+        of all normals. Levels and contrast vary slowly along the outline. Shifts by at most `reach` in a step."""
+        off = numpy.arange(first, last + FINE / 2, FINE)
+        values = self.values(off)
+        values = numpy.where(numpy.isfinite(values), values, numpy.nanmedian(values, axis=0))
+        mean = numpy.median(values, axis=0)
+        slope = numpy.gradient(scipy.ndimage.gaussian_filter1d(mean, 0.5 / FINE), off)
+        # the slope is fitted too, so that the levels do not depend on the shift
+        basis = numpy.stack([numpy.ones(len(off)), mean - mean.mean(), slope], axis=-1)
+        factors = values @ numpy.linalg.pinv(basis).T
+        levels = scipy.ndimage.gaussian_filter1d(factors[:, :2], len(values) / 40, axis=0, mode="wrap")
+        contrast = levels[:, 1] / numpy.median(levels[:, 1])
+        rest = (values - levels @ basis[:, :2].T) / numpy.where(contrast > 0.1, levels[:, 1], 1)[:, None]
+        self.shift -= numpy.clip(rest @ slope / (slope @ slope), -reach, reach)
+
+    def agreeing(self, first, last):
+        """Returns the fraction of the normals whose brightness between two offsets correlates positively with the
+        average, after it has been averaged over a fifteenth of the outline to reduce the noise."""
+        off = numpy.arange(first, last + FINE / 2, FINE)
+        values = self.values(off)
+        mean = numpy.nanmedian(values, axis=0)
+        values = numpy.where(numpy.isfinite(values), values, mean)
+        values = scipy.ndimage.uniform_filter1d(values, len(values) // 15 + 1, axis=0, mode="wrap")
+        values, mean = values - values.mean(1, keepdims=True), mean - mean.mean()
+        return (values @ mean > ALIKE * numpy.linalg.norm(values, axis=1) * numpy.linalg.norm(mean)).mean()
+
+
+def edges_of(off, profile, noise=0.0):
+    """Returns the edges of a profile, from the outermost to the innermost. `profile`: brightness at the offsets `off`,
+    which increase outwards, and `noise` its standard error."""
+    off, profile = off[numpy.isfinite(profile)], profile[numpy.isfinite(profile)]
+    slope = numpy.gradient(profile, off)
+    # five standard errors of the slope of a profile that is smoothed over half a pixel, which is about noise per pixel
+    least = max(NOTICED * abs(slope).max(), 5 * noise)
+    peaks, _ = scipy.signal.find_peaks(abs(slope), height=least, prominence=least)
+    found = []
+    for number, peak in enumerate(peaks):
+        # an edge ends where the slope changes its sign, and between two edges where the slope is smallest
+        before = peaks[number - 1] if number else 0
+        after = peaks[number + 1] if number + 1 < len(peaks) else len(off) - 1
+        same = slope * slope[peak] > 0
+        low = before + abs(slope[before:peak + 1]).argmin() if number else 0
+        high = peak + abs(slope[peak:after + 1]).argmin() if number + 1 < len(peaks) else len(off) - 1
+        low = max(low, peak - same[peak::-1].argmin() if not same[:peak].all() else 0)
+        high = min(high, peak + same[peak:].argmin() if not same[peak:].all() else len(off) - 1)
+        first, last, blur = low, high, 0.0
+        for _ in range(20):  # the ends are three standard deviations from the steepest point, or nearer
+            step = profile[last] - profile[first]
+            blur = abs(step / slope[peak]) / numpy.sqrt(2 * numpy.pi)
+            reach = int(numpy.ceil(max(3 * blur, 1) / FINE))
+            first, last = max(low, peak - reach), min(high, peak + reach)
+        part = slice(first, last + 1)
+        rise = (profile[part] - profile[first]) / step
+        above = int((rise >= 0.5).argmax())
+        share = (0.5 - rise[above - 1]) / (rise[above] - rise[above - 1])
+        found.append(Edge(float(off[first + above - 1] + FINE * share), float(off[last] - FINE * rise.sum() + FINE / 2),
+                          float(off[first]), float(off[last]), float(step), float(blur)))
+    tall = max((abs(edge.step) for edge in found), default=0.0)
+    # six standard errors of the difference of two values, which noise exceeds in no picture
+    return [edge for edge in found if abs(edge.step) > max(NOTICED * tall, 6 * numpy.sqrt(2) * noise)][::-1]
+
+
+def rim_of(edges, size):
+    """Returns the outer and the inner edge of the rim that begins with the first of `edges`, or None. `size`: of the
+    particle, in pixels."""
+    if len(edges) < 2 or edges[0].step * edges[1].step > 0 or edges[0].at - edges[1].at > RIM * size:
+        return None
+    return edges[:2]
+
+
+def choose(off, profile, noise, size, given, path):
+    """Returns the Choice among the edges of a profile, and a list of texts about edges that enclose it. `noise`:
+    standard error of the profile. `given`: one of EDGES, or None."""
+    edges, texts = edges_of(off, profile, noise), []
+    expect(edges, f"{path}: no edge was found along the outline: --region LEFT UPPER RIGHT LOWER chooses the part of "
+           "the picture around the particle")
+    rim, around, inside = rim_of(edges, size), edges[0].step, 0.0
+    if rim:
+        # brightness inside of the rim minus that of the surroundings, divided by the step of the outer edge
+        inside = -(rim[0].step + rim[1].step) / around
+        halo = around < 0 and inside > NOTICED
+        inner = rim_of(edges[1:], size) if halo else None
+        if inner:  # the halo surrounds a dark rim
+            texts = [f"the outer edge of a bright halo {rim[0].at - rim[1].at:.1f} pixels wide encloses it"]
+            rim, halo, inside = inner, False, (inner[0].step + inner[1].step + around) / around
+    if not rim:
+        expect(given in (None, "outer"), f"{path}: the particle has no rim: leave out --edge {given}")
+        return Choice(edges[0], edges[0], edges[0].width(), "the outermost closed edge"), texts
+    first, last = rim
+    width = first.at - last.at
+    name = f"{'bright halo' if halo else 'dark rim' if first.step > 0 else 'bright rim'} {width:.1f} pixels wide"
+    beyond = texts + [f"the outer edge of the {name} encloses it: --edge outer takes that edge"]
+    # the other edge of the rim moves a blurred edge by about its variance divided by the width of the rim
+    most = 0.9 * LARGEST * size  # a tenth is left for the noise
+    widths = {one: min(float(numpy.hypot(edge.width(), edge.blur**2 / width)), most)
+              for one, edge in {"outer": first, "inner": last}.items()}
+    choices = {"outer": (Choice(first, first, widths["outer"], f"the outer edge of a {name}"), texts),
+               "middle": (Choice(first, last, max(first.width(), last.width()), f"the middle of a {name}"), beyond),
+               "inner": (Choice(last, last, widths["inner"], f"the inner edge of a {name}"), beyond)}
+    if given:
+        return choices[given]
+    strong = [one for one, other in (rim, rim[::-1]) if abs(other.step) < WEAK * abs(one.step)]
+    if width <= NARROW * size or width < LINE * (first.blur + last.blur) / 2:
+        choice, texts = choices["inner" if halo or last in strong else "outer" if first in strong else "middle"]
+        return dataclasses.replace(choice, width=max(choice.width, min(width / 5, most))), texts
+    expect(abs(inside) > 2 * NOTICED or strong,
+           f"{path}: the particle has a {name}, {width / size:.0%} of its size, and is as bright inside as outside: "
+           "--edge outer, --edge middle or --edge inner says where its outline is")
+    return choices["inner" if halo or last in strong else "outer"]
+
+
+def edge(picture, region, count, given, path):
+    """Returns the Outline with `count` points of the edge of a region. Each point is the middle value of a parabola
+    fitted to an odd number of neighbouring normals, about two pixels apart."""
+    start = first_outline(region, path)
+    size = size_of(start)
+    each = max(2, int(numpy.pi * size / 2 / count)) // 2 * 2 + 1
+    lines = Normals(picture, *with_normals(start, count * each))
+    coarse = min(4.0 * region.step, size / 8)
     for _ in range(3):
-        rings = (profiles() * (found[:, None] + off)).mean(1)
-        found = numpy.sqrt((found - reach) ** 2 + 4 * reach * rings)
-    for _ in range(3):
-        values = profiles()
-        slope = numpy.gradient(values.mean(0), off)
-        found = found - (values - values.mean(0)) @ slope / (slope @ slope)
-    variance = -mean(off, off**2 * slope) * (off[-1] - off[0])
-    # The loop over rings has removed the shift by blur as for a circle. It is restored here, because unbent() removes
-    # the shift for the actual curvature.
-    found -= (variance / (2 * found)).mean()
-    radius, error = averaged(found, each)
-    places = numpy.column_stack([column + radius * numpy.cos(angle[::each]), row + radius * numpy.sin(angle[::each])])
-    return unbent(places, variance), error
+        lines.align(-coarse, coarse, coarse / 2)
+    off = numpy.arange(-0.3 * size, 0.2 * size, FINE)
+    choice, texts = choose(off, *lines.profile(off), size, given, path)
+    at, size = choice.at, size + 2 * choice.at
+    for _ in range(4):
+        first, last = choice.last, choice.first
+        lines.align(min(first.low, first.at - 3), max(last.high, last.at + 3), 2)
+        again, texts = choose(off, *lines.profile(off), size, given, path)
+        if abs(again.at - at) > 3:
+            break
+        choice = again
+    expect(lines.agreeing(first.low, last.high) > 0.8, f"{path}: the edge does not look alike all around the particle")
+    places = lines.points + (lines.shift + choice.at)[:, None] * lines.normals
+    points, noise = averaged(places[:, ::-1], lines.normals[::each, ::-1], each)
+    blur = (choice.first.blur + choice.last.blur) / 2
+    return Outline(unbent(points, blur**2), noise, choice.width, choice.text, texts)
 
 
 def unbent(points, variance):
@@ -112,40 +320,80 @@ def unbent(points, variance):
     return points + (variance / 2 * curvature)[:, None] * outwards
 
 
-def averaged(radius, each):
-    """Returns for each point the middle value of the parabola (for three rays, the line) fitted to its `each` rays, and
-    the standard error of these values. `radius`: radius of the edge on each ray."""
-    rays = numpy.roll(radius, each // 2).reshape(-1, each)
-    basis = numpy.vander(numpy.linspace(-1, 1, each), 3 if each > 4 else 2, increasing=True)
-    weights = numpy.linalg.pinv(basis)
-    rest = rays - rays @ weights.T @ basis.T
-    error = numpy.sqrt((rest**2).sum() / (len(rays) * (each - basis.shape[1]))) * numpy.linalg.norm(weights[0])
-    return rays @ weights[0], float(error)
+def averaged(places, normals, each):
+    """Returns points (n, 2) of the outline, each from the mean of `each` neighbouring places (n * each, 2), and the
+    standard error of a point along its normal (n, 2). The mean of places on a curve lies inside of it. The second
+    difference of the means corrects this."""
+    parts = numpy.roll(places, each // 2, axis=0).reshape(-1, each, 2)
+    means = parts.mean(1)
+    bend = (numpy.roll(means, 1, axis=0) + numpy.roll(means, -1, axis=0) - 2 * means) / each**2
+    along = numpy.arange(each) - each // 2
+    rest = ((parts - means[:, None] - bend[:, None] / 2 * (along**2 - (along**2).mean())[:, None])
+            * normals[:, None]).sum(2)
+    rest = rest - (rest @ along / (along @ along))[:, None] * along
+    error = numpy.sqrt((rest**2).sum() / (rest.size * (each - 2)))
+    return means - bend / 2 * (along**2).mean(), float(error)
+
+
+def outline(picture, path, count=None, given=None):
+    """Returns the Outline of the particle in a picture (rows, columns) from which the background has been removed.
+    `count`: number of points; by default 60, or fewer if the particle is small or the noise large. `given`: one of
+    EDGES, or None. `path` names the picture in messages."""
+    expect(numpy.ptp(picture) > 0, f"{path}: its brightness is the same everywhere")
+    region = pictures.outermost(picture)
+    expect(region, f"{path}: no edge closes within the picture: give a picture that contains the whole particle, or "
+           "remove the uneven light or the walls with --background curved or --background FILE, a picture without the "
+           "particle")
+    # each point takes three normals, about two pixels apart, because their scatter gives the standard error
+    most = int(numpy.sqrt(region.inside.sum() * numpy.pi) * region.step / 2)
+    expect(count is None or 8 <= count <= most,
+           f"{path}: --points must be from 8 to {most}, half the rays of its outline")
+    for number in [count] if count else sorted({min(one, most) for one in (60, 40, 27, 18, 12, 8)}, reverse=True):
+        found = edge(picture, region, number, given, path)
+        size = size_of(found.points)
+        if found.error <= LARGEST * size:
+            break
+    expect(numpy.isfinite(found.points).all(), f"{path}: no edge was found on some rays")
+    expect(found.error <= LARGEST * size,
+           f"{path}: the points would have an error of {found.error:.2f} pixels, {found.error / size:.1%} of the size "
+           f"of the particle: take a sharper picture in which the particle is larger")
+    if region.weaker:
+        found.enclosing.append("a weaker edge encloses it, {:.0f} x {:.0f} pixels".format(*region.weaker))
+    if region.others:
+        found.enclosing.append(f"{region.others} other closed edges of comparable size: --region chooses one")
+    return found
 
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("picture", help="PNG file")
+    parser.add_argument("picture", help="PNG, TIFF or JPEG file")
     parser.add_argument("-o", "--output", default="outline.csv", metavar="FILE",
                         help="table of the points (default: %(default)s)")
     parser.add_argument("--points", type=int, help="number of points (default: 60, fewer for a small particle)")
+    parser.add_argument("--region", type=int, nargs=4, metavar=("LEFT", "UPPER", "RIGHT", "LOWER"),
+                        help="part of the picture that is searched, in pixels from its upper left corner")
+    parser.add_argument("--background", default="even", metavar="{even,plane,curved,FILE}",
+                        help="what is subtracted: nothing that varies, a linear or quadratic fit of uneven light at "
+                             "the border of the picture, or a picture without the particle (default: %(default)s)")
+    parser.add_argument("--edge", choices=EDGES, help="edge of a rim that is the outline (default: see above)")
     parser.add_argument("--overlay", metavar="FILE", help="writes the picture with the points drawn on it, as a check")
     arguments = parser.parse_args()
-    picture = grey(arguments.picture)
-    expect(numpy.ptp(picture) > 0, f"{arguments.picture}: its brightness is the same everywhere")
-    mask = body(picture, arguments.picture)
-    # each point takes three rays, about two pixels apart, because their scatter gives the standard error
-    most = int(numpy.sqrt(mask.sum() * numpy.pi) / 2)
-    number = min(60, most) if arguments.points is None else arguments.points
-    expect(8 <= number <= most, f"{arguments.picture}: --points must be from 8 to {most}, half the rays of its outline")
-    points, error = edge(picture, mask, number)
-    expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")
-    table = numpy.column_stack([points * [1, -1], numpy.full(len(points), error)])
+    path = arguments.picture
+    picture = pictures.part(pictures.grey(path), arguments.region, path)
+    clear = pictures.without_background(picture, arguments.background, path, arguments.region)
+    found = outline(clear, path, arguments.points, arguments.edge)
+    points = found.points + (arguments.region[:2] if arguments.region else [0, 0])
+    table = numpy.column_stack([points * [1, -1], numpy.full(len(points), found.error)])
     numpy.savetxt(arguments.output, table, "%.4f,%.4f,%.3g", header="x1,x3,error", comments="")
-    log.info(f"{arguments.output}: {len(points)} points, each with an error of {error:.3f} pixels")
+    width, height = numpy.ptp(points, axis=0)
+    log.info(f"{arguments.output}: {len(points)} points, each with an error of {found.error:.3f} pixels "
+             f"({found.noise:.3f} by noise, {found.width:.3f} by the width of the edge)")
+    log.info(f"taken: {found.text}, {width:.1f} x {height:.1f} pixels")
+    for text in found.enclosing:
+        log.info(text)
     if arguments.overlay:
         figure, (axis,) = style.panels(None, 1, 1, 6, 6 * picture.shape[0] / picture.shape[1])
         axis.imshow(picture, cmap="gray")
-        axis.plot(*points.T, ".", color=style.RUNS[1], ms=2)
+        axis.plot(*found.points.T, ".", color=style.RUNS[1], ms=2)
         axis.axis("off")
         style.save(figure, arguments.overlay)
