@@ -45,11 +45,13 @@ from ..mistakes import command_line, expect, log
 from . import picture as pictures
 
 FINE = 0.25       # distance between samples on a normal, in pixels
-NOTICED = 0.1     # an edge has at least this fraction of the largest step and of the largest slope of the profile
+NOTICED = 0.05    # an edge has at least this fraction of the largest step and of the largest slope of the profile
 WEAK = 0.3        # an edge of a rim is weak if its step is less than this fraction of the step of the other edge
 RIM = 0.12        # two edges of opposite sign belong to a rim if their distance is at most this fraction of the size
 NARROW = 0.05     # a rim is narrow up to this fraction of the size: a fifth of it is 1 % of the size
-LINE = 3.75       # a rim whose width is less than this multiple of its blur is a line (a Gaussian profile: 3.6)
+WIDE = 0.08       # a blurred line is narrow up to this fraction of the size: two thirds of it lie within three errors
+LINE = 3.65       # a rim whose width is less than this multiple of its blur is a line (a Gaussian profile: 3.59)
+SHARP = 5.0       # the edges of a rim are resolved if its width is at least this multiple of its blur
 ALIKE = 0.5       # smallest correlation of the profile of a part of the outline with the average profile
 LARGEST = 0.01    # largest accepted error of a point, as a fraction of the size
 EDGES = ("outer", "middle", "inner")
@@ -141,13 +143,22 @@ def with_normals(points, count):
     return points, tangent[:, ::-1] * [-1, 1] / numpy.linalg.norm(tangent, axis=1)[:, None]
 
 
-class Normals:
-    """Brightness of a picture on normals to a curve. `shift` (n,): offset of the edge on each normal, in pixels."""
+def levelled(values, part=slice(None)):
+    """Returns values (n, m) minus the mean of each row over some columns, plus the mean of all. The median over rows
+    then does not depend on slow changes of the light along the outline."""
+    level = numpy.nanmean(values[:, part], axis=1, keepdims=True)
+    return values - level + numpy.nanmean(level)
 
-    def __init__(self, picture, points, normals):
-        self.picture, self.points, self.normals = picture, points, normals
+
+class Normals:
+    """Brightness of a picture on normals to a curve. `found` (n,): offset of the edge on each normal, in pixels.
+    `shift` (n,): the same averaged over `each` neighbours, to which profiles refer. Profiles that refer to the offsets
+    of single normals are too steep, because these follow the noise."""
+
+    def __init__(self, picture, points, normals, each):
+        self.picture, self.points, self.normals, self.each = picture, points, normals, each
         self.coefficients = scipy.ndimage.spline_filter(picture, 3, mode="mirror")
-        self.shift = numpy.zeros(len(points))
+        self.found = self.shift = numpy.zeros(len(points))
 
     def values(self, off):
         """Returns the brightness (n, len(off)) at offsets from the edge; NaN outside of the picture."""
@@ -161,7 +172,7 @@ class Normals:
         """Returns the median brightness over all normals at each offset, which ignores what lies beside a small part of
         the outline, smoothed over half a pixel, and its standard error. NaN where half of the normals have left the
         picture."""
-        values = self.values(off)
+        values = levelled(self.values(off), abs(off) < -off[0] / 3)
         seen = numpy.isfinite(values).mean(0) > 0.5
         profile = numpy.full(len(off), numpy.nan)
         profile[seen] = scipy.ndimage.gaussian_filter1d(numpy.nanmedian(values[:, seen], axis=0), 0.5 / FINE)
@@ -176,7 +187,7 @@ class Normals:
         off = numpy.arange(first, last + FINE / 2, FINE)
         values = self.values(off)
         values = numpy.where(numpy.isfinite(values), values, numpy.nanmedian(values, axis=0))
-        mean = numpy.median(values, axis=0)
+        mean = numpy.median(levelled(values), axis=0)
         slope = numpy.gradient(scipy.ndimage.gaussian_filter1d(mean, 0.5 / FINE), off)
         # the slope is fitted too, so that the levels do not depend on the shift
         basis = numpy.stack([numpy.ones(len(off)), mean - mean.mean(), slope], axis=-1)
@@ -184,14 +195,15 @@ class Normals:
         levels = scipy.ndimage.gaussian_filter1d(factors[:, :2], len(values) / 40, axis=0, mode="wrap")
         contrast = levels[:, 1] / numpy.median(levels[:, 1])
         rest = (values - levels @ basis[:, :2].T) / numpy.where(contrast > 0.1, levels[:, 1], 1)[:, None]
-        self.shift -= numpy.clip(rest @ slope / (slope @ slope), -reach, reach)
+        self.found = self.shift - numpy.clip(rest @ slope / (slope @ slope), -reach, reach)
+        self.shift = scipy.ndimage.uniform_filter1d(self.found, self.each, mode="wrap")
 
     def agreeing(self, first, last):
         """Returns the fraction of the normals whose brightness between two offsets correlates positively with the
         average, after it has been averaged over a fifteenth of the outline to reduce the noise."""
         off = numpy.arange(first, last + FINE / 2, FINE)
         values = self.values(off)
-        mean = numpy.nanmedian(values, axis=0)
+        mean = numpy.nanmedian(levelled(values), axis=0)
         values = numpy.where(numpy.isfinite(values), values, mean)
         values = scipy.ndimage.uniform_filter1d(values, len(values) // 15 + 1, axis=0, mode="wrap")
         values, mean = values - values.mean(1, keepdims=True), mean - mean.mean()
@@ -206,6 +218,11 @@ def edges_of(off, profile, noise=0.0):
     # five standard errors of the slope of a profile that is smoothed over half a pixel, which is about noise per pixel
     least = max(NOTICED * abs(slope).max(), 5 * noise)
     peaks, _ = scipy.signal.find_peaks(abs(slope), height=least, prominence=least)
+    # a step with two steepest points is one edge if the slope between them stays above a third of the smaller one
+    for before, after in list(zip(peaks, peaks[1:])):
+        less = min(abs(slope[before]), abs(slope[after]))
+        if (slope[before:after + 1] / slope[before]).min() * abs(slope[before]) > less / 3:
+            peaks = peaks[peaks != min(before, after, key=lambda one: abs(slope[one]))]
     found = []
     for number, peak in enumerate(peaks):
         # an edge ends where the slope changes its sign, and between two edges where the slope is smallest
@@ -236,9 +253,10 @@ def edges_of(off, profile, noise=0.0):
 def rim_of(edges, size):
     """Returns the outer and the inner edge of the rim that begins with the first of `edges`, or None. `size`: of the
     particle, in pixels."""
-    if len(edges) < 2 or edges[0].step * edges[1].step > 0 or edges[0].at - edges[1].at > RIM * size:
+    if len(edges) < 2 or edges[0].step * edges[1].step > 0:
         return None
-    return edges[:2]
+    width, blur = edges[0].at - edges[1].at, max(edge.blur for edge in edges[:2])
+    return edges[:2] if width <= max(RIM * size, LINE * blur) else None
 
 
 def choose(off, profile, noise, size, given, path):
@@ -251,7 +269,7 @@ def choose(off, profile, noise, size, given, path):
     if rim:
         # brightness inside of the rim minus that of the surroundings, divided by the step of the outer edge
         inside = -(rim[0].step + rim[1].step) / around
-        halo = around < 0 and inside > NOTICED
+        halo = around < 0 and inside > WEAK / 2
         inner = rim_of(edges[1:], size) if halo else None
         if inner:  # the halo surrounds a dark rim
             texts = [f"the outer edge of a bright halo {rim[0].at - rim[1].at:.1f} pixels wide encloses it"]
@@ -264,7 +282,7 @@ def choose(off, profile, noise, size, given, path):
     name = f"{'bright halo' if halo else 'dark rim' if first.step > 0 else 'bright rim'} {width:.1f} pixels wide"
     beyond = texts + [f"the outer edge of the {name} encloses it: --edge outer takes that edge"]
     # the other edge of the rim moves a blurred edge by about its variance divided by the width of the rim
-    most = 0.9 * LARGEST * size  # a tenth is left for the noise
+    most = 0.9 * LARGEST * (size + 2 * last.at)  # a tenth is left for the noise
     widths = {one: min(float(numpy.hypot(edge.width(), edge.blur**2 / width)), most)
               for one, edge in {"outer": first, "inner": last}.items()}
     choices = {"outer": (Choice(first, first, widths["outer"], f"the outer edge of a {name}"), texts),
@@ -272,14 +290,18 @@ def choose(off, profile, noise, size, given, path):
                "inner": (Choice(last, last, widths["inner"], f"the inner edge of a {name}"), beyond)}
     if given:
         return choices[given]
-    strong = [one for one, other in (rim, rim[::-1]) if abs(other.step) < WEAK * abs(one.step)]
-    if width <= NARROW * size or width < LINE * (first.blur + last.blur) / 2:
-        choice, texts = choices["inner" if halo or last in strong else "outer" if first in strong else "middle"]
+    line = width < LINE * max(first.blur, last.blur)
+    # blur reduces the steps of a line
+    strong = [one for one, other in (rim, rim[::-1]) if abs(other.step) < (WEAK / 2 if line else WEAK) * abs(one.step)]
+    plain = abs(inside) < WEAK / 2  # as bright inside as outside
+    default = "inner" if halo or last in strong else "outer" if first in strong else None
+    if width <= NARROW * size or width <= WIDE * size and (line or plain):
+        choice, texts = choices[default or "middle"]
         return dataclasses.replace(choice, width=max(choice.width, min(width / 5, most))), texts
-    expect(abs(inside) > 2 * NOTICED or strong,
-           f"{path}: the particle has a {name}, {width / size:.0%} of its size, and is as bright inside as outside: "
+    expect(default or not plain and width > SHARP * max(first.blur, last.blur),
+           f"{path}: the particle has a {name}, {width / size:.0%} of its size: "
            "--edge outer, --edge middle or --edge inner says where its outline is")
-    return choices["inner" if halo or last in strong else "outer"]
+    return choices[default or "outer"]
 
 
 def edge(picture, region, count, given, path):
@@ -288,24 +310,24 @@ def edge(picture, region, count, given, path):
     start = first_outline(region, path)
     size = size_of(start)
     each = max(2, int(numpy.pi * size / 2 / count)) // 2 * 2 + 1
-    lines = Normals(picture, *with_normals(start, count * each))
+    lines = Normals(picture, *with_normals(start, count * each), each)
     coarse = min(4.0 * region.step, size / 8)
     for _ in range(3):
         lines.align(-coarse, coarse, coarse / 2)
     off = numpy.arange(-0.3 * size, 0.2 * size, FINE)
     choice, texts = choose(off, *lines.profile(off), size, given, path)
-    at, size = choice.at, size + 2 * choice.at
+    first, last = choice.first, choice.last
     for _ in range(4):
-        first, last = choice.last, choice.first
-        lines.align(min(first.low, first.at - 3), max(last.high, last.at + 3), 2)
-        again, texts = choose(off, *lines.profile(off), size, given, path)
-        if abs(again.at - at) > 3:
-            break
-        choice = again
-    expect(lines.agreeing(first.low, last.high) > 0.8, f"{path}: the edge does not look alike all around the particle")
-    places = lines.points + (lines.shift + choice.at)[:, None] * lines.normals
+        lines.align(min(last.low, last.at - 3), max(first.high, first.at + 3), 2)
+        edges = edges_of(off, *lines.profile(off))
+        first, last = (min(edges, key=lambda one: abs(one.at - old.at) + 1e9 * (one.step * old.step < 0), default=old)
+                       for old in (first, last))
+    at = (first.at + last.at) / 2
+    expect(abs(at - choice.at) < max(3, choice.first.at - choice.last.at), f"{path}: the edge is not stable")
+    expect(lines.agreeing(last.low, first.high) > 0.8, f"{path}: the edge does not look alike all around the particle")
+    places = lines.points + (lines.found + at)[:, None] * lines.normals
     points, noise = averaged(places[:, ::-1], lines.normals[::each, ::-1], each)
-    blur = (choice.first.blur + choice.last.blur) / 2
+    blur = (first.blur + last.blur) / 2
     return Outline(unbent(points, blur**2), noise, choice.width, choice.text, texts)
 
 
