@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # Tests of fits: they return the parameters that produced the data, report undetermined unknowns, and reject wrong
-# studies in one sentence. Tests of outlines and edge detection.
+# studies in one sentence. Tests of outlines.
 import copy
 import os
 import pathlib
@@ -18,7 +18,7 @@ os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
 from tanktread.mistakes import Mistake
-from tanktread.studies import fit, fit_data, fit_report, outline, phases, silhouette, sweep
+from tanktread.studies import fit, fit_data, fit_report, phases, silhouette, sweep
 
 SHEAR = """
 Tanktread:
@@ -162,38 +162,6 @@ def the_outline_of_a_shape_is_exact():
     check(abs(curve.distances(turned)).max() < 2e-4, abs(curve.distances(turned)).max())
     close(abs(curve.distances(1.01 * turned)).max(), 0.012, 3e-4, "a distance outside")
     check(curve.distances(0.9 * turned).max() < 0, "a point inside is outside")
-
-
-def _picture(noise, generator, pixels=256, finer=8):
-    """Returns a blurred, noisy image of a rotated ellipse with semi-axes of 90 and 70 pixels that is not centred, and
-    its exact edge."""
-    x = (numpy.arange(pixels * finer) + 0.5) / finer - 0.5
-    column, row = numpy.meshgrid(x, x)
-    along, across = (0.8 * (column - 130.3) + 0.6 * (row - 124.6)) / 90, (-0.6 * (column - 130.3) + 0.8 * (row - 124.6)) / 70
-    inside = (along**2 + across**2 < 1).reshape(pixels, finer, pixels, finer).mean((1, 3))
-    image = outline.scipy.ndimage.gaussian_filter(0.8 - 0.5 * inside, 1.5) + 0.5 * noise * generator.standard_normal((pixels, pixels))
-    edge = _ellipse(90, 70, 400) @ [[0.8, 0.6], [-0.6, 0.8]] + [130.3, 124.6]
-    return image, silhouette.Outline(edge)
-
-
-def an_edge_in_an_image_is_found_to_a_twentieth_of_a_pixel():
-    generator = numpy.random.default_rng(1)
-    for noise, bound in (0.0, 0.015), (0.02, 0.05):  # without the correction of the shift by blur, the error is 0.024
-        image, edge = _picture(noise, generator)
-        found = outline.outline(image, "picture", 60)
-        off = edge.distances(found.points)
-        check(numpy.sqrt((off**2).mean()) < bound, f"noise {noise}: {numpy.sqrt((off ** 2).mean()):.3f} pixels")
-        check(noise == 0 or 0.6 < off.std() / found.noise < 1.6, f"stated {found.noise:.3f}, found {off.std():.3f}")
-    from matplotlib.image import imsave
-    imsave("picture.png", image, cmap="gray", vmin=0, vmax=1)
-    imsave("cut.png", image[:, 100:], cmap="gray", vmin=0, vmax=1)
-    said = package("outline", "picture.png", "-o", "edge.csv", "--overlay", "check.png")
-    check(said.returncode == 0 and "60 points" in said.stdout, said)
-    datum = fit_data.OutlineData({"outline": "edge.csv", "scale": 1.0}, "edge", pathlib.Path())
-    check(abs(edge.distances(datum.points * [1, -1])).max() < 0.2, "the points in the file")
-    close(datum.error, found.error, 0.1 * found.error, "the error in the file")  # the image in the file is rounded to 256 levels
-    said = package("outline", "cut.png")
-    check(said.returncode == 2 and "does not close" in said.stderr and said.stderr.count("\n") == 1, said)
 
 
 def _offline(text, model):

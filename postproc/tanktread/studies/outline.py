@@ -52,7 +52,6 @@ NARROW = 0.05     # a rim is narrow up to this fraction of the size: a fifth of 
 WIDE = 0.08       # a blurred line is narrow up to this fraction of the size: two thirds of it lie within three errors
 LINE = 3.65       # a rim whose width is less than this multiple of its blur is a line (a Gaussian profile: 3.59)
 SHARP = 5.0       # the edges of a rim are resolved if its width is at least this multiple of its blur
-ALIKE = 0.5       # smallest correlation of the profile of a part of the outline with the average profile
 LARGEST = 0.01    # largest accepted error of a point, as a fraction of the size
 EDGES = ("outer", "middle", "inner")
 
@@ -198,16 +197,12 @@ class Normals:
         self.found = self.shift - numpy.clip(rest @ slope / (slope @ slope), -reach, reach)
         self.shift = scipy.ndimage.uniform_filter1d(self.found, self.each, mode="wrap")
 
-    def agreeing(self, first, last):
-        """Returns the fraction of the normals whose brightness between two offsets correlates positively with the
-        average, after it has been averaged over a fifteenth of the outline to reduce the noise."""
-        off = numpy.arange(first, last + FINE / 2, FINE)
-        values = self.values(off)
-        mean = numpy.nanmedian(levelled(values), axis=0)
-        values = numpy.where(numpy.isfinite(values), values, mean)
-        values = scipy.ndimage.uniform_filter1d(values, len(values) // 15 + 1, axis=0, mode="wrap")
-        values, mean = values - values.mean(1, keepdims=True), mean - mean.mean()
-        return (values @ mean > ALIKE * numpy.linalg.norm(values, axis=1) * numpy.linalg.norm(mean)).mean()
+    def brighter_outside(self):
+        """Returns the fraction of the normals on which the brightness increases outwards at the edge. It is averaged
+        over a fifteenth of the outline to reduce the noise."""
+        rise = self.values(numpy.array([-1.5, 1.5])) @ [-1, 1]
+        rise = scipy.ndimage.uniform_filter1d(numpy.nan_to_num(rise), len(rise) // 15 + 1, mode="wrap")
+        return (rise > 0).mean()
 
 
 def edges_of(off, profile, noise=0.0):
@@ -311,6 +306,9 @@ def edge(picture, region, count, given, path):
     size = size_of(start)
     each = max(2, int(numpy.pi * size / 2 / count)) // 2 * 2 + 1
     lines = Normals(picture, *with_normals(start, count * each), each)
+    expect(not 0.25 < lines.brighter_outside() < 0.75,
+           f"{path}: the particle is darker than its surroundings on one side and brighter on the other, as in relief "
+           "contrast (DIC): take the picture in bright field, phase contrast or fluorescence")
     coarse = min(4.0 * region.step, size / 8)
     for _ in range(3):
         lines.align(-coarse, coarse, coarse / 2)
@@ -324,7 +322,6 @@ def edge(picture, region, count, given, path):
                        for old in (first, last))
     at = (first.at + last.at) / 2
     expect(abs(at - choice.at) < max(3, choice.first.at - choice.last.at), f"{path}: the edge is not stable")
-    expect(lines.agreeing(last.low, first.high) > 0.8, f"{path}: the edge does not look alike all around the particle")
     places = lines.points + (lines.found + at)[:, None] * lines.normals
     points, noise = averaged(places[:, ::-1], lines.normals[::each, ::-1], each)
     blur = (first.blur + last.blur) / 2
@@ -363,9 +360,9 @@ def outline(picture, path, count=None, given=None):
     EDGES, or None. `path` names the picture in messages."""
     expect(numpy.ptp(picture) > 0, f"{path}: its brightness is the same everywhere")
     region = pictures.outermost(picture)
-    expect(region, f"{path}: no edge closes within the picture: give a picture that contains the whole particle, or "
-           "remove the uneven light or the walls with --background curved or --background FILE, a picture without the "
-           "particle")
+    expect(region, f"{path}: no edge closes within the picture: it must contain the whole particle; if it does, "
+           "--background FILE, a picture without the particle, removes walls and uneven light, and --region LEFT UPPER "
+           "RIGHT LOWER leaves out what is beside the particle")
     # each point takes three normals, about two pixels apart, because their scatter gives the standard error
     most = int(numpy.sqrt(region.inside.sum() * numpy.pi) * region.step / 2)
     expect(count is None or 8 <= count <= most,
@@ -394,8 +391,8 @@ def main():
     parser.add_argument("--points", type=int, help="number of points (default: 60, fewer for a small particle)")
     parser.add_argument("--region", type=int, nargs=4, metavar=("LEFT", "UPPER", "RIGHT", "LOWER"),
                         help="part of the picture that is searched, in pixels from its upper left corner")
-    parser.add_argument("--background", default="even", metavar="{even,plane,curved,FILE}",
-                        help="what is subtracted: nothing that varies, a linear or quadratic fit of uneven light at "
+    parser.add_argument("--background", default="curved", metavar="{even,plane,curved,FILE}",
+                        help="what is subtracted: a constant, a linear or quadratic fit of uneven light at "
                              "the border of the picture, or a picture without the particle (default: %(default)s)")
     parser.add_argument("--edge", choices=EDGES, help="edge of a rim that is the outline (default: see above)")
     parser.add_argument("--overlay", metavar="FILE", help="writes the picture with the points drawn on it, as a check")

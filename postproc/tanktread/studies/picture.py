@@ -42,7 +42,7 @@ def part(picture, region, path):
     left, upper, right, lower = region
     rows, columns = picture.shape
     expect(0 <= left < right <= columns and 0 <= upper < lower <= rows,
-           f"{path}: --region must lie in the picture, which has {columns} columns and {rows} rows: "
+           f"{path}: --region does not lie in the picture, which has {columns} columns and {rows} rows: "
            f"LEFT UPPER RIGHT LOWER from 0 0 to {columns} {rows}")
     return picture[upper:lower, left:right]
 
