@@ -10,100 +10,51 @@ from PIL import Image
 
 from harness import SOURCE, check, close, main, package
 
-sys.path.append(str(SOURCE / "postproc"))
+sys.path += [str(SOURCE / "postproc"), str(SOURCE / "tests/benchmark")]
 from tanktread.mistakes import Mistake
 from tanktread.studies import fit_data, outline, picture, silhouette
 
-FINER = 4  # samples per pixel and direction of a drawing
-
-
-def _grid(a, b, margin=30):
-    """Returns columns and rows of the samples of a picture, relative to the middle of an ellipse with semi-axes a, b, and their distance from it."""
-    y, x = ((numpy.arange(FINER * 2 * int(half + margin)) + 0.5) / FINER - int(half + margin) for half in (b, a))
-    x, y = numpy.meshgrid(x - 0.3, y + 0.4)  # not in the middle of a pixel
-    ratio = numpy.hypot(x / a, y / b)
-    return x, y, (ratio - 1) * ratio / numpy.maximum(numpy.hypot(x / a**2, y / b**2), 1e-9)
-
-
-def _photographed(drawing, blur=1.5, noise=0.01):
-    """Returns the picture (rows, columns), 0 to 255, of a drawing with `FINER` samples per pixel."""
-    rows, columns = drawing.shape
-    image = drawing.reshape(rows // FINER, FINER, columns // FINER, FINER).mean((1, 3))
-    image = scipy.ndimage.gaussian_filter(image, blur) + noise * numpy.random.default_rng(1).standard_normal(image.shape)
-    return numpy.clip(numpy.round(255 * image), 0, 255)
-
-
-def _ring(distance, outer, inner):
-    return (distance < outer) & (distance >= inner)
-
-
-def _looks(a, b):
-    """Returns {look: drawing} of an ellipse with semi-axes a, b. Its edge is the middle of a rim, or the boundary of the body."""
-    x, y, far = _grid(a, b)
-    body, width = far < 0, 0.03 * a
-    dark = 0.6 - 0.35 * body
-    return {"filled, dark": dark, "filled, bright": 0.3 + 0.35 * body,
-            "a narrow dark rim, bright inside": numpy.where(abs(far) < width, 0.25, 0.6 + 0.15 * body),
-            "a thin ring": numpy.where(abs(far) < 1.5, 0.25, 0.6),
-            "a bright halo around a dark body": numpy.where(_ring(far, 0.1 * a, 0), 0.85, 0.6 - 0.3 * body),
-            "a halo that decays": 0.6 - 0.3 * body + 0.25 * numpy.exp(-far.clip(0) / (0.06 * a)) * ~body,
-            "a gradient of light": dark + 0.5 * x / numpy.ptp(x),
-            "vignetting": dark * (1 - 0.3 * (x**2 + y**2) / (x**2 + y**2).max()),
-            "channel walls": numpy.where(_ring(abs(y), b + 20, b + 14), 0.2, numpy.where(abs(y) > b + 20, 0.8, dark)),
-            "a bright spot inside": dark + 0.6 * (numpy.hypot(x - 0.3 * a, y) < 0.3 * b),
-            "a second particle at the edge": numpy.where(numpy.hypot(x - a - 28, y - b - 28) < 20, 0.25, dark),
-            "dust": numpy.where((abs(x - a - 10) < 2) & (abs(y) < 2) | (abs(x) < 2) & (abs(y + b + 12) < 3), 0.2, dark)}
-
-
-def _found(image, a, b, given=None):
-    """Returns the outline, and the largest error of its mean distance from the ellipse and of its two half widths, in pixels."""
-    found = outline.outline(picture.without_background(image, "curved", "picture"), "picture", given=given)
-    rows, columns = image.shape
-    x, y = (found.points - [columns / 2 - 0.5 + 0.3, rows / 2 - 0.5 - 0.4]).T
-    ratio = numpy.hypot(x / a, y / b)
-    off = (ratio - 1) * ratio / numpy.hypot(x / a**2, y / b**2)
-    return found, max(abs(off.mean()), abs(numpy.ptp(x) / 2 - a), abs(numpy.ptp(y) / 2 - b))
-
+from looks_of_particles import found_in, grid, looks, photographed, ring
 
 def each_look_is_found_within_three_stated_errors_of_at_most_one_per_cent():
     for a, b in (36, 30), (70, 60):
-        for name, drawing in _looks(a, b).items():
+        for name, drawing in looks(a, b).items():
             for blur, noise in ((1.5, 0.01),) if name != "filled, dark" else ((1, 0), (1.5, 0.08), (2.5, 0.01)):
-                found, off = _found(_photographed(drawing, blur, noise), a, b)
+                found, off = found_in(photographed(drawing, blur, noise), a, b)
                 size = 2 * numpy.sqrt(a * b)
                 check(off < 3 * found.error, f"{name}, {a}: {off:.2f} pixels off, stated {found.error:.2f}, {found.text}")
                 check(found.error < 0.01 * size, f"{name}, {a}: stated {found.error:.2f}, {found.text}")
 
 
 def the_edge_of_a_wide_rim_is_said_or_asked_for():
-    _, _, far = _grid(60, 52)
-    rim = numpy.where(_ring(far, 0, -9), 0.25, 0.6 + 0.2 * (far < -9))
-    found, off = _found(_photographed(rim), 60, 52)  # a body as bright as the surroundings is asked for, this one is not
+    _, _, far = grid(60, 52)
+    rim = numpy.where(ring(far, 0, -9), 0.25, 0.6 + 0.2 * (far < -9))
+    found, off = found_in(photographed(rim), 60, 52)  # a body as bright as the surroundings is asked for, this one is not
     check(off < 0.1 and "outer edge of a dark rim 9.0 pixels" in found.text, found.text, off)
-    plain = _photographed(numpy.where(_ring(far, 0, -9), 0.25, 0.6))
+    plain = photographed(numpy.where(ring(far, 0, -9), 0.25, 0.6))
     try:
-        _found(plain, 60, 52)
+        found_in(plain, 60, 52)
         check(False, "a wide ring is accepted")
     except Mistake as mistake:
         check("--edge outer, --edge middle or --edge inner" in str(mistake), mistake)
     for k, given in enumerate(outline.EDGES):
-        found, off = _found(plain, 60 - 4.5 * k, 52 - 4.5 * k, given)
+        found, off = found_in(plain, 60 - 4.5 * k, 52 - 4.5 * k, given)
         check(off < 0.2 and bool(found.enclosing) == (k > 0), given, off, found.enclosing)
     try:
-        _found(_photographed(0.6 - 0.3 * (far < 0)), 60, 52, "inner")
+        found_in(photographed(0.6 - 0.3 * (far < 0)), 60, 52, "inner")
         check(False, "an inner edge without a rim")
     except Mistake as mistake:
         check("leave out --edge inner" in str(mistake), mistake)
 
 
 def an_edge_in_an_image_is_found_to_a_twentieth_of_a_pixel():
-    x, y, _ = _grid(100, 100, 28)
+    x, y, _ = grid(100, 100, 28)
     along, across = (0.8 * x + 0.6 * y) / 90, (-0.6 * x + 0.8 * y) / 70
     angle = 2 * numpy.pi * numpy.arange(400) / 400
     exact = numpy.stack([90 * numpy.cos(angle), 70 * numpy.sin(angle)], axis=-1) @ [[0.8, 0.6], [-0.6, 0.8]] + [127.5 + 0.3, 127.5 - 0.4]
     edge = silhouette.Outline(exact)
     for noise, bound in (0, 0.02), (0.01, 0.05):  # without the correction of the shift by blur, the error is 0.024
-        image = _photographed(0.8 - 0.5 * (along**2 + across**2 < 1), 1.5, noise)
+        image = photographed(0.8 - 0.5 * (along**2 + across**2 < 1), 1.5, noise)
         found = outline.outline(image, "picture", 60)
         off = edge.distances(found.points)
         check(numpy.sqrt((off**2).mean()) < bound, f"noise {noise}: {numpy.sqrt((off ** 2).mean()):.3f} pixels")
@@ -117,8 +68,8 @@ def an_edge_in_an_image_is_found_to_a_twentieth_of_a_pixel():
 
 
 def pictures_are_read_in_the_usual_formats():
-    _, _, far = _grid(40, 34)
-    image = _photographed(0.6 - 0.35 * (far < 0))
+    _, _, far = grid(40, 34)
+    image = photographed(0.6 - 0.35 * (far < 0))
     pictures = {"a.png": Image.fromarray(image.astype("u1")), "a.jpg": Image.fromarray(image.astype("u1")), "a.tif": Image.fromarray((16 * image).astype("u2")),
                 "float.tif": Image.fromarray((image / 255).astype("f4")), "rgb.tif": Image.fromarray(image.astype("u1")).convert("RGB"),
                 "rgba.png": Image.fromarray(image.astype("u1")).convert("RGBA"), "palette.png": Image.fromarray(image.astype("u1")).convert("P")}
@@ -127,7 +78,7 @@ def pictures_are_read_in_the_usual_formats():
         values = picture.grey(name)
         factor = {"a.tif": 16, "float.tif": 1 / 255}.get(name, 1)
         close(abs(values / factor - image).max(), 0, 12 if name == "a.jpg" else 1e-4, name)
-    check(abs(_found(picture.grey("a.jpg"), 40, 34)[1]) < 0.2, "the outline in a JPEG")
+    check(abs(found_in(picture.grey("a.jpg"), 40, 34)[1]) < 0.2, "the outline in a JPEG")
     pathlib.Path("text.png").write_text("no picture")
     for name, words in ("text.png", "save it as PNG, TIFF or JPEG"), ("absent.png", "there is no such file"):
         said = package("outline", name)
@@ -135,10 +86,13 @@ def pictures_are_read_in_the_usual_formats():
 
 
 def a_refusal_names_an_option_that_helps():
-    x, y, far = _grid(40, 34)
+    x, y, far = grid(40, 34)
     empty = 0.6 + 0.15 * numpy.sin(0.45 * x) * numpy.sin(0.45 * y) - 0.4 * (abs(y - 34) < 4)  # structured light, and a wall that touches
     for name, drawing in ("empty", empty), ("full", empty - 0.2 * (far < 0)), ("plain", 0.6 - 0.3 * (far < 0)):
-        Image.fromarray(_photographed(drawing, noise=0.005).astype("u1")).save(f"{name}.png")
+        Image.fromarray(photographed(drawing, noise=0.005).astype("u1")).save(f"{name}.png")
+    for background in "curved", "even":
+        said = package("outline", "full.png", "--background", background)
+        check(said.returncode == 2 and "--background FILE" in said.stderr and said.stderr.count("\n") == 1, said)
     said = package("outline", "full.png", "--background", "empty.png", "-o", "full.csv")
     check(said.returncode == 0, said)
     points = numpy.loadtxt("full.csv", delimiter=",", skiprows=1)

@@ -13,15 +13,17 @@ Many particles have a rim: a dark ring in bright field, a bright halo in phase c
 edge, and `--edge` says which one is the outline. Without this option,
 
 - of a bright halo around a darker body the inner edge is taken, because the halo is light beside the body;
-- of a rim narrower than a twentieth of the particle the middle is taken, and the stated error is a fifth of the width
-  of the rim, so that both edges lie within three errors;
-- of a wider rim with a sharp outer edge around a body that is not as bright as the surroundings, the outer edge is
-  taken.
+- of a rim narrower than a twentieth of the particle the middle is taken, and also of a blurred line up to 8 % of it;
+- of a wider rim with resolved edges around a body that is brighter or darker than the surroundings, the outer edge is
+  taken;
+- of a rim one of whose edges is three times as strong as the other, the strong edge is taken.
 
 The command prints which edge was taken, and the edges that enclose it. It refuses other wide rims.
 
 The stated error consists of the scatter of the points by noise, which is independent for each point, and of the width
-of the edge, which is the same for all points.
+of the edge, which is the same for all points. The latter is a tenth of the distance in which the brightness changes,
+and a fifth of the width of a narrow rim, but at most 0.9 % of the size. Both edges of a narrow rim then lie within
+three errors of its middle. A picture whose points would have an error of more than 1 % of the size is refused.
 
 The edge is found on normals to a first outline, which is the ridge of the gradient of the smoothed picture:
 
@@ -52,6 +54,7 @@ NARROW = 0.05     # a rim is narrow up to this fraction of the size: a fifth of 
 WIDE = 0.08       # a blurred line is narrow up to this fraction of the size: two thirds of it lie within three errors
 LINE = 3.65       # a rim whose width is less than this multiple of its blur is a line (a Gaussian profile: 3.59)
 SHARP = 5.0       # the edges of a rim are resolved if its width is at least this multiple of its blur
+ROUGH = 0.5       # largest accepted scatter of single normals, in pixels, in addition to five times that by noise
 LARGEST = 0.01    # largest accepted error of a point, as a fraction of the size
 EDGES = ("outer", "middle", "inner")
 
@@ -119,7 +122,8 @@ def first_outline(region, path):
     inside = scipy.ndimage.map_coordinates(region.inside.astype(float), places / region.step, order=1) > 0.5
     last = inside.shape[1] - 1 - inside[:, ::-1].argmax(1)
     hollow = (~inside & (radius < radius[last][:, None])).sum() / inside.sum()
-    expect(hollow < 0.02, f"{path}: the outline is met more than once on rays from its centre")
+    expect(hollow < 0.02, f"{path}: the outline is met more than once on rays from its centre: if it is that of a "
+           "particle and of what touches it, --region LEFT UPPER RIGHT LOWER leaves out one of them")
     gradient = scipy.ndimage.map_coordinates(region.gradient, places, order=1, mode="constant")
     # the region ends where the gradient exceeds its threshold, and the ridge is the next maximum outwards
     rising = (numpy.diff(gradient, axis=1) > 0) | (numpy.arange(len(radius) - 1) < last[:, None])
@@ -152,12 +156,14 @@ def levelled(values, part=slice(None)):
 class Normals:
     """Brightness of a picture on normals to a curve. `found` (n,): offset of the edge on each normal, in pixels.
     `shift` (n,): the same averaged over `each` neighbours, to which profiles refer. Profiles that refer to the offsets
-    of single normals are too steep, because these follow the noise."""
+    of single normals are too steep, because these follow the noise. `expected`: standard error of `found` by the noise
+    of the picture."""
 
     def __init__(self, picture, points, normals, each):
         self.picture, self.points, self.normals, self.each = picture, points, normals, each
         self.coefficients = scipy.ndimage.spline_filter(picture, 3, mode="mirror")
         self.found = self.shift = numpy.zeros(len(points))
+        self.expected = 0.0
 
     def values(self, off):
         """Returns the brightness (n, len(off)) at offsets from the edge; NaN outside of the picture."""
@@ -194,6 +200,7 @@ class Normals:
         levels = scipy.ndimage.gaussian_filter1d(factors[:, :2], len(values) / 40, axis=0, mode="wrap")
         contrast = levels[:, 1] / numpy.median(levels[:, 1])
         rest = (values - levels @ basis[:, :2].T) / numpy.where(contrast > 0.1, levels[:, 1], 1)[:, None]
+        self.expected = pictures.noise_of(self.picture) / numpy.sqrt(slope @ slope * FINE)
         self.found = self.shift - numpy.clip(rest @ slope / (slope @ slope), -reach, reach)
         self.shift = scipy.ndimage.uniform_filter1d(self.found, self.each, mode="wrap")
 
@@ -236,7 +243,7 @@ def edges_of(off, profile, noise=0.0):
             first, last = max(low, peak - reach), min(high, peak + reach)
         part = slice(first, last + 1)
         rise = (profile[part] - profile[first]) / step
-        above = int((rise >= 0.5).argmax())
+        above = max(1, int((rise >= 0.5).argmax()))
         share = (0.5 - rise[above - 1]) / (rise[above] - rise[above - 1])
         found.append(Edge(float(off[first + above - 1] + FINE * share), float(off[last] - FINE * rise.sum() + FINE / 2),
                           float(off[first]), float(off[last]), float(step), float(blur)))
@@ -300,15 +307,16 @@ def choose(off, profile, noise, size, given, path):
 
 
 def edge(picture, region, count, given, path):
-    """Returns the Outline with `count` points of the edge of a region. Each point is the middle value of a parabola
-    fitted to an odd number of neighbouring normals, about two pixels apart."""
+    """Returns the Outline with `count` points of the edge of a region. Each point is the mean of an odd
+    number of neighbouring normals, about two pixels apart."""
     start = first_outline(region, path)
     size = size_of(start)
     each = max(2, int(numpy.pi * size / 2 / count)) // 2 * 2 + 1
     lines = Normals(picture, *with_normals(start, count * each), each)
     expect(not 0.25 < lines.brighter_outside() < 0.75,
            f"{path}: the particle is darker than its surroundings on one side and brighter on the other, as in relief "
-           "contrast (DIC): take the picture in bright field, phase contrast or fluorescence")
+           "contrast (DIC): take it in bright field or phase contrast; if walls or uneven light are the reason, "
+           "--background FILE, a picture without the particle, removes them")
     coarse = min(4.0 * region.step, size / 8)
     for _ in range(3):
         lines.align(-coarse, coarse, coarse / 2)
@@ -318,11 +326,16 @@ def edge(picture, region, count, given, path):
     for _ in range(4):
         lines.align(min(last.low, last.at - 3), max(first.high, first.at + 3), 2)
         edges = edges_of(off, *lines.profile(off))
-        first, last = (min(edges, key=lambda one: abs(one.at - old.at) + 1e9 * (one.step * old.step < 0), default=old)
-                       for old in (first, last))
+        first, last = (min((one for one in edges if one.step * old.step > 0), default=old,
+                           key=lambda one: abs(one.at - old.at)) for old in (first, last))
     at = (first.at + last.at) / 2
-    expect(abs(at - choice.at) < max(3, choice.first.at - choice.last.at), f"{path}: the edge is not stable")
+    expect(abs(at - choice.at) < max(3, choice.first.at - choice.last.at),
+           f"{path}: the edge that was found first is lost when the normals are aligned: --edge outer, --edge middle "
+           "or --edge inner says where the outline is")
     places = lines.points + (lines.found + at)[:, None] * lines.normals
+    expect(numpy.std(lines.found - lines.shift) < 5 * lines.expected + ROUGH,
+           f"{path}: what lies beside the particle disturbs its edge: --background FILE, a picture without the "
+           "particle, removes it, and --region LEFT UPPER RIGHT LOWER leaves it out")
     points, noise = averaged(places[:, ::-1], lines.normals[::each, ::-1], each)
     blur = (first.blur + last.blur) / 2
     return Outline(unbent(points, blur**2), noise, choice.width, choice.text, texts)
@@ -372,10 +385,10 @@ def outline(picture, path, count=None, given=None):
         size = size_of(found.points)
         if found.error <= LARGEST * size:
             break
-    expect(numpy.isfinite(found.points).all(), f"{path}: no edge was found on some rays")
     expect(found.error <= LARGEST * size,
            f"{path}: the points would have an error of {found.error:.2f} pixels, {found.error / size:.1%} of the size "
-           f"of the particle: take a sharper picture in which the particle is larger")
+           f"of the particle: take {'fewer --points, or ' if count and found.noise > found.width else ''}a sharper "
+           "picture in which the particle is larger")
     if region.weaker:
         found.enclosing.append("a weaker edge encloses it, {:.0f} x {:.0f} pixels".format(*region.weaker))
     if region.others:
