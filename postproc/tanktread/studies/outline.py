@@ -94,12 +94,13 @@ class Choice:
 @dataclasses.dataclass
 class Outline:
     """`points`: (n, 2) as (column, row). `noise`: standard error of a point by noise, `width`: error of all points by
-    the width of the edge, in pixels. `text`: which edge was taken. `enclosing`: texts about edges that enclose it."""
+    the width of the edge, in pixels. `text`: which edge was taken. `others`: texts about other edges, for example edges
+    that enclose it."""
     points: numpy.ndarray
     noise: float
     width: float
     text: str
-    enclosing: list
+    others: list
 
     error = property(lambda self: float(numpy.hypot(self.noise, self.width)), doc="the stated error of a point, pixels")
 
@@ -262,7 +263,7 @@ def rim_of(edges, size):
 
 
 def choose(off, profile, noise, size, given, path):
-    """Returns the Choice among the edges of a profile, and a list of texts about edges that enclose it. `noise`:
+    """Returns the Choice among the edges of a profile, and a list of texts about the other edges. `noise`:
     standard error of the profile. `given`: one of EDGES, or None."""
     edges, texts = edges_of(off, profile, noise), []
     expect(edges, f"{path}: no edge was found along the outline: --region LEFT UPPER RIGHT LOWER chooses the part of "
@@ -287,7 +288,8 @@ def choose(off, profile, noise, size, given, path):
     most = 0.9 * LARGEST * (size + 2 * last.at)  # a tenth is left for the noise
     widths = {one: min(float(numpy.hypot(edge.width(), edge.blur**2 / width)), most)
               for one, edge in {"outer": first, "inner": last}.items()}
-    choices = {"outer": (Choice(first, first, widths["outer"], f"the outer edge of a {name}"), texts),
+    within = texts + [f"the {name} lies inside of it: --edge middle or --edge inner takes its middle or its inner edge"]
+    choices = {"outer": (Choice(first, first, widths["outer"], f"the outer edge of a {name}"), within),
                "middle": (Choice(first, last, max(first.width(), last.width()), f"the middle of a {name}"), beyond),
                "inner": (Choice(last, last, widths["inner"], f"the inner edge of a {name}"), beyond)}
     if given:
@@ -390,9 +392,9 @@ def outline(picture, path, count=None, given=None):
            f"of the particle: take {'fewer --points, or ' if count and found.noise > found.width else ''}a sharper "
            "picture in which the particle is larger")
     if region.weaker:
-        found.enclosing.append("a weaker edge encloses it, {:.0f} x {:.0f} pixels".format(*region.weaker))
+        found.others.append("a weaker edge encloses it, {:.0f} x {:.0f} pixels".format(*region.weaker))
     if region.others:
-        found.enclosing.append(f"{region.others} other closed edges of comparable size: --region chooses one")
+        found.others.append(f"{region.others} other closed edges of comparable size: --region chooses one")
     return found
 
 
@@ -421,7 +423,7 @@ def main():
     log.info(f"{arguments.output}: {len(points)} points, each with an error of {found.error:.3f} pixels "
              f"({found.noise:.3f} by noise, {found.width:.3f} by the width of the edge)")
     log.info(f"taken: {found.text}, {width:.1f} x {height:.1f} pixels")
-    for text in found.enclosing:
+    for text in found.others:
         log.info(text)
     if arguments.overlay:
         figure, (axis,) = style.panels(None, 1, 1, 6, 6 * picture.shape[0] / picture.shape[1])
