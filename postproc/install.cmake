@@ -8,6 +8,6 @@ install(CODE [[
   endif()]])
 install(DIRECTORY ${CMAKE_CURRENT_LIST_DIR}/tanktread DESTINATION "\${tanktread_python}" PATTERN __pycache__ EXCLUDE)
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/open_in_paraview.py DESTINATION ${CMAKE_INSTALL_DATADIR}/tanktread)
-foreach(command figure sweep fit outline phases critical report read)
+foreach(command figure sweep fit outline phases critical report read surface)
   install(PROGRAMS ${CMAKE_CURRENT_LIST_DIR}/tanktread-figure DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME tanktread-${command})
 endforeach()
