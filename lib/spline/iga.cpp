@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <iomanip>
@@ -150,12 +151,12 @@ int separate_element(const Space& space, const std::vector<int>& places) {
   return -1;
 }
 
-/// If a surface is not closed, is not oriented outwards or has several parts, returns a description of this fault, for the end of an error message.
+/// If a surface is not closed, has an inverted element or has several parts, returns a description of this fault, for the end of an error message.
 /// Otherwise returns an empty text.
 ///
 /// Sides of elements are matched by their end points and midpoints. Sides without a matching side (at T-junctions or holes) must cancel as curves:
 /// the sum of the line integrals of a few smooth fields along them must be 0. If there is a hole, or an element is missing or inverted, the sum is
-/// not 0. The volume must be positive.
+/// not 0.
 std::string fault_of_closed_surface(const Space& space, const Net& net, const std::vector<int>& places) {
   constexpr int along_edge[4][3] = {{0, 1, 2}, {2, 5, 8}, {8, 7, 6}, {6, 3, 0}};
   // Element sides for which no matching side has been found yet, by the indices of their end points and midpoint. The matching side runs in the
@@ -196,14 +197,36 @@ std::string fault_of_closed_surface(const Space& space, const Net& net, const st
     return "the surface has separate parts, but a particle has one closed surface: element " + std::to_string(other) +
            " is not connected with element 0.";
 
+  return {};
+}
+
+/// If the surface folds or encloses no possible volume, returns a description of this fault, for the end of an error message. Otherwise returns an
+/// empty text.
+///
+/// At a fold the normal turns over. Therefore it must turn by less than 90 degrees between neighbouring quadrature points of an element, and the
+/// Jacobian must not vanish (1e-6 of its mean in the element; next to a pole it is 1e-2). The volume must be positive and below the volume of the box around the
+/// control points, which contains the convex hull of a surface with non-negative functions.
+std::string fault_of_shape(const Space& space, const Net& net) {
   double volume = 0;
-  for (int k = 0; k < int(space.elements.size()); ++k)
-    for (int j = 0; j < 5; ++j)
-      for (int i = 0; i < 5; ++i) {
-        const Frame f = frame(space, net, {k, gauss_x[i], gauss_x[j]});
-        volume += gauss_w[i] * gauss_w[j] * f.x.dot(f.s.cross(f.t)) / 3;
-      }
+  for (int k = 0; k < int(space.elements.size()); ++k) {
+    std::array<Vec3, 25> normals;
+    double mean = 0;
+    for (int p = 0; p < 25; ++p) {
+      const Frame f = frame(space, net, {k, gauss_x[p % 5], gauss_x[p / 5]});
+      normals[p] = f.s.cross(f.t);
+      volume += gauss_w[p % 5] * gauss_w[p / 5] * f.x.dot(normals[p]) / 3;
+      mean += normals[p].norm() / 25;
+    }
+    for (int p = 0; p < 25; ++p) {
+      const bool turned = (p % 5 && normals[p].dot(normals[p - 1]) < 0) || (p >= 5 && normals[p].dot(normals[p - 5]) < 0);
+      if (turned || !(normals[p].norm() > 1e-6 * mean))
+        return "the surface folds in element " + std::to_string(k) + ", where its normal turns over: make the file with more elements, or from a "
+               "smoother shape.";
+    }
+  }
   if (!(volume > 0)) return "the surface is inside out: all its elements must be seen counter-clockwise from outside.";
+  if (volume > (net.colwise().maxCoeff() - net.colwise().minCoeff()).prod())
+    return "the surface crosses itself, because its volume exceeds the volume of the box around it.";
   return {};
 }
 
@@ -248,9 +271,20 @@ std::vector<std::vector<Site>> largest_value_sites(const Space& space, const std
   return out;
 }
 
+/// Throws UserError if the name of the file is that of a triangulated surface, which the package converts.
+void refuse_mesh(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) { return char(std::tolower(letter)); });
+  if (std::ranges::count(std::array<const char*, 9>{".stl", ".off", ".obj", ".ply", ".vtk", ".vtu", ".msh", ".mesh", ".xyz"}, ending))
+    throw UserError("Surface file " + deck::shortened(file.string(), 80) +
+                    " is a mesh, not a spline surface (.iga): convert it with `tanktread-surface " +
+                    deck::shortened(file.filename().string(), 80) + " -o " + deck::shortened(file.stem().string(), 80) + ".iga`.");
+}
+
 }  // namespace
 
 SplineSurface read_iga(const std::filesystem::path& file) {
+  refuse_mesh(file);
   Reader in(file);
   SplineSurface out;
   int nodes = -1, n_elements = -1;
@@ -287,8 +321,8 @@ SplineSurface read_iga(const std::filesystem::path& file) {
   out.net.resize(nodes, 3);
   for (int i = 0; i < nodes; ++i) out.net.row(i) = points[i];
   const std::vector<int> places = numbered_places(out.space, out.net);
-  if (const std::string fault = fault_of_closed_surface(out.space, out.net, places); !fault.empty())
-    throw UserError("Surface file " + file.string() + ": " + fault);
+  for (const std::string& fault : {fault_of_closed_surface(out.space, out.net, places), fault_of_shape(out.space, out.net)})
+    if (!fault.empty()) throw UserError("Surface file " + file.string() + ": " + fault);
   out.space.collocation = largest_value_sites(out.space, places);
   out.space.description =
       std::to_string(n_elements) + " Bezier elements, " + std::to_string(nodes) + " control points, from " + file.filename().string();

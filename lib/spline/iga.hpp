@@ -20,7 +20,8 @@ struct SplineSurface {
 ///
 /// Throws UserError, which names the file and the line or element, if the text does not have this format, a weight is not 1, ps and pt differ or
 /// are not 2 to 6, an element has more than 64 functions, the functions of an element do not sum to 1 within 1e-6, a control point has no function,
-/// the surface is not closed or has separate parts, or one or all of its elements are inside out. Files have few digits, so the functions are divided
+/// the surface is not closed or has separate parts, one or all of its elements are inside out, an element folds, the volume exceeds the volume of
+/// the box around the control points, or the name of the file is that of a triangulated mesh. Files have few digits, so the functions are divided
 /// by their sum.
 ///
 /// Every element is a macro face of its own (positions in the element are positions in the face). Candidates for collocation points are the

@@ -166,5 +166,25 @@ TEST(Iga, InvertedElementsAndSurfacesAreRejected) {
   EXPECT_TRUE(says(refusal(file.path), "inside out"));
 }
 
+TEST(Iga, FoldsAreRejected) {
+  const TMesh mesh = cube(4);
+  const Space s = space(mesh, ExtraordinaryRule::g1);
+  Net net = ball(mesh);
+  const Scratch file;
+  net.row(60) *= 0.2;  // a deep dimple is no fold, and one far beyond the centre of its neighbours is
+  write(file.path, s, net);
+  EXPECT_EQ(refusal(file.path), "read");
+  const Element& e = s.elements[40];
+  net = ball(mesh);
+  net.row(e.points[5]).swap(net.row(e.points[6]));
+  write(file.path, s, net);
+  EXPECT_TRUE(says(refusal(file.path), "folds in element")) << refusal(file.path);
+}
+
+TEST(Iga, AMeshIsRejectedWithTheCommandThatConvertsIt) {
+  for (const char* name : {"cell.stl", "CELL.STL", "cell.off"})
+    EXPECT_TRUE(says(refusal(name), std::string("tanktread-surface ") + name)) << refusal(name);
+}
+
 }  // namespace
 }  // namespace tanktread::spline
