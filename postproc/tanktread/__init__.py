@@ -23,7 +23,8 @@
     from tanktread import figures
     figures.deformation([run]).savefig("deformation.png")
 
-Modules: `results`, `runs`, `studies` (sweep, fit, outline, phases, critical), `figures`, `report`."""
+Modules: `results`, `runs`, `studies` (sweep, fit, outline, phases, critical), `figures`, `report`,
+`shapes` (tanktread-surface)."""
 
 from .lagrange import node_order
 from .mistakes import Mistake

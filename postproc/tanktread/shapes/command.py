@@ -19,6 +19,9 @@ The surface is read by `Particle/shape: file` of a deck. The data are one of
 
 import pathlib
 
+import numpy
+from matplotlib.collections import LineCollection
+
 from ..figures import style
 from ..mistakes import Mistake, command_line, expect, log
 from ..units import factor
@@ -57,8 +60,6 @@ def fitted(points, faces, elements, path):
 
 def draw(fit, path):
     """Draws the triangles and the splines from two sides, and sections of both."""
-    import numpy
-    from matplotlib.collections import LineCollection
     axes = numpy.linalg.svd(fit.points - fit.points.mean(0), full_matrices=False)[2]
     axes[2] *= numpy.linalg.det(axes)
     middle = fit.points.mean(0)
@@ -94,16 +95,16 @@ def main():
     parser.add_argument("shape", type=pathlib.Path, help="mesh, points or harmonics, see above")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="file of the surface (default: the name of the data with .iga)")
-    parser.add_argument("--elements", type=int, metavar="N", help="elements per side of the cube mesh, 6 N^2 + 2 control "
-                        "points (default: the fewest of 8, 12, 16, 20 and 24 with a good fit)")
+    parser.add_argument("--elements", type=int, metavar="N", help="elements per side of the cube mesh, 6 N^2 + 2 "
+                        "control points (default: the fewest of 8, 12, 16, 20 and 24 with a good fit)")
     parser.add_argument("--unit", help="unit of the numbers in the data, for example um; the deck then states it")
-    parser.add_argument("--degree", type=int, default=8, help="largest degree of the harmonics that are fitted to points "
-                        "(default: %(default)s)")
+    parser.add_argument("--degree", type=int, default=8, help="largest degree of the harmonics that are fitted to "
+                        "points (default: %(default)s)")
     parser.add_argument("--figure", type=pathlib.Path, metavar="FILE",
                         help="picture of mesh and splines (default: the name of the output with .png)")
     words = parser.parse_args()
     expect(words.elements is None or 3 <= words.elements <= 64, "--elements must be from 3 to 64")
-    expect(words.unit is None or factor(words.unit, "m"), f"--unit {words.unit} is no unit of length; examples: um, nm, mm")
+    expect(words.unit is None or factor(words.unit, "m"), f"--unit {words.unit} is no unit of length; write um or nm")
     output = words.output or words.shape.with_suffix(".iga")
     expect(output.suffix == ".iga", f"the name of the output ends in .iga, but it is {output}")
     if words.shape.suffix.lower() in TABLES:

@@ -16,7 +16,8 @@ MISFIT = 0.05       # root mean square distance of points from harmonics, divide
 def harmonic(degree, order, direction):
     """Returns the real spherical harmonic Y_lm at unit vectors (n, 3), as an array (n,)."""
     m = abs(order)
-    scale = math.sqrt((2 * degree + 1) / (4 * math.pi) * math.factorial(degree - m) / math.factorial(degree + m)) * (-1)**m
+    ratio = math.factorial(degree - m) / math.factorial(degree + m)
+    scale = math.sqrt((2 * degree + 1) / (4 * math.pi) * ratio) * (-1)**m
     azimuth = numpy.arctan2(direction[:, 1], direction[:, 0])
     turn = 1 if m == 0 else math.sqrt(2) * (numpy.cos(m * azimuth) if order > 0 else numpy.sin(m * azimuth))
     return scale * lpmv(m, degree, direction[:, 2]) * turn
@@ -45,8 +46,8 @@ def fitted(points, degree, path):
     expect(misfit < MISFIT * distance.mean(), f"{path}: no surface that each ray from the centre meets once fits the "
            f"points, they are off by {misfit / distance.mean():.0%} of the radius: raise --degree, or triangulate the "
            "points and give the mesh")
-    expect(gap < math.pi / degree, f"{path}: a cone of {math.degrees(gap):.0f} degrees about the centre holds no points, "
-           "more than the harmonics span: lower --degree, or triangulate the points and give the mesh")
+    expect(gap < math.pi / degree, f"{path}: a cone of {math.degrees(gap):.0f} degrees about the centre holds no "
+           "points, more than the harmonics span: lower --degree, or triangulate the points and give the mesh")
     log.info(f"{len(points)} points, root mean square distance from the harmonics {misfit:.1e}")
     return dict(zip(pairs, values)), center
 

@@ -126,6 +126,6 @@ def relaxed(points, triangles, places, iterations=200, tolerance=1e-4):
 def on_sphere(points, triangles, path):
     """Returns places (n, 3) of the vertices on the unit sphere, so that no spherical triangle is flipped."""
     places = tutte(points, triangles)
-    expect(determinants(places, triangles).min() > 0, f"{path}: the map of the triangles to the sphere has folds; remesh "
-           "the surface with triangles of similar size")
+    expect(determinants(places, triangles).min() > 0, f"{path}: the map of the triangles to the sphere has folds; "
+           "remesh the surface with triangles of similar size")
     return relaxed(points, triangles, places)

@@ -146,7 +146,7 @@ def oriented(points, triangles, path):
     turned = numpy.where(sign[:, None] > 0, triangles, triangles[:, ::-1])
     if volume(points, turned) < 0:
         turned = turned[:, ::-1]
-    changed = int((turned[:, 1:2] == triangles[:, 1:2]).sum() - (numpy.roll(turned, 0) == triangles).all(1).sum())
+    changed = int((turned != triangles).any(1).sum())
     if changed == count:
         log.info("turned: all triangles, the surface was inside out")
     elif changed:
@@ -199,7 +199,8 @@ def near_pairs(points, reach, middles, radii):
         two = which[numpy.concatenate([*map(numpy.asarray, lists), []]).astype(int)]
         found.append([one, two])
     one, two = numpy.concatenate(found, axis=1)
-    close = numpy.linalg.norm(points[one] - middles[two], axis=1) <= (reach + numpy.zeros(len(points)))[one] + radii[two]
+    reach = numpy.broadcast_to(reach, len(points))
+    close = numpy.linalg.norm(points[one] - middles[two], axis=1) <= reach[one] + radii[two]
     return one[close], two[close]
 
 
@@ -211,7 +212,10 @@ def balls(corners):
 
 def crossings(points, triangles):
     """Returns the number of pairs of a side and a triangle without a common vertex that cross each other. Two triangles
-    of a surface cross exactly if there is such a pair, except for touching. The pairs are found by balls around both."""
+    of a surface cross if and only if there is such a pair, except for touching. Balls around both find the pairs. The
+    vertices are moved by a distance too small for a merger, so that sides of a symmetric surface do not pass exactly
+    through other sides."""
+    points = points + 0.1 * SAME * numpy.ptp(points, axis=0).max() * numpy.random.default_rng(0).normal(size=points.shape)
     sides = numpy.unique(numpy.sort(edges(triangles), axis=1), axis=0)
     ends, corners = points[sides], points[triangles]
     one, two = near_pairs(ends.mean(1), numpy.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / 2, *balls(corners))
