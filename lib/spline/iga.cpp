@@ -203,9 +203,9 @@ std::string fault_of_closed_surface(const Space& space, const Net& net, const st
 /// If the surface folds or encloses no possible volume, returns a description of this fault, for the end of an error message. Otherwise returns an
 /// empty text.
 ///
-/// At a fold the normal turns over. Therefore it must turn by less than 90 degrees between neighbouring quadrature points of an element, and the
-/// Jacobian must not vanish (1e-6 of its mean in the element; next to a pole it is 1e-2). The volume must be positive and below the volume of the box around the
-/// control points, which contains the convex hull of a surface with non-negative functions.
+/// At a fold the normal turns over. Therefore it must turn by less than 120 degrees between neighbouring quadrature points of an element (a sharp edge
+/// turns it by up to 90), and the Jacobian must not vanish (1e-6 of its mean in the element; next to a pole it is 1e-2). The volume must be positive
+/// and below the volume of the box around the control points, which contains the convex hull of a surface with non-negative functions.
 std::string fault_of_shape(const Space& space, const Net& net) {
   double volume = 0;
   for (int k = 0; k < int(space.elements.size()); ++k) {
@@ -218,7 +218,8 @@ std::string fault_of_shape(const Space& space, const Net& net) {
       mean += normals[p].norm() / 25;
     }
     for (int p = 0; p < 25; ++p) {
-      const bool turned = (p % 5 && normals[p].dot(normals[p - 1]) < 0) || (p >= 5 && normals[p].dot(normals[p - 5]) < 0);
+      const auto turns = [&](int q) { return normals[p].dot(normals[q]) < -0.5 * normals[p].norm() * normals[q].norm(); };
+      const bool turned = (p % 5 && turns(p - 1)) || (p >= 5 && turns(p - 5));
       if (turned || !(normals[p].norm() > 1e-6 * mean))
         return "the surface folds in element " + std::to_string(k) + ", where its normal turns over: make the file with more elements, or from a "
                "smoother shape.";

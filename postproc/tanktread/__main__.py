@@ -8,8 +8,8 @@ from .mistakes import answer
 
 COMMANDS = {"figure": ("figures", "command"), "sweep": ("studies.sweep", "main"), "fit": ("studies.fit", "main"),
             "outline": ("studies.outline", "main"), "phases": ("studies.phases", "main"),
-            "critical": ("studies.critical", "main"), "report": ("report", "main"), "surface": ("shapes.command", "main"),
-            "read": ("read", "main")}
+            "critical": ("studies.critical", "main"), "report": ("report", "main"), "read": ("read", "main"),
+            "surface": ("shapes.command", "main")}
 
 
 def main():

@@ -38,7 +38,8 @@ def faults(report, count):
     """Returns what is wrong with a fit to `count` triangles, as a list of texts."""
     change = CHANGE * max(1, 1000 / count)  # facets have more area than a smooth surface, by a multiple of their number
     return [text for wrong, text in (
-        (report.rms > RMS * report.size, f"the root mean square distance is {report.rms / report.size:.3f} radii"),
+        (report.rms > RMS * report.size + report.depth,
+         f"the root mean square distance is {report.rms / report.size:.3f} radii"),
         (report.largest > LARGEST * report.size, f"the largest distance is {report.largest / report.size:.2f} radii"),
         (abs(report.volume_error) > change, f"the volume differs by {report.volume_error:.1e}"),
         (abs(report.area_error) > change, f"the area differs by {report.area_error:.1e}"),
@@ -58,36 +59,36 @@ def fitted(points, faces, elements, path):
     raise Mistake(f"{path}: {' and '.join(wrong)}, so that the splines do not represent the surface: {remedy}")
 
 
-def draw(fit, path):
-    """Draws the triangles and the splines from two sides, and sections of both."""
-    axes = numpy.linalg.svd(fit.points - fit.points.mean(0), full_matrices=False)[2]
-    axes[2] *= numpy.linalg.det(axes)
+def section(points, faces, axes, k):
+    """Returns the lines (n, 2, 3), in the coordinates along `axes` (3, 3), in which the plane through the origin with
+    the normal axes[k] cuts triangles."""
+    corners = (points @ axes.T)[faces]
+    corners[..., k] += 1e-9 * numpy.ptp(corners)  # no vertex is in the plane
+    height = corners[..., k, None]
+    after = numpy.roll(corners, -1, axis=1)
+    cut = (height > 0) != (after[..., k, None] > 0)
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        ends = corners + height / (height - after[..., k, None]) * (after - corners)
+    crossed = cut.sum(1)[:, 0] == 2
+    return ends[crossed][cut[crossed][..., 0]].reshape(-1, 2, 3)
+
+
+def drawn(fit):
+    """Returns a figure of the sections of mesh and splines by the three planes of the principal axes."""
     middle = fit.points.mean(0)
+    axes = numpy.linalg.svd(fit.points - middle, full_matrices=False)[2]
     along = numpy.linspace(0, 1, 13)
-    smooth = fit.surface.table(along) @ fit.nodes
-    cells = fit.cells(len(along))
+    smooth = fit.surface.table(along) @ fit.nodes - middle
     figure, panels = style.panels(None, 1, 3, 9, 3.4)
     for axis, (i, j) in zip(panels, ((0, 1), (0, 2), (1, 2))):
-        k = 3 - i - j
-        for points, faces, colour, width in ((fit.points, fit.triangles, style.FAINT, 2.2),
-                                             (smooth, cells, style.RUNS[0], 0.9)):
-            turned = (points - middle) @ axes.T
-            corners = turned[faces]
-            height = corners[..., k] + 1e-9 * numpy.ptp(turned)
-            ends = []
-            for a in range(3):
-                b = (a + 1) % 3
-                share = height[:, a] / (height[:, a] - height[:, b] + (height[:, a] == height[:, b]))
-                point = corners[:, a] + share[:, None] * (corners[:, b] - corners[:, a])
-                ends.append(numpy.where(((height[:, a] > 0) != (height[:, b] > 0))[:, None], point, numpy.nan))
-            ends = numpy.stack(ends, 1)
-            cut = numpy.isfinite(ends[..., 0]).sum(1) == 2
-            lines = ends[cut][numpy.isfinite(ends[cut][..., 0])].reshape(-1, 2, 3)[..., [i, j]]
-            axis.add_collection(LineCollection(lines, colors=colour, linewidths=width))
+        for points, faces, look in (
+                (fit.points - middle, fit.triangles, {"colors": style.FAINT, "linewidths": 3, "label": "mesh"}),
+                (smooth, fit.cells(len(along)), {"colors": style.RUNS[0], "linewidths": 1, "label": "splines"})):
+            axis.add_collection(LineCollection(section(points, faces, axes, 3 - i - j)[..., [i, j]], **look))
         axis.autoscale()
         axis.set(aspect="equal", xlabel=f"principal axis {i + 1}", ylabel=f"principal axis {j + 1}")
-    panels[0].set_title("sections: mesh (grey), splines (blue)")
-    style.save(figure, path)
+    panels[0].legend(loc="center")
+    return figure
 
 
 def main():
@@ -120,7 +121,7 @@ def main():
     log.info(f"splines: {len(fit.nodes)} control points, volume {report.volume:.6g}, area {report.area:.6g}")
     log.info(f"distance: root mean square {report.rms:.1e}{unit}, largest {report.largest:.1e}{unit}")
     log.info(f"smallest Jacobian divided by its mean: {report.jacobian:.2f}")
-    draw(fit, words.figure or output.with_suffix(".png"))
+    style.save(style.draw(drawn, fit), words.figure or output.with_suffix(".png"))
     if words.unit:
         log.info(f"Units: {{length: 1 {words.unit}}}")
     log.info(f"Particle: {{shape: file, file: {output}}}")

@@ -52,6 +52,7 @@ class Report:
     """How a spline surface differs from a triangulated one. Lengths in the unit of the file."""
     rms: float       # root mean square distance
     largest: float   # largest distance, in both directions
+    depth: float     # depth of the facets of the mesh, which bounds the root mean square distance from below
     size: float      # radius of the sphere with the volume
     volume: float
     volume_error: float  # relative, splines minus mesh
@@ -120,12 +121,14 @@ class Fit:
         along = numpy.linspace(0, 1, 2 * POINTS + 1)
         back = meshes.nearest(self.points, (self.surface.table(along) @ self.nodes)[self.cells(len(along))])[1]
         volume, area = meshes.volume(self.points, self.triangles), meshes.area(self.points, self.triangles)
+        change, distance = meshes.bends(self.points, self.triangles)
         return Report(
             float(numpy.sqrt(weight @ away**2 / weight.sum())),
             float(max(away.max(), numpy.linalg.norm(back - self.points, axis=1).max())),
-            (3 * volume / 4 / numpy.pi)**(1 / 3), rule.volume(self.nodes), rule.volume(self.nodes) / volume - 1,
+            float((change * distance).mean() / 4), (3 * volume / 4 / numpy.pi)**(1 / 3),
+            rule.volume(self.nodes), rule.volume(self.nodes) / volume - 1,
             rule.area(self.nodes), rule.area(self.nodes) / area - 1,
-            float((sign * length).min() / (fine.weights @ length * 1 / fine.weights.sum())))
+            float((sign * length).min() / (weight.sum() / fine.weights.sum())))
 
     def cells(self, n):
         """Returns triangles (k, 3) between points on the grid of n along n parameters in all elements."""

@@ -4,14 +4,33 @@
    vertex at the mean of its neighbours, has no folds. The stereographic projection takes it to the sphere.
 2. The symmetric Dirichlet energy (Smith and Schaefer, Bijective parameterization with free boundaries, 2015) is
    minimised from there. It measures the change of lengths of the triangles, in both directions, and is infinite where
-   a triangle collapses, so that no triangle is turned over and all areas become as equal as the shape allows."""
+   a triangle collapses, so that no triangle is turned over and all areas become as equal as the shape allows. Before,
+   triangles are scaled by their curvature, so that tips and rims get more elements.
+
+Measured with 5,120 triangles and 8 elements per side: root mean square distances of Tutte's map alone, which is nearly
+conformal, were 0.070 radii for a cup, 0.16 for a bottle (both fold, as their tips get no elements), 6.4e-4 for a red
+cell. After the relaxation they were 0.012, 0.007 and 5.2e-4. Grading lowers 8.4e-3 of a sickle to 2.5e-3."""
 
 import numpy
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from ..mistakes import expect
-from .triangles import edges, normals
+from .triangles import bends, edges, neighbours, normals
+
+GRADING = 0.2  # weight of (curvature x radius)^2; 0.1 and 0.3 give the same distances within 20 %
+
+
+def grading(points, triangles):
+    """Returns factors (m,) for the areas of the triangles: sqrt(1 + GRADING (curvature x radius)^2). The radius is that
+    of the sphere with the area. The squared curvature is averaged over neighbouring triangles, as facets are noisy."""
+    change, distance = bends(points, triangles)
+    square = ((change / distance)**2).mean(1)
+    other = neighbours(triangles)
+    for _ in range(6):
+        square = (square + square[other].sum(1)) / 4
+    area = numpy.linalg.norm(normals(points[triangles]), axis=1).sum() / 2
+    return numpy.sqrt(1 + GRADING * square * area / (4 * numpy.pi))
 
 
 def tutte(points, triangles):
@@ -47,18 +66,18 @@ def determinants(places, triangles):
 
 class Energy:
     """The symmetric Dirichlet energy of a map of triangles in space to spherical triangles, divided by the area. The
-    surface is scaled to the area of the unit sphere. Areas on the sphere are half of the triple products."""
+    graded surface is scaled to the area of the unit sphere. Areas on the sphere are half of the triple products."""
 
     def __init__(self, points, triangles):
         self.triangles, self.count = triangles, len(points)
         corners = points[triangles]
         twice = numpy.linalg.norm(normals(corners), axis=1)
-        scale = 8 * numpy.pi / twice.sum()
+        factor = grading(points, triangles)
         # triangles that are almost lines count as triangles with at least 1e-3 of the area that their sides allow
         sides = numpy.roll(corners, -1, axis=1) - corners
         squares = (sides**2).sum(2)
         twice = numpy.maximum(twice, 1e-3 * squares.max(1))
-        self.twice = scale * twice
+        self.twice = 8 * numpy.pi * factor * twice / (factor @ twice)
         self.weight = self.twice / self.twice.sum()
         # cotangent of the angle opposite to each side
         self.cotangent = (squares.sum(1, keepdims=True) - 2 * squares) / (2 * twice[:, None])

@@ -103,6 +103,17 @@ def area(points, triangles):
     return float(numpy.linalg.norm(normals(points[triangles]), axis=1).sum() / 2)
 
 
+def bends(points, triangles):
+    """Returns for the three sides of each triangle the change of the unit normal across it, |n1 - n2|, and the distance
+    of the centres of the two triangles: two arrays (m, 3)."""
+    corners, other = points[triangles], neighbours(triangles)
+    normal = normals(corners)
+    normal /= numpy.maximum(numpy.linalg.norm(normal, axis=1, keepdims=True), numpy.finfo(float).tiny)
+    middles = corners.mean(1)
+    return (numpy.linalg.norm(normal[:, None] - normal[other], axis=2),
+            numpy.linalg.norm(middles[:, None] - middles[other], axis=2))
+
+
 def expect_closed(triangles, path):
     """Raises Mistake unless each side belongs to two triangles and the triangles at each vertex are one fan."""
     sides, counts = numpy.unique(numpy.sort(edges(triangles), axis=1), axis=0, return_counts=True)
@@ -215,7 +226,8 @@ def crossings(points, triangles):
     of a surface cross if and only if there is such a pair, except for touching. Balls around both find the pairs. The
     vertices are moved by a distance too small for a merger, so that sides of a symmetric surface do not pass exactly
     through other sides."""
-    points = points + 0.1 * SAME * numpy.ptp(points, axis=0).max() * numpy.random.default_rng(0).normal(size=points.shape)
+    move = numpy.random.default_rng(0).normal(size=points.shape)
+    points = points + 0.1 * SAME * numpy.ptp(points, axis=0).max() * move
     sides = numpy.unique(numpy.sort(edges(triangles), axis=1), axis=0)
     ends, corners = points[sides], points[triangles]
     one, two = near_pairs(ends.mean(1), numpy.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / 2, *balls(corners))
