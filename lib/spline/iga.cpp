@@ -203,7 +203,7 @@ std::string fault_of_closed_surface(const Space& space, const Net& net, const st
 /// If the surface folds or encloses no possible volume, returns a description of this fault, for the end of an error message. Otherwise returns an
 /// empty text.
 ///
-/// At a fold the normal turns over. Therefore it must turn by less than 120 degrees between neighbouring quadrature points of an element (a sharp edge
+/// At a fold the normal turns over. Therefore it must turn by less than 120 degrees between neighbouring quadrature points of an element (an edge
 /// turns it by up to 90), and the Jacobian must not vanish (1e-6 of its mean in the element; next to a pole it is 1e-2). The volume must be positive
 /// and below the volume of the box around the control points, which contains the convex hull of a surface with non-negative functions.
 std::string fault_of_shape(const Space& space, const Net& net) {

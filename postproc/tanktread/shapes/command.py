@@ -30,7 +30,7 @@ from .fit import Fit
 
 ELEMENTS = 8, 12, 16, 20, 24  # tried in this order
 # Limits of a good fit. Lengths are relative to the radius of the sphere with the volume.
-RMS, LARGEST, CHANGE, JACOBIAN = 0.01, 0.1, 1e-3, 0.05
+RMS, LARGEST, CHANGE, JACOBIAN, WITHIN = 0.01, 0.1, 1e-3, 0.05, 0.1
 TABLES = ".csv", ".txt", ".dat", ".tsv", ".xyz"
 
 
@@ -43,6 +43,7 @@ def faults(report, count):
         (report.largest > LARGEST * report.size, f"the largest distance is {report.largest / report.size:.2f} radii"),
         (abs(report.volume_error) > change, f"the volume differs by {report.volume_error:.1e}"),
         (abs(report.area_error) > change, f"the area differs by {report.area_error:.1e}"),
+        (report.within < WITHIN, "the surface turns by about 90 degrees within an element"),
         (report.jacobian < JACOBIAN, f"the smallest Jacobian is {report.jacobian:.3f} of its mean")) if wrong]
 
 

@@ -59,6 +59,8 @@ class Report:
     area: float
     area_error: float
     jacobian: float  # smallest Jacobian, divided by its mean; negative at a fold
+    within: float    # smallest Jacobian along the mean normal of its element, divided by its mean in the element; the
+    # program (surface/quality.hpp) refuses elements where it is negative, which turn by more than 90 degrees
 
 
 class Fit:
@@ -94,7 +96,7 @@ class Fit:
         distance is least for a smooth surface whose area is smaller than that of the facets by a few 1e-3."""
         wanted = numpy.array([meshes.volume(self.points, self.triangles), meshes.area(self.points, self.triangles)])
         rule = self.rule
-        for _ in range(3):
+        for _ in range(6):  # Newton steps
             normal = rule.normal(self.nodes)
             length = numpy.linalg.norm(normal, axis=1)
             unit, ds, dt = normal / length[:, None], rule.s @ self.nodes, rule.t @ self.nodes
@@ -128,7 +130,13 @@ class Fit:
             float((change * distance).mean() / 4), (3 * volume / 4 / numpy.pi)**(1 / 3),
             rule.volume(self.nodes), rule.volume(self.nodes) / volume - 1,
             rule.area(self.nodes), rule.area(self.nodes) / area - 1,
-            float((sign * length).min() / (weight.sum() / fine.weights.sum())))
+            float((sign * length).min() / (weight.sum() / fine.weights.sum())), self.within())
+
+    def within(self):
+        normal = self.rule.normal(self.nodes).reshape(len(self.surface.elements), -1, 3)
+        mean = normal.sum(1, keepdims=True)
+        along = (normal * mean).sum(2) / numpy.linalg.norm(mean, axis=2)
+        return float((along / numpy.linalg.norm(normal, axis=2).mean(1, keepdims=True)).min())
 
     def cells(self, n):
         """Returns triangles (k, 3) between points on the grid of n along n parameters in all elements."""
