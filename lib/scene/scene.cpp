@@ -56,6 +56,7 @@ void list_idle_keys(Scene& scene) {
   add(scene.solvers.tube != "schur" && scene.tube.present && tractions && scene.in_system(), "Solvers/tube",
       "with the tractions on rigid bodies as unknowns");
   add(scene.only_solids && scene.output.power_balance, "Output/power balance", "in a scene of posts only");
+  add(scene.output.view && (scene.only_solids || scene.is_resistance_problem()), "Output/view direction", "without a moving particle");
   add(scene.only_solids && !scene.series.empty(), "Output/series", "in a scene of posts only");
   add(scene.tube.present && !surface::properties(scene.tube.kind()).may_iterate && scene.solvers.wall == "iterative", "Solvers/wall `iterative`",
       "on the wall of a straight tube, which is always factored");

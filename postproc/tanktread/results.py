@@ -15,6 +15,7 @@ RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic":
 # Series of one particle; the others belong to the scene. A deck with several particles states it by /series/<particle>.
 OF_PARTICLE = re.compile(
     r"area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|intrinsic_viscosity|length_x\d|phase|"
+    r"(projected|hull)_area|(hull_)?circularity|"
     r"gap|(local|rms)_area_change|n_control_points|(normal|shape)_velocity|smallest_tension|stresslet_\d\d|"
     r"tank_treading_\w+|taylor_\w+|((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|"
     r"\w*concentration|surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|(fluid|membrane)_dissipation|"

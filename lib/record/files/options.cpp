@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/errors.hpp"
 #include "deck/section.hpp"
 
 namespace tanktread::output {
@@ -23,6 +24,11 @@ void Options::declare(deck::Section& section) {
               "the power balance, which measures the error of the velocities (6.13). Each row of the series then costs an evaluation of "
               "the boundary integrals at four points per element. Available for deformable particles, also together with rigid bodies, "
               "except for a flow of your own (C++) whose gradient is not uniform, and for `parabolic` flow in a Domain without two plates");
+  section.key("view direction", view, deck::any(), "1",
+              "direction in which each moving particle is seen: three numbers, whose common factor has no effect. The series then contain area and "
+              "circularity of the particle's outline in this direction and of the convex hull of the outline: `projected_area`, `circularity`, "
+              "`hull_area`, `hull_circularity`. No such series if not given");
+  if (view && !(view->norm() > 0)) throw UserError("Output/view direction must have a direction, but is [0, 0, 0]: give, for example, [0, 1, 0].");
   section.key("surface text", surface_text,
               "whether the final surface is written in Bezier-extraction format to the file `surface.iga`. After a run of one particle, another "
               "deck can read this file by Particle/file");

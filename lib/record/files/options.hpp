@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/timing.hpp"
+#include "base/types.hpp"
 #include "deck/forward.hpp"
 
 namespace tanktread::output {
@@ -17,6 +18,7 @@ struct Options {
   std::optional<double> wall_clock_limit;  ///< seconds of real time after which the run stops with a checkpoint; empty: no limit
 
   bool power_balance = false;              ///< true if each row of the series holds the power balance
+  std::optional<Vec3> view;                ///< direction in which the outlines of particles are measured, of any length; empty: no such series
   bool surface_text = false;               ///< true if the final surface is written as Bezier-extraction text, `surface.iga`
 
   /// Reduces `wall_clock_limit` by the seconds since `start`, and to at most `most`, for one of several runs that have the limit in common.

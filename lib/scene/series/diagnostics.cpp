@@ -89,6 +89,15 @@ void ParticleRow::add_moving(const ParticleScene& particle_scene, Columns& to) c
   add_stresslet(stresslet, to);
   to.add(shape.lengths, axes_of_space, {"length_", "length", "extent of the particle along #: largest minus smallest coordinate of its "
                                                              "surface"});
+  if (to.when(particle_scene.output.view.has_value())) {
+    to.add(silhouette.area, {"projected_area", "length^2",
+                             "area of the particle as seen in the direction Output/view direction: the area inside its outline, which is the outer "
+                             "boundary of its projection"});
+    to.add(silhouette.circularity, {"circularity", "1", "circularity 4 pi A/P^2 of the outline of `projected_area`, with its area A and perimeter P; "
+                                                        "1 for a circle"});
+    to.add(silhouette.hull_area, {"hull_area", "length^2", "area of the convex hull of the outline of `projected_area`"});
+    to.add(silhouette.hull_circularity, {"hull_circularity", "1", "circularity 4 pi A/P^2 of the convex hull of the outline of `projected_area`"});
+  }
   add_points(n_points, to);
   add_velocity(velocity, to);
   if (to.when(has_intrinsic_viscosity(particle_scene)))
@@ -269,6 +278,7 @@ RigidRow rigid_row(const ParticleScene& particle_scene, const Body& body, const 
   now.measures = geometry.measures(x);
   now.shape = deformation(geometry, body.plane, x, now.measures, ranks);
   now.axes = surface::principal_axes(now.measures);
+  if (const auto& view = particle_scene.output.view) now.silhouette = surface::silhouette(geometry.bezier(), x, *view);
   now.stresslet = stresslet;
   now.centre = now.measures.centroid;
   now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
@@ -328,6 +338,7 @@ DeformingRow deforming_row(const ParticleScene& particle_scene, const Body& body
   now.measures = surface::Geometry::measures(x, moments);
   now.shape = deformation(geometry, body.plane, x, now.measures, ranks);
   now.axes = surface::principal_axes(now.measures);
+  if (const auto& view = particle_scene.output.view) now.silhouette = surface::silhouette(geometry.bezier(), x, *view);
   now.refit_error = body.refit_error;
   now.energy = sum(energy);
   now.tension = {std::ranges::min(of_ranks, {}, value(0))[0], sum(compressed) / sum(area), largest(1),

@@ -10,6 +10,7 @@
 #include "membrane/membrane.hpp"
 #include "scene/body.hpp"
 #include "surface/geometry.hpp"
+#include "surface/silhouette.hpp"
 #include "surface/transport.hpp"
 
 namespace tanktread {
@@ -22,6 +23,7 @@ struct ParticleRow {
   int n_points = 0;
   surface::Measures measures{not_set, not_set, Vec3::Constant(not_set), Mat3::Constant(not_set)};
   surface::Deformation shape{not_set, not_set, not_set, Vec3::Constant(not_set)};
+  surface::Silhouette silhouette{not_set, not_set, not_set, not_set};  ///< set only if Output/view direction is given
   surface::PrincipalAxes axes{.lengths = Vec3::Constant(not_set)};
   surface::TankTreading treading{not_set, not_set};
   Mat3 stresslet = Mat3::Constant(not_set);

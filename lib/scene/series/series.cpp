@@ -16,8 +16,8 @@ namespace {
 /// columns of posts, `<post>/post_force_x1`, by the part after the name of the post.
 constexpr const char* order =
     "time time_step taylor_inertia taylor_surface inclination volume volume_error refit_error area energy membrane_dissipation smallest_tension "
-    "compressed_area local_area_change rms_area_change flow_power force_power fluid_dissipation power_residual stresslet_ length_ normal_velocity "
-    "shape_velocity "
+    "compressed_area local_area_change rms_area_change flow_power force_power fluid_dissipation power_residual stresslet_ length_ projected_area "
+    "circularity hull_area hull_circularity normal_velocity shape_velocity "
     "n_control_points step_error rejected_steps iterations evaluations assemblies solver_iterations velocity_iterations wall_seconds centroid_ "
     "center_ velocity_ angular_velocity_ quaternion_ axis_ axis_1_ tank_treading_velocity tank_treading_frequency phase intrinsic_viscosity "
     "migration_velocity disturbed_pressure_drop gap flow_rate channel_pressure_drop channel_extra_pressure_drop nearest_to_wall_ particle_at_wall "

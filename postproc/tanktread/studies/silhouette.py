@@ -17,6 +17,7 @@ FINER = 6        # points of a fold per triangle of the samples: the chords of t
 INSIDE = 1e-3    # a point is evaluated this far, in local coordinates, inside its cell, because the normal is not defined
                  # at a pole. An error d of the position of a fold moves its image by d^2 only
 SAME = 1e-7      # points of two cells whose distance is a smaller fraction of the size are one point
+SLIT = 2e-4      # narrowest slit in an outline, as a fraction of the size
 TRIED = 30       # points of the boundary of a face from which a point inside it is looked for
 SEEN = 1e-3      # a camera does not see gaps that are narrower than 2 SEEN of the size
 
@@ -202,14 +203,30 @@ def _envelope(points, segments, triangles):
     """Returns the Outline of the outer boundary of curves. Raises ValueError if a camera sees more than one curve."""
     faces = _faces(*_split(points, segments))
     outer = sorted((polygon for polygon in faces if polygon[1] < 0), key=lambda polygon: polygon[1])
-    outline = Outline(outer[0][0][::-1])
-    size = numpy.ptp(outline.points, axis=0).max()
+    size = numpy.ptp(outer[0][0], axis=0).max()
+    outline = Outline(_without_slits(outer[0][0][::-1], SLIT * size))
     if not all(outline.contains(polygon[:1])[0] for polygon, _ in outer[1:]):
         raise ValueError("the outline is more than one closed curve: surfaces are seen side by side")
     for polygon, area in faces:
         if area > 0 and (point := _inner(Outline(polygon), SEEN * size)) is not None and not _covered(point, triangles):
             raise ValueError("the outline is more than one closed curve: the background is seen through a gap in the shape")
     return outline
+
+
+def _without_slits(points, width):
+    """Returns the polygon without slits that are narrower than `width`. They arise where two arcs nearly coincide. Removes
+    the tip of a slit, where the polygon turns back, until its sides are `width` apart."""
+    kept = []
+    for x, y in [*points.tolist(), *points[:1].tolist()]:
+        while len(kept) > 1:
+            (before_x, before_y), (tip_x, tip_y) = kept[-2:]
+            a, b = complex(tip_x - before_x, tip_y - before_y), complex(x - tip_x, y - tip_y)
+            turn, longer = a.conjugate() * b, max(abs(a), abs(b))
+            if turn.real > -0.8 * abs(a) * abs(b) or abs(turn.imag) > width * longer:  # 0.8: a turn by 143 degrees
+                break
+            kept.pop()
+        kept.append((x, y))
+    return numpy.array(kept[:-1])
 
 
 def _inner(face, least):
