@@ -31,7 +31,7 @@ from tanktread.studies import fit_data, fit_model, outline, silhouette
 DECK = INPUTS / "studies/capsule_in_tube.yaml"
 LAWS, SPANS, FINE, SPEEDS = scenes_of(__file__).values()
 MODULUS, RADIUS, POINTS, NODES = 20.0, 0.8, 60, 11
-ANGLES = 2 * numpy.pi * numpy.arange(160) / 160
+ANGLES = 2 * numpy.pi * numpy.arange(1600) / 1600  # the chords of a polygon lie 2e-6 of the radius inside its circle
 
 
 def profile(study, settings):

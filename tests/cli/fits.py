@@ -12,11 +12,14 @@ from unittest import mock
 import numpy
 import yaml
 
+from matplotlib import path
+from scipy import spatial
 from harness import PROGRAM, SOURCE, check, close, deck, main, package
 
 os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
+from tanktread import lagrange
 from tanktread.mistakes import Mistake
 from tanktread.studies import fit, fit_data, fit_report, phases, silhouette, sweep
 
@@ -162,6 +165,90 @@ def the_outline_of_a_shape_is_exact():
     check(abs(curve.distances(turned)).max() < 2e-4, abs(curve.distances(turned)).max())
     close(abs(curve.distances(1.01 * turned)).max(), 0.012, 3e-4, "a distance outside")
     check(curve.distances(0.9 * turned).max() < 0, "a point inside is outside")
+
+
+def _shapes():
+    """Returns {name: (map of points of the unit sphere (..., 3), axis of view)} of shapes with hidden hollows, corners and bends."""
+    def parachute(x):
+        return numpy.stack([0.25 * x[..., 0] - 0.9 * (x[..., 1]**2 + x[..., 2]**2), x[..., 1], x[..., 2]], -1)
+
+    def hollow(x):
+        depth = numpy.where(x[..., 0] < 0, numpy.exp(-(x[..., 1]**2 + x[..., 2]**2) / 0.3), 0)
+        return numpy.stack([x[..., 0] * (1 - depth), x[..., 1], x[..., 2]], -1)
+
+    def red_cell(x):
+        square = x[..., 0]**2 + x[..., 1]**2
+        return numpy.stack([x[..., 0], x[..., 1], x[..., 2] * (0.10 + 1.0 * square - 0.56 * square**2)], -1)
+
+    def s_shaped(x):
+        return numpy.stack([3 * x[..., 0], 0.45 * x[..., 1], 0.45 * x[..., 2] + 1.2 * numpy.sin(4.2 * x[..., 0])], -1)
+
+    return {"hollow": (hollow, 1), "parachute": (parachute, 1), "red cell along its rim": (red_cell, 0), "S": (s_shaped, 1), "S from above": (s_shaped, 2)}
+
+
+def _bent(angle):
+    """Returns the map of the unit sphere to a rod of radius 0.2, bent around x2 by an angle, with a rise of its axis that separates its ends."""
+    def bent(x):
+        turn, radius = x[..., 0] * angle / 2, 1 + 0.2 * x[..., 2]
+        return numpy.stack([radius * numpy.sin(turn), 0.2 * x[..., 1] + 0.15 * turn, radius * numpy.cos(turn)], -1)
+    return bent
+
+
+def _sphere(n=4, p=4):
+    """Returns the nodes (cells, (p + 1)^2, 3) of a unit sphere, projected from a cube with n cells per side."""
+    i, j = numpy.array(lagrange.node_order(p)).T / p
+    u, v = (numpy.tan(numpy.pi / 4 * (2 * (numpy.arange(n)[:, None] + one) / n - 1)) for one in (i, j))
+    side = numpy.stack(numpy.broadcast_arrays(1.0, u[:, None], v[None]), -1).reshape(-1, len(i), 3)
+    sides = [numpy.roll(sign * side * [1, 1, sign], k, axis=-1) for k in range(3) for sign in (1, -1)]
+    return (lambda x: x / numpy.linalg.norm(x, axis=-1, keepdims=True))(numpy.concatenate(sides))
+
+
+def the_outline_is_the_outer_envelope_of_the_projected_points():
+    """Tolerance: 1e-3 of the size, the resolution of a picture of 1000 pixels."""
+    shot = _sphere()
+    for name, (shape, axis) in _shapes().items():
+        for tilted in False, True:
+            turn = numpy.linalg.qr(numpy.array([[1.0, 0.3, -0.2], [0.1, 1.0, 0.4], [-0.3, 0.2, 1.0]]))[0] if tilted else numpy.eye(3)
+            found = tanktread.snapshots.Snapshot.of(shape(shot) @ turn)
+            points = numpy.delete(found.sampled(found.points, 60).reshape(-1, 3), axis, 1)
+            curve, size = silhouette.seen(found, axis), numpy.ptp(points, axis=0).max()
+            off = points[~path.Path(curve.points).contains_points(points)]
+            check(len(off) == 0 or curve.distances(off).max() < 1e-3 * size, f"{name}: points outside")
+            near = spatial.cKDTree(points).query(curve.even(500))[0].max()  # 0.01: distance between points where the samples are coarse
+            check(near < 1e-2 * size, f"{name}: {near / size:.1e} of the size from the points")
+    check(silhouette.seen(tanktread.snapshots.Snapshot.of(_bent(4.0)(shot))).length > 7, "a rod whose ends do not meet")
+    ball = tanktread.snapshots.Snapshot.of(numpy.concatenate([shot, shot + [1.5, 0.0, 0.0]]))
+    two = silhouette.seen(ball)  # circles whose centres are 1.5 apart: the lens that they share has the area 0.4533
+    close(two.area, 2 * numpy.pi - (2 * numpy.arccos(0.75) - 0.75 * numpy.sqrt(4 - 1.5**2)), 1e-4, "two balls that overlap in the picture")
+    close(two.length, 4 * (numpy.pi - numpy.arccos(0.75)), 1e-3, "their perimeter, with two corners")
+    for cells, why in ((_bent(7.0)(shot), "through a gap"), (numpy.concatenate([shot, shot + [2.01, 0.0, 0.0]]), "side by side")):
+        try:
+            silhouette.seen(tanktread.snapshots.Snapshot.of(cells))
+            check(False, f"not refused: {why}")
+        except ValueError as error:
+            check(why in str(error), error)
+
+
+def a_fit_to_an_outline_with_a_hollow_rear_recovers_the_modulus():
+    """The rear is hollow by about 9 % of the width, hidden behind its rim."""
+    deck("""
+Tanktread:
+  Units: {}
+  Flow: { type: duct, mean velocity: 0.1 m/s, viscosity: 15 mPa s }
+  Tube: { section: rectangle, sides: [20 um, 20 um], azimuthal elements: 8, axial elements: 8 }
+  Particle: { shape: sphere, radius: 6 um }
+  Membrane: { law: neo-Hookean, shear modulus: 1e4, bending number: 0.005 }
+  Surface: { elements per side: 4 }
+  Time: { final time: 0.2 ms }
+  Output: { interval: 0.2 ms }
+""")
+    curve = silhouette.seen(tanktread.run(pathlib.Path("deck.yaml").resolve()).snapshots()[-1])
+    noise = 0.03 * numpy.random.default_rng(4).standard_normal((100, 2))
+    numpy.savetxt("outline.csv", curve.even(100) + noise, delimiter=",", header="x1,x3", comments="")
+    said = _fit({"deck": "deck.yaml", "unknown": {"Membrane/shear modulus": 1.5e4},
+                 "experiments": {"rear": {"data": [{"outline": "outline.csv", "scale": 1.0, "error": 0.03}]}}})
+    value, error = _found()["Membrane/shear modulus"]
+    check(abs(value - 1e4) < 3 * error < 600, said)
 
 
 def _offline(text, model):

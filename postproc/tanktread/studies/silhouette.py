@@ -12,11 +12,12 @@ import scipy.spatial
 TILT = 1e-6 * numpy.array([0.6, 0.8])  # slopes by which the direction of view is turned, so that no part of the surface
                                        # is seen exactly along it; moves the outline by up to 1e-6 of the size
 SAMPLES = 10000  # sampled points of the surface, at least
-FINER = 6        # points of a fold per triangle of the samples: the chords of the outline are then shorter than 1 % of
-                 # the size, and their distance from the arcs is of the order of 1e-6 of the size
+FINER = 6        # points of a fold per triangle of the samples: the distance of the outline's chords from its arcs is then
+                 # of the order of 1e-5 of the size
 INSIDE = 1e-3    # a point is evaluated this far, in local coordinates, inside its cell, because the normal is not defined
                  # at a pole. An error d of the position of a fold moves its image by d^2 only
 SAME = 1e-7      # points of two cells whose distance is a smaller fraction of the size are one point
+SEVERAL = "the outline is more than one closed curve"
 SLIT = 2e-4      # narrowest slit in an outline, as a fraction of the size
 TRIED = 30       # points of the boundary of a face from which a point inside it is looked for
 SEEN = 1e-3      # a camera does not see gaps that are narrower than 2 SEEN of the size
@@ -126,8 +127,8 @@ def _folds(shot, view, projected):
 
 
 def _missing(points, segments):
-    """Returns segments (m, 2) that close the curves. They connect open ends that are next to each other, where a side of
-    a cell is that of two smaller cells."""
+    """Returns segments (m, 2) that close the curves. They connect open ends that are next to each other, where a side
+    of a cell is that of two smaller cells."""
     ends, made = numpy.flatnonzero(numpy.bincount(segments.ravel(), minlength=len(points)) % 2), []
     while len(ends) > 1:
         near = scipy.spatial.cKDTree(points[ends]).query(points[ends], 2)[1]
@@ -173,8 +174,8 @@ def _split(points, segments):
 
 def _faces(points, edges, directions):
     """Returns the closed polygons that surround the faces of a plane graph, as arrays of indices of points, and their
-    areas. A bounded face is on the left of its polygon and has a positive area. The outer polygon of each connected part
-    of the graph has a negative area."""
+    areas. A bounded face is on the left of its polygon and has a positive area. The outer polygon of each connected
+    part of the graph has a negative area."""
     m = len(edges)
     tail = edges.T.ravel()
     twin = numpy.roll(numpy.arange(2 * m), m)
@@ -206,10 +207,11 @@ def _envelope(points, segments, triangles):
     size = numpy.ptp(outer[0][0], axis=0).max()
     outline = Outline(_without_slits(outer[0][0][::-1], SLIT * size))
     if not all(outline.contains(polygon[:1])[0] for polygon, _ in outer[1:]):
-        raise ValueError("the outline is more than one closed curve: surfaces are seen side by side")
+        raise ValueError(f"{SEVERAL}: surfaces are seen side by side")
     for polygon, area in faces:
-        if area > 0 and (point := _inner(Outline(polygon), SEEN * size)) is not None and not _covered(point, triangles):
-            raise ValueError("the outline is more than one closed curve: the background is seen through a gap in the shape")
+        point = _inner(Outline(polygon), SEEN * size) if area > 0 else None
+        if point is not None and not _covered(point, triangles):
+            raise ValueError(f"{SEVERAL}: the background is seen through a gap in the shape")
     return outline
 
 

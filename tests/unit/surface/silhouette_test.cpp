@@ -22,7 +22,7 @@ double circularity_of_ellipse(double a, double b) {
   return 4 * pi * pi * a * b / (perimeter * perimeter);
 }
 
-/// Returns the integral of |n_c|/2 over the surface, by the midpoint rule. It is the area of a projection in which each point is an image of two points.
+/// Returns the integral of |n_c|/2 over the surface, by the midpoint rule: the area of a projection in which each point is an image of two points.
 double seen_twice(const spline::Space& space, const Net& x, int c) {
   constexpr int n = 30;
   double sum = 0;
