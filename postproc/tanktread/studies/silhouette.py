@@ -12,10 +12,10 @@ import scipy.spatial
 TILT = 1e-6 * numpy.array([0.6, 0.8])  # slopes by which the direction of view is turned, so that no part of the surface
                                        # is seen exactly along it; moves the outline by up to 1e-6 of the size
 SAMPLES = 10000  # sampled points of the surface, at least
-FINER = 6        # points of a fold per triangle of the samples: the distance of the outline's chords from its arcs is then
-                 # of the order of 1e-5 of the size
-INSIDE = 1e-3    # a point is evaluated this far, in local coordinates, inside its cell, because the normal is not defined
-                 # at a pole. An error d of the position of a fold moves its image by d^2 only
+FINER = 6        # points of a fold per triangle of the samples: the chords of the outline are then of the order of 1e-5
+                 # of the size from its arcs
+INSIDE = 1e-3    # a normal is evaluated this far, in local coordinates, inside its cell, because it is not defined at a
+                 # pole. An error d of the position of a fold moves its image by d^2 only
 SAME = 1e-7      # points of two cells whose distance is a smaller fraction of the size are one point
 SEVERAL = "the outline is more than one closed curve"
 SLIT = 2e-4      # narrowest slit in an outline, as a fraction of the size
@@ -216,8 +216,8 @@ def _envelope(points, segments, triangles):
 
 
 def _without_slits(points, width):
-    """Returns the polygon without slits that are narrower than `width`. They arise where two arcs nearly coincide. Removes
-    the tip of a slit, where the polygon turns back, until its sides are `width` apart."""
+    """Returns the polygon without slits that are narrower than `width`. They arise where two arcs nearly coincide.
+    Removes the tip of a slit, where the polygon turns back, until its sides are `width` apart."""
     kept = []
     for x, y in [*points.tolist(), *points[:1].tolist()]:
         while len(kept) > 1:

@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Returns 4 pi A/P^2 of an ellipse. The perimeter is the integral of the speed over the angle by the trapezoidal rule, which converges exponentially.
+/// Returns 4 pi A/P^2 of an ellipse. The perimeter is the integral of the speed over the angle by the trapezoidal rule, whose error is round-off.
 double circularity_of_ellipse(double a, double b) {
   constexpr int n = 200;
   double perimeter = 0;
