@@ -15,7 +15,7 @@ OWNERS = {
     "YAML": r"yaml-cpp/.+",
     "HDF5": r"(hdf5|H5\w+)\.h",
     "TEUCHOS": r"Teuchos_\w+\.hpp",
-    "TRILINOS": r"(Teuchos|Tpetra|Belos|Amesos2?|NOX|Thyra|Stratimikos|Kokkos|Xpetra|Ifpack2|MueLu|Teko|Piro)\w*\.(hpp|H)",
+    "TRILINOS": r"(Teuchos|Tpetra|Belos|Anasazi|Amesos2?|NOX|Thyra|Stratimikos|Kokkos|Xpetra|Ifpack2|MueLu|Teko|Piro)\w*\.(hpp|H)",
     "MPI": r"mpi\.h",
 }
 # Libraries that include others.

@@ -22,7 +22,6 @@
 #include <Thyra_StateFuncModelEvaluatorBase.hpp>
 
 #include "base/errors.hpp"
-#include "system/parallel/agreement.hpp"
 #include "system/solvers/belos_choice.hpp"
 #include "system/solvers/chosen_preconditioner.hpp"
 #include "system/solvers/vectors.hpp"
@@ -47,9 +46,7 @@ Eigen::VectorXd numbers_of(const ThyraVector& vector) {
 /// Returns a vector with the numbers of the first rank.
 Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, const Eigen::VectorXd& numbers) {
   const Teuchos::RCP<ThyraVector> vector = Thyra::createMember(space);
-  const Thyra::DetachedVectorView<double> view(vector);
-  Eigen::Map<Eigen::VectorXd>(view.values(), numbers.size()) = numbers;
-  take_first({view.values(), static_cast<std::size_t>(numbers.size())});
+  set_together(Thyra::DetachedVectorView<double>(vector).values(), numbers);
   return vector;
 }
 

@@ -21,7 +21,10 @@ Eigen::Map<const Eigen::VectorXd> column(const Vectors& vectors, std::size_t c) 
 
 void set_column(Vectors& vectors, std::size_t c, const Eigen::VectorXd& numbers) {
   assert(numbers.size() == static_cast<Eigen::Index>(vectors.getLocalLength()));
-  double* to = vectors.getDataNonConst(c).getRawPtr();
+  set_together(vectors.getDataNonConst(c).getRawPtr(), numbers);
+}
+
+void set_together(double* to, const Eigen::VectorXd& numbers) {
   Eigen::Map<Eigen::VectorXd>(to, numbers.size()) = numbers;
   take_first({to, static_cast<std::size_t>(numbers.size())});
 }

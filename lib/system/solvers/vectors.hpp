@@ -16,8 +16,8 @@ using VectorMap = Tpetra::Map<>;
 using Vectors = Tpetra::MultiVector<>;
 using Operator = Tpetra::Operator<>;
 
-/// Returns the locally replicated map of n numbers: every rank holds all of them, because operators need all. Dot products then need no communication,
-/// and iteration counts cannot differ between ranks.
+/// Returns the locally replicated map of n numbers: every rank holds all of them, because operators need all. Dot products then need no
+/// communication, and iteration counts cannot differ between ranks.
 Teuchos::RCP<const VectorMap> replicated(Eigen::Index n);
 
 /// Returns the numbers of column c of `vectors`, shape (n).
@@ -41,6 +41,9 @@ class FunctionOperator : public Operator {
  private:
   Teuchos::RCP<const VectorMap> map_;
 };
+
+/// Sets the numbers at `to`, on all ranks, to those of the first rank.
+void set_together(double* to, const Eigen::VectorXd& numbers);
 
 /// Calls `function`, unless the n numbers `in` are all 0 and so the results, and takes the results of the first rank. Before, all ranks answer a
 /// stop request.
