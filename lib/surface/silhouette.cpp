@@ -58,7 +58,7 @@ std::vector<int> vertices(const std::vector<Sample>& all, double distance) {
 }
 
 /// Closes the curves by segments between open ends that are nearest to each other, where a side of an element is that of two smaller elements.
-void close(Folds& folds) {
+void close_ends(Folds& folds) {
   std::vector<int> degree(folds.nodes.size());
   for (const auto& segment : folds.segments)
     for (const int k : segment) ++degree[k];
@@ -123,7 +123,7 @@ Folds folds_of(const Patches& surface, const Mat3& frame) {
       const int a = e * (k + 1) * (k + 1) + n / k * (k + 1) + n % k, d = a + k + 1;
       crossed(e, {a, a + 1, d + 1}), crossed(e, {a, d + 1, d});
     }
-  close(folds);
+  close_ends(folds);
   return folds;
 }
 

@@ -21,6 +21,9 @@ def expect(holds, message):
         raise Mistake(message)
 
 
+ON_PYPI = {"pil": "pillow", "vtk9": "vtk"}  # names on PyPI that differ from those of Debian
+
+
 def optional(module, purpose, package=None):
     """Returns an imported module that only some functions need. Raises Mistake with its name if it is not installed."""
     try:
@@ -28,7 +31,7 @@ def optional(module, purpose, package=None):
     except ImportError:
         name = package or module.split(".")[0]
         raise Mistake(f"{purpose} needs {name}, which {sys.executable} does not have: "
-                      f"apt install python3-{name}, or pip install {name}") from None
+                      f"apt install python3-{name}, or pip install {ON_PYPI.get(name, name)}") from None
 
 
 def progress(text):

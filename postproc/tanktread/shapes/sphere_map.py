@@ -9,7 +9,9 @@
 
 Measured with 5,120 triangles and 8 elements per side: root mean square distances of Tutte's map alone, which is nearly
 conformal, were 0.070 radii for a cup, 0.16 for a bottle (both fold, as their tips get no elements), 6.4e-4 for a red
-cell. After the relaxation they were 0.012, 0.007 and 5.2e-4. Grading lowers 8.4e-3 of a sickle to 2.5e-3."""
+cell. After the relaxation they were 0.012, 0.007 and 5.2e-4. Grading lowers 8.4e-3 of a sickle to 2.5e-3.
+Tutte's map alone is better for long shapes without a neck: 9.7e-4 for the sickle, and for an ellipsoid of ratio 4
+3.6e-4 instead of 4.3e-4."""
 
 import numpy
 from scipy import sparse
