@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <BelosLinearProblem.hpp>
+#include <BelosRCGSolMgr.hpp>
 #include <BelosSolverFactory_Tpetra.hpp>
 #include <BelosTpetraAdapter.hpp>
 #include <Teuchos_ParameterList.hpp>
@@ -31,6 +32,11 @@ constexpr double least_recursive_residual =
     1e-12;  // relative residual below which the residual that Belos updates recursively is only round-off
 
 Teuchos::RCP<Solver> belos_solver(const std::string& name, const Teuchos::RCP<Teuchos::ParameterList>& list) {
+  if (name == "RCG") {  // missing in the factory for Tpetra vectors
+    const auto solver = Teuchos::rcp(new Belos::RCGSolMgr<double, Vectors, Operator>);
+    if (!list.is_null()) solver->setParameters(list);
+    return solver;
+  }
   return Belos::SolverFactory<double, Vectors, Operator>().create(name, list);
 }
 
