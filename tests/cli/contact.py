@@ -85,6 +85,21 @@ def without_the_limiter_the_run_ends_at_contact():
         check("contact_force" not in file["series"], "a series that nobody asked for")
 
 
+def a_post_that_ends_a_run_is_named():
+    said = run(deck("""
+Tanktread:
+  Flow: {type: quiescent, gravity: [1.0, 0.0, 0.0]}
+  Domain: {periodic: x1 x2 x3, side lengths: [6.0, 6.0, 3.0]}
+  Particles:
+    cell: {center: [-1.9, 0.3, 0.0], radius: 0.8, Membrane: {law: Skalak, shear modulus: 20.0}, Surface: {elements per side: 4}, density difference: 6.0}
+    stake: {shape: cylinder, axis: x3, radius: 0.7, Surface: {azimuthal elements: 12, axial elements: 4}}
+  Contact: {limit: 0.1}
+  Quadrature: {tolerance: 1.0e-2}
+  Time: {final time: 30.0}
+"""), "--output", "out", code=3).stderr
+    check("Particles/cell would cross Particles/stake near" in said, said)
+
+
 def _same(one, other, tolerance):
     for name in ("smallest_gap", "contact_force", "contact_impulse", "below/taylor_inertia", "above/centroid_x3", "stresslet_11"):
         a, b = series(one, name), series(other, name)
