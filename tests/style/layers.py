@@ -16,12 +16,13 @@ OWNERS = {
     "HDF5": r"(hdf5|H5\w+)\.h",
     "TEUCHOS": r"Teuchos_\w+\.hpp",
     "TRILINOS": r"(Teuchos|Tpetra|Belos|Anasazi|Amesos2?|NOX|Thyra|Stratimikos|Kokkos|Xpetra|Ifpack2|MueLu|Teko|Piro)\w*\.(hpp|H)",
+    "THYRA": r"(Thyra|NOX|Stratimikos)\w*\.(hpp|H)",
     "MPI": r"mpi\.h",
 }
 # Libraries that include others.
-BRINGS = {"TRILINOS": {"TRILINOS", "TEUCHOS", "MPI"}, "HDF5": {"HDF5", "MPI"}}
+BRINGS = {"TRILINOS": {"TRILINOS", "THYRA", "TEUCHOS", "MPI"}, "HDF5": {"HDF5", "MPI"}}
 # Only this file of a module may include the library: {(module, library): file}.
-ONLY_IN = {("membrane", "TRILINOS"): "direct_solver.cpp"}
+ONLY_IN = {("membrane", "TRILINOS"): "direct_solver.cpp", ("system", "THYRA"): "nonlinear.cpp"}
 
 
 def allowed(source):
