@@ -35,6 +35,7 @@ def read(path):
         raise Mistake(f"{path} cannot be read as a mesh ({' '.join(reason.split())[:120]}): save it as STL, as OBJ, or "
                       "as PLY") from None
     points, parts = numpy.asarray(mesh.points, float), [numpy.zeros((0, 3), int)]
+    expect(points.size, f"{path} holds no points")
     expect(points.ndim == 2 and points.shape[1] == 3, f"{path}: its points are not in space, they have no x3")
     for block in mesh.cells:
         cells = numpy.asarray(block.data)
