@@ -2,6 +2,7 @@
 """Compares the results and the work of two programs on all decks of inputs/ and tests/decks/ (named decks/<name> here).
 
     tests/benchmark/compare.py OLD_PROGRAM NEW_PROGRAM [--decks NAME ...] [--differences FILE]
+    tests/benchmark/compare.py OLD_PROGRAM NEW_PROGRAM --without-thresholds
     tests/benchmark/compare.py PROGRAM PROGRAM --exact --threads 1 3
 
 The difference of a series is the largest one over its rows, divided by the larger of two numbers: the largest absolute
@@ -15,6 +16,10 @@ YAML list of {deck, series, tolerance, reason}, where deck and series may be pat
 and `Expect/<name>` stand for a changed exit code and for an expectation that is no longer met. Their difference is
 infinite, which the tolerance `.inf` allows.
 
+With --without-thresholds, each deck runs ten fixed steps with far sums over all nodes, linear solves to 1e-12 and no
+adaptation, so that round-off cannot change steps, meshes or iterations, and differences show the algebra. The step is
+the smallest one of the old program's run as shipped. Settings that a deck does not allow are left out.
+
 With --exact, every series, count and snapshot must be equal in all bits, except seconds. With --threads, the old program
 runs with the first number of threads and the new one with the second.
 
@@ -24,12 +29,15 @@ program (by a hash of its file). Decks for two ranks run last, half as many at a
 """
 
 import concurrent.futures
+import contextlib
 import fnmatch
 import hashlib
+import json
 import math
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 
 from package import INPUTS, command_line, numpy, scenes_of, table, tanktread, yaml
@@ -238,13 +246,33 @@ def totals(comparisons):
     return f"\n{len(comparisons)} decks: " + "; ".join(words)
 
 
+def without_thresholds(study, paths, settings, ranks):
+    """Returns the settings of a comparison of the algebra: `settings` of the shipped run, and those that a deck allows
+    of ten fixed steps, exact far sums and solves, and no adaptation."""
+    with contextlib.suppress(tanktread.Mistake, KeyError, ValueError):  # without results or steps, the deck has no time
+        steps = study.run(paths, settings, ranks).run.series["time_step"]
+        step = float(steps[steps > 0].min())
+        settings = settings | {"Time/fixed step": step, "Time/final time": 10 * step, "Output/interval": 10 * step}
+    for key, value in (("Quadrature/far sum", "dense"), ("Solvers/tolerance", 1e-12), ("Adaptation/enabled", False),
+                       ("Particles/defaults/Adaptation/enabled", False)):
+        more = settings | {key: value}
+        words = [f"--set={name}={json.dumps(given)}" for name, given in more.items()]
+        if subprocess.run([study.program, *paths, *words, "--check"], capture_output=True, check=False).returncode != 2:
+            settings = more
+    return settings
+
+
 def pairs_of(arguments, decks):
     """Yields (name, ranks, outcomes of the old and the new program) of each deck; decks on two ranks last."""
     studies = [study_of(program, role, arguments) for program, role in zip(arguments.programs, ("old", "new"))]
+    settings = {name: SHORTER.get(name, {}) for name in decks}
+    if arguments.without_thresholds:
+        for name in arguments.decks or decks:
+            settings[name] = without_thresholds(studies[0], *decks[name][:1], settings[name], decks[name][1])
     for several_ranks in False, True:
         names = [name for name in arguments.decks or decks if (decks[name][1] > 1) == several_ranks]
         with concurrent.futures.ThreadPoolExecutor(max(1, arguments.jobs // (1 + several_ranks))) as pool:
-            pairs = [[pool.submit(study.run, decks[name][0], SHORTER.get(name, {}), decks[name][1])
+            pairs = [[pool.submit(study.run, decks[name][0], settings[name], decks[name][1])
                       for study in studies] for name in names]
             for name, pair in zip(names, pairs):
                 yield name, decks[name][1], [future.result() for future in pair]
@@ -259,6 +287,7 @@ def main():
                         help="directory of the results (default: %(default)s)")
     parser.add_argument("--tolerance", type=float, default=1e-9,
                         help="largest difference that passes (default: %(default)s)")
+    parser.add_argument("--without-thresholds", action="store_true", help="compare ten fixed steps with exact sums and solves")
     parser.add_argument("--exact", action="store_true", help="require the same bits, also of snapshots")
     parser.add_argument("--threads", type=int, nargs=2, metavar="N", help="numbers of threads of the two programs")
     parser.add_argument("--differences", metavar="FILE", help="YAML list of differences that are allowed")
