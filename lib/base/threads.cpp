@@ -33,7 +33,7 @@ void wait_while(const std::atomic<T>& variable, T value) {
 
 /// Expected seconds below which a loop runs on the calling thread, because the others would not be awake before it ends. Measured with capsules of 98
 /// to 3,458 control points.
-constexpr double worth_threads = 1e-4;
+constexpr double worth_threads = 1.5e-4;
 
 /// Factor by which the expected seconds per item of a loop decrease per call, if they do not increase. Loops with items of different sizes thus use
 /// several threads rather than one.
