@@ -20,6 +20,7 @@
 #include <Thyra_DefaultSpmdVectorSpace.hpp>
 #include <Thyra_DetachedVectorView.hpp>
 #include <Thyra_StateFuncModelEvaluatorBase.hpp>
+#include <Thyra_VectorStdOps.hpp>
 
 #include "base/errors.hpp"
 #include "system/solvers/belos_choice.hpp"
