@@ -300,7 +300,8 @@ bool may_change_on_resume(const std::string& path) {
   const std::string_view key = std::string_view(path).substr(path.starts_with("Particles/") ? path.find('/', 10) + 1 : 0);
   const auto is_in = [key](std::string_view section) { return key.starts_with(section); };
   // Keys of the sections in `free` on which checkpoints, or files that grow with the run, depend.
-  constexpr std::string_view fixed[] = {"Contact/limiter", "Interface/fields/", "Interface/surfactant/", "Output/power balance", "Output/series/"};
+  constexpr std::string_view fixed[] = {"Contact/limiter",      "Interface/fields/", "Interface/surfactant/",
+                                        "Output/power balance", "Output/series/",    "Output/view direction"};
   constexpr std::string_view free[] = {
       "Accuracy/", "Adaptation/", "Contact/", "Continuation/", "Expect/", "Interface/", "Output/", "Periodic/", "Quadrature/", "Solvers/",
       "Spectrum/", "Steady/", "Symmetry/", "Time/", "Units/", "Channel/contact gap", "Tube/contact gap", "Wall/contact gap"};

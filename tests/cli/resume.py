@@ -235,14 +235,14 @@ def the_final_time_may_change_and_the_membrane_may_not():
 
 def keys_that_series_depend_on_may_not_change():
     deck(DECK)
-    for setting in "Output/power balance=true", "Contact/limiter=true":
+    for setting in "Output/power balance=true", "Output/view direction=[0, 1, 0]", "Contact/limiter=true":
         more = ["--set", "Contact/limit=0.01"] if "Contact" in setting else []
         lattice = ["--set", "Domain/periodic=x1 x2 x3", "--set", "Domain/side lengths=[5, 5, 5]"] if more else []
         run("deck.yaml", *lattice, "--output", "short", "--overwrite", "--set", "Time/final time=0.1", "--set", "Output/interval=0.1", "--quiet")
         result = run("--resume", "short", "--set", "Time/final time=0.2", "--set", setting, *more, code=2)
         check(f"{setting.split('=')[0]} cannot change when a run continues" in result.stderr, result.stderr)
     # Each new key of Output must be added here, and to `fixed` in may_change_on_resume() if checkpoints or files that grow with the run depend on it.
-    free, fixed = {"interval": 0.05, "between steps": "land", "wall-clock limit": 1000, "surface text": "true"}, {"power balance"}
+    free, fixed = {"interval": 0.05, "between steps": "land", "wall-clock limit": 1000, "surface text": "true"}, {"power balance", "view direction"}
     keys = set(re.findall(r"^\| `([^`]+)` \|", run("--reference").stdout.split("\n## Output\n")[1].split("\n## ")[0], re.MULTILINE))
     check(keys == fixed | set(free), keys)
     for key, value in free.items():
