@@ -64,8 +64,7 @@ std::vector<Eigenpair> eigenpairs(Eigen::MatrixXd a) {
 std::vector<Eigenpair> largest_eigenpairs(const Apply& a, Eigen::Index n, int number, int block, double tolerance) {
   const auto map = replicated(n);
   Eigen::VectorXd start(n * block);
-  for (Eigen::Index i = 0; i < start.size(); ++i)
-    start[i] = std::sin(1.0 + static_cast<double>(i * i % 7919));  // pseudo-random, equal on every run
+  for (Eigen::Index i = 0; i < start.size(); ++i) start[i] = std::sin(1.0 + static_cast<double>(i * i % 7919));  // pseudo-random, equal on every run
   const auto first = Teuchos::rcp(new Vectors(map, static_cast<std::size_t>(block)));
   for (int k = 0; k < block; ++k) set_column(*first, static_cast<std::size_t>(k), start.segment(k * n, n));
   const auto problem =

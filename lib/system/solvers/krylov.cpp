@@ -168,16 +168,14 @@ SolveReport Krylov::solve(const LinearSystem& system, const Eigen::VectorXd& b, 
   const bool in_doubt = report.converged && tolerance < least_recursive_residual;
   if (report.converged && !in_doubt) return report;
   report.residuals = residuals_of(system, b, x);
-  report.converged =
-      in_doubt && std::ranges::all_of(report.residuals, [&](const auto& residual) { return residual.second <= 2 * tolerance; });
+  report.converged = in_doubt && std::ranges::all_of(report.residuals, [&](const auto& residual) { return residual.second <= 2 * tolerance; });
   return report;
 }
 
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance) {
   if (report.converged) return;
   std::ostringstream text;
-  text << "the solver did not bring " << system << " to the relative residual " << tolerance << ": after " << report.iterations
-       << " iterations";
+  text << "the solver did not bring " << system << " to the relative residual " << tolerance << ": after " << report.iterations << " iterations";
   const char* separator = " it is ";
   for (const auto& [name, residual] : report.residuals) text << std::exchange(separator, ", ") << residual << " of the " << name;
   throw RunFailure(text.str());

@@ -156,14 +156,11 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
     if (!out.get_f().is_null()) Thyra::assign(out.get_f().ptr(), *vector_of(space_, numbers(f_, unit_)));
     if (out.get_W_op().is_null()) return;
     chosen_.refresh();
-    newton_ = {{{"places", x.size()}},
-               on_nets(x.rows(),
-                       [this, x, f = f_](const Net& direction) -> Net {
-                         const double size = norm_(direction), e = size > 0 ? 1e-4 / size : 1;
-                         const Net y = x + e * direction;
-                         return (g_(y) - y - f) / e;
-                       }),
-               {}};
+    newton_ = {{{"places", x.size()}}, on_nets(x.rows(), [this, x, f = f_](const Net& direction) -> Net {
+      const double size = norm_(direction), e = size > 0 ? 1e-4 / size : 1;
+      const Net y = x + e * direction;
+      return (g_(y) - y - f) / e;
+    }), {}};
     const LinearSystem joined = chosen_.join(newton_);
     dynamic_cast<ThyraOperator&>(*out.get_W_op()).function = joined.product;
     if (!preconditioner_.is_null()) preconditioner_->function = joined.precondition;
@@ -186,14 +183,12 @@ Net net(const NOX::Abstract::Vector& vector, double unit) {
 /// Convergence test: stops at the tolerance in the given norm, or after `most` iterations.
 class Test : public NOX::StatusTest::Generic {
  public:
-  Test(const FixedPoint::Norm& norm, double unit, double tolerance, int most)
-      : norm_(norm), unit_(unit), tolerance_(tolerance), most_(most) {}
+  Test(const FixedPoint::Norm& norm, double unit, double tolerance, int most) : norm_(norm), unit_(unit), tolerance_(tolerance), most_(most) {}
   NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const NOX::Abstract::Group& group = solver.getSolutionGroup();
     const double residual = group.isF() ? norm_(net(group.getF(), unit_)) : std::numeric_limits<double>::quiet_NaN();
     if (residual <= tolerance_) return status_ = NOX::StatusTest::Converged;
-    return status_ =
-               !std::isfinite(residual) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
+    return status_ = !std::isfinite(residual) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
   }
   NOX::StatusTest::StatusType getStatus() const override { return status_; }
   std::ostream& print(std::ostream& stream, int) const override { return stream; }
@@ -233,9 +228,8 @@ std::string unread_path(const Teuchos::ParameterList& given, const Teuchos::Para
 
 Teuchos::ParameterList defaults(const std::string& method, int depth) {
   Teuchos::ParameterList list("NOX");
-  const Teuchos::RCP<std::ostream> nowhere =
-      Teuchos::rcp(new Teuchos::oblackholestream);  // discards error messages, because a time step that
-                                                    // fails is repeated with a shorter step
+  const Teuchos::RCP<std::ostream> nowhere = Teuchos::rcp(new Teuchos::oblackholestream);  // discards error messages, because a time step that
+                                                                                           // fails is repeated with a shorter step
   list.sublist("Printing").set("Output Information", 0).set("Output Stream", nowhere).set("Error Stream", nowhere);
   if (method == "anderson") {
     list.set("Nonlinear Solver", "Anderson Accelerated Fixed-Point");
@@ -284,12 +278,12 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
   const RCP<Thyra::PreconditionerFactoryBase<double>> no_factory;
   const RCP<const Weights> unweighted;
   const bool scaled = false, updated = false;
-  const auto group = Teuchos::rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model, derivative, impl_->linear_solver, preconditioner,
-                                                        no_factory, unweighted, unweighted, RCP<Weights>(), scaled, updated));
+  const auto group =
+      Teuchos::rcp(new NOX::Thyra::Group(NOX::Thyra::Vector(start), model, derivative, impl_->linear_solver, preconditioner, no_factory,
+                                         unweighted, unweighted, RCP<Weights>(), scaled, updated));
   const auto list = impl_->last = Teuchos::rcp(new Teuchos::ParameterList(impl_->list));
   auto& anderson = list->sublist("Anderson Parameters");
-  if (anderson.isType<int>("Storage Depth"))
-    anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
+  if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
   RCP<NOX::Solver::Generic> solver;
   const auto failed = [&] { return NonlinearReport{solver.is_null() ? 0 : solver->getNumIterations(), false}; };
   try {
@@ -301,8 +295,7 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
     return failed();
   } catch (const Thyra::CatastrophicSolveFailure&) {
     return failed();
-  } catch (const std::runtime_error&
-               error) {  // exactly this type: thrown by Anderson's method if differences of iterates are linearly dependent
+  } catch (const std::runtime_error& error) {  // exactly this type: thrown by Anderson's method if differences of iterates are linearly dependent
     if (typeid(error) != typeid(std::runtime_error)) throw;
     return failed();
   } catch (const Teuchos::Exceptions::InvalidParameter& error) {
