@@ -11,7 +11,7 @@
 
 namespace tanktread::coupling {
 
-InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial, const CapsuleParameters& parameters, const Layout& layout,
+InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial, const CapsuleParameters& parameters, const RowShare& layout,
                                  const Targets& targets, const membrane::SymmetricSolver& mass)
     : space_(space),
       targets_(targets),

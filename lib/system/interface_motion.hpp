@@ -45,7 +45,7 @@ class InterfaceMotion {
  public:
   /// `initial`: net that the meshes relax towards. `mass`: factored mass matrix M0 of `initial`. References, except `initial`, must outlive this
   /// object.
-  InterfaceMotion(const spline::Space& space, const Net& initial, const CapsuleParameters& parameters, const Layout& layout, const Targets& targets,
+  InterfaceMotion(const spline::Space& space, const Net& initial, const CapsuleParameters& parameters, const RowShare& layout, const Targets& targets,
                   const membrane::SymmetricSolver& mass);
 
   /// Returns the control values of the velocity u (4.6) of the control points in the shape x. `v`: control values of the fluid velocity. `b`: dV/dx.

@@ -5,7 +5,7 @@
 
 namespace tanktread::coupling {
 
-Membranes::Membranes(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout, Phases& phases)
+Membranes::Membranes(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const RowShare& layout, Phases& phases)
     : particles_(parameters.particles), layout_(layout), phases_(phases), mass_matrix_(space), mass_(parameters.solvers.direct, parameters.symmetry),
       membrane_(space, unstressed, materials(particles_)), loads_(particles_, layout.elements()), tangent_(membrane_) {
   mass_.factor(mass_matrix_.update(unstressed));

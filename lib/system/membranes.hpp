@@ -9,7 +9,7 @@
 #include "membrane/mass_solver.hpp"
 #include "membrane/membrane.hpp"
 #include "system/capsule_parameters.hpp"
-#include "system/parallel/layout.hpp"
+#include "system/parallel/row_share.hpp"
 
 namespace tanktread::coupling {
 
@@ -18,7 +18,7 @@ namespace tanktread::coupling {
 class Membranes {
  public:
   /// References, except `unstressed`, must outlive this object.
-  Membranes(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout, Phases& phases);
+  Membranes(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const RowShare& layout, Phases& phases);
 
   const membrane::Membrane& membrane() const { return membrane_; }  ///< elasticity and bending
   const Loads& loads() const { return loads_; }                     ///< all other loads
@@ -58,7 +58,7 @@ class Membranes {
   Net work_of(const membrane::ViscousLoad& c, const Net& v) const;
 
   const std::vector<Particle>& particles_;
-  const Layout& layout_;
+  const RowShare& layout_;
   Phases& phases_;
   membrane::MassMatrix mass_matrix_;
   membrane::MassSolver mass_;

@@ -22,7 +22,7 @@ CapsuleParameters completed(CapsuleParameters parameters, const spline::Space& s
 }
 
 /// Returns the motion of control points along interfaces; null if no control points slide.
-std::unique_ptr<InterfaceMotion> interface_motion(const spline::Space& space, const CapsuleParameters& parameters, const Layout& layout,
+std::unique_ptr<InterfaceMotion> interface_motion(const spline::Space& space, const CapsuleParameters& parameters, const RowShare& layout,
                                                   const Targets& targets, const Membranes& membranes) {
   if (std::ranges::none_of(parameters.particles, &Particle::slides)) return {};
   return std::make_unique<InterfaceMotion>(space, membranes.unstressed(), parameters, layout, targets, membranes.mass());

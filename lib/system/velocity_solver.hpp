@@ -12,7 +12,7 @@
 #include "stokes/flow/ambient_flow.hpp"
 #include "system/capsule_parameters.hpp"
 #include "system/membranes.hpp"
-#include "system/parallel/layout.hpp"
+#include "system/parallel/row_share.hpp"
 #include "system/solids/bodies/body_preconditioner.hpp"
 #include "system/solids/fluid_walls.hpp"
 #include "system/solved_shape.hpp"
@@ -153,7 +153,7 @@ class VelocitySolver {
   const FluidWalls& walls() const { return walls_; }
   /// Returns which particle crosses which wall or post in the latest shape; empty if all are in the fluid.
   const std::string& crossing() const { return crossing_; }
-  const Layout& layout() const { return layout_; }
+  const RowShare& layout() const { return layout_; }
   const Targets& targets() const { return targets_; }
   Membranes& membranes() { return membranes_; }
   const Membranes& membranes() const { return membranes_; }
@@ -219,7 +219,7 @@ class VelocitySolver {
   CapsuleParameters parameters_;
   Phases& phases_;
   OperationCounts counts_;
-  Layout layout_;
+  RowShare layout_;
   Targets targets_;
   Membranes membranes_;
   Volumes volumes_;

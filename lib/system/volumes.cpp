@@ -21,7 +21,7 @@ void VolumeProjection::subtract(const Eigen::VectorXd& multipliers, Net& v) cons
   for (Eigen::Index k = 0; const spline::Block& block : blocks) block.rows(v) -= multipliers[k++] * block.rows(direction);
 }
 
-Volumes::Volumes(const spline::Space& space, const Net& initial, const std::vector<Particle>& particles, const Layout& layout, Phases& phases)
+Volumes::Volumes(const spline::Space& space, const Net& initial, const std::vector<Particle>& particles, const RowShare& layout, Phases& phases)
     : particles_(particles), layout_(layout), phases_(phases), geometry_(space) {
   for (const Particle& one : particles)
     kept_.push_back(one.kept_volume ? *one.kept_volume : surface::volume(*one.space, one.block.rows(initial)));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "surface/geometry.hpp"
-#include "system/parallel/layout.hpp"
+#include "system/parallel/row_share.hpp"
 #include "system/particle.hpp"
 
 namespace tanktread::coupling {
@@ -30,7 +30,7 @@ class Volumes {
  public:
   /// Stores V0 of each particle: Particle::kept_volume if set, otherwise the volume of the particle in the net `initial`. References, except
   /// `initial`, must outlive this object.
-  Volumes(const spline::Space& space, const Net& initial, const std::vector<Particle>& particles, const Layout& layout, Phases& phases);
+  Volumes(const spline::Space& space, const Net& initial, const std::vector<Particle>& particles, const RowShare& layout, Phases& phases);
 
   const surface::Geometry& geometry() const { return geometry_; }
   double error(double volume, std::size_t p) const { return volume / kept_[p] - 1; }  ///< V/V0 - 1 of particle p
@@ -49,7 +49,7 @@ class Volumes {
 
  private:
   const std::vector<Particle>& particles_;
-  const Layout& layout_;
+  const RowShare& layout_;
   Phases& phases_;
   surface::Geometry geometry_;
   std::vector<double> kept_;  // V0 of each particle

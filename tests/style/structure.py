@@ -12,9 +12,9 @@ import re
 import sys
 
 LIMITS = {"files": 25, "lines": 400, "members": 25, "function": 60, "collectives": 0}
-# Files that may make collective calls, because they define these calls, exchange unknowns (layout, block system), sum
+# Files that may make collective calls, because they define these calls, exchange unknowns (row share, block system), sum
 # contributions, or record results.
-MAY_CALL = {"ranks", "agreement", "layout", "vectors", "system", "results", "record"}
+MAY_CALL = {"ranks", "agreement", "row_share", "vectors", "system", "results", "record"}
 COLLECTIVE = re.compile(r"\branks_?(?:\(\))?(?:\.|->)(?:replicate|add|add_all|any|own)\(|\bdo(?:Import|Export)\(|\bcoupling::largest\("
                         r"|\b(?:error_of_any|take_first|of_first)\(|\bTeuchos::(?:reduceAll|gatherAll|broadcast|scan|barrier)\("
                         r"|\bMPI_(?:I?(?:All|B|R)(?:reduce|gather|to|cast|arrier)\w*|Scan|Gather\w*|Scatter\w*)\(")

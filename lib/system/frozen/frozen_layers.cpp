@@ -35,7 +35,7 @@ Net Corotation::deformation(std::span<const Particle> particles, const Net& from
   return difference;
 }
 
-FrozenLayers::FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout,
+FrozenLayers::FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const RowShare& layout,
                            const Targets& targets, const membrane::MassMatrix& mass, ParticleLayers& layers)
     : unstressed_(unstressed), parameters_(parameters), layout_(layout), targets_(targets), mass_(mass), layers_(layers) {
   nodal_.share(layout.ranks().rank(), layout.ranks().size(), parameters.symmetry.fundamental());

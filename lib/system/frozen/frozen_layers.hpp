@@ -47,7 +47,7 @@ class FrozenLayers {
  public:
   /// `layers`: the layers at `targets`. If `targets` are the collocation sites, this object assembles `layers`. Otherwise it creates and assembles
   /// other layers, at the collocation sites. `mass`: mass matrix of all particles. References must outlive this object.
-  FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout, const Targets& targets,
+  FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const RowShare& layout, const Targets& targets,
                const membrane::MassMatrix& mass, ParticleLayers& layers);
 
   /// Assembles the layers at the shape `at`. `x`: equal to `at`; if there is a lattice, `at` with each particle moved by a lattice vector into the
@@ -70,7 +70,7 @@ class FrozenLayers {
 
   const Net& unstressed_;
   const CapsuleParameters& parameters_;
-  const Layout& layout_;
+  const RowShare& layout_;
   const Targets& targets_;
   const membrane::MassMatrix& mass_;
   ParticleLayers& layers_;

@@ -46,7 +46,7 @@ std::string crowding();
 /// assembled() for sums to which every rank adds; add() for sums in place; of_all() and gathered() for a few numbers. Calls that set the rows of
 /// symmetry images treat a net as a field of polar vectors: scalars and axial vectors need divided().
 ///
-/// An object divides the rows of one set of points. Layout has one for the control points, and the walls of ducts, plates and posts, single rigid
+/// An object divides the rows of one set of points. RowShare has one for the control points, and the walls of ducts, plates and posts, single rigid
 /// bodies and the run have others. A class that needs one with the same points receives it.
 class Ranks {
  public:

@@ -17,7 +17,7 @@ void FluidWalls::forget() const {
   if (solids) solids->forget();
 }
 
-FluidWalls::Crossing FluidWalls::crossing(const Net& at, const Layout& layout) const {
+FluidWalls::Crossing FluidWalls::crossing(const Net& at, const RowShare& layout) const {
   if (tube) return {tube->first_outside(at, layout.points()), "the wall of the duct"};
   return solids ? solids->scene().solids->crossing(at) : Crossing();
 }

@@ -32,7 +32,7 @@ struct FluidWalls {
 
   /// Returns the first of the points `at` that is outside the tube, behind a plate or in a post. Tests only the rank-owned points of a tube.
   using Crossing = PlatesAndPosts::Crossing;
-  Crossing crossing(const Net& at, const Layout& layout) const;
+  Crossing crossing(const Net& at, const RowShare& layout) const;
 
   /// Responses of the boundaries that exist.
   struct Response {

@@ -9,7 +9,7 @@
 
 namespace tanktread::coupling {
 
-ParticleLayers::ParticleLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout,
+ParticleLayers::ParticleLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const RowShare& layout,
                                const Targets& targets, Phases& phases)
     : parameters_(parameters), layout_(layout), targets_(targets), phases_(phases),
       pair_(space, targets.sites(), unstressed, parameters.particles, parameters.quadrature, parameters.medium.get()) {

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "system/capsule_parameters.hpp"
-#include "system/parallel/layout.hpp"
+#include "system/parallel/row_share.hpp"
 #include "system/targets/layer_pair.hpp"
 #include "system/targets/targets.hpp"
 
@@ -16,7 +16,7 @@ namespace tanktread::coupling {
 class ParticleLayers {
  public:
   /// References, except `unstressed`, must outlive this object.
-  ParticleLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout,
+  ParticleLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const RowShare& layout,
                  const Targets& targets, Phases& phases);
 
   void repeat(const stokes::PeriodicCell& cell);  ///< sets the cell whose periodic images the layers include
@@ -49,7 +49,7 @@ class ParticleLayers {
   Net product(const stokes::Rows<double>& rows, const Net& field) const;
 
   const CapsuleParameters& parameters_;
-  const Layout& layout_;
+  const RowShare& layout_;
   const Targets& targets_;
   Phases& phases_;
   bool repeats_ = false;

@@ -4,7 +4,7 @@
 
 namespace tanktread::coupling {
 
-Targets::Targets(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout)
+Targets::Targets(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const RowShare& layout)
     : space_(space), layout_(layout), at_sites_(collocation_matrix(space)), collocation_(parameters.solvers.direct, parameters.symmetry) {
   collocation_.factor(at_sites_);
   if (parameters.solvers.projection != "collocation")

@@ -8,7 +8,7 @@
 #include <Eigen/SparseCore>
 
 #include "system/capsule_parameters.hpp"
-#include "system/parallel/layout.hpp"
+#include "system/parallel/row_share.hpp"
 #include "system/targets/velocity_projection.hpp"
 
 namespace tanktread::coupling {
@@ -18,7 +18,7 @@ namespace tanktread::coupling {
 class Targets {
  public:
   /// References must outlive this object.
-  Targets(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout);
+  Targets(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const RowShare& layout);
 
   const VelocityProjection* projection() const { return projection_ ? &*projection_ : nullptr; }  ///< null if velocities are collocated
   const stokes::Sites& sites() const { return projection_ ? projection_->sites() : space_.collocation; }
@@ -29,7 +29,7 @@ class Targets {
   const membrane::SymmetricSolver& collocation() const { return collocation_; }  ///< factors of R
   Net zero() const { return Net::Zero(values().rows(), 3); }                     ///< velocity 0 at the targets
 
-  /// Gathers the velocity at the targets on all ranks. `shared`: see Layout::gather. Collective.
+  /// Gathers the velocity at the targets on all ranks. `shared`: see RowShare::gather. Collective.
   void gather(bool shared, Net& at_targets) const;
 
   /// Returns the control values of the velocity whose values at the targets are `at_targets`. With collocation, this function is collective and
@@ -43,7 +43,7 @@ class Targets {
 
  private:
   const spline::Space& space_;
-  const Layout& layout_;
+  const RowShare& layout_;
   std::optional<VelocityProjection> projection_;
   Eigen::SparseMatrix<double> at_sites_;
   membrane::SymmetricSolver collocation_;

@@ -1,11 +1,11 @@
-#include "system/parallel/layout.hpp"
+#include "system/parallel/row_share.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace tanktread::coupling {
 
-Layout::Layout(const spline::Space& space, const surface::Symmetry& symmetry, Phases& phases)
+RowShare::RowShare(const spline::Space& space, const surface::Symmetry& symmetry, Phases& phases)
     : symmetry_(symmetry),
       share_(surface::share(space, surface::partition_of_points(space, ranks_.size(), symmetry.fundamental()), ranks_.rank())) {
   const auto points = [&](int e) { return std::span<const int>(space.elements[static_cast<std::size_t>(e)].points); };
@@ -18,18 +18,18 @@ Layout::Layout(const spline::Space& space, const surface::Symmetry& symmetry, Ph
   ranks_.set_owned_rows(share_.points, symmetry);
 }
 
-void Layout::replicate_sums(Net& net) const {
+void RowShare::replicate_sums(Net& net) const {
   if (folded_) surface::fold(symmetry_, net);
   replicate(net);
 }
 
-void Layout::gather(bool shared, Net& net) const {
+void RowShare::gather(bool shared, Net& net) const {
   if (!shared) return replicate(net);
   Net* const one[] = {&net};
   ranks_.add(one);
 }
 
-void Layout::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields) const {
+void RowShare::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields) const {
   const std::vector<int> components = a.components();
   int column = 0;
   for (Net* const field : fields) {
@@ -41,7 +41,7 @@ void Layout::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fie
   ranks_.add(fields);
 }
 
-Net Layout::solved(const membrane::SymmetricSolver& a, Net field) const {
+Net RowShare::solved(const membrane::SymmetricSolver& a, Net field) const {
   Net* const one[] = {&field};
   solve(a, one);
   return field;

@@ -13,10 +13,10 @@ namespace tanktread::coupling {
 
 /// Division of the control points of all particles among the ranks. Each fundamental control point has one owner, which computes its row of a net.
 /// The functions that exchange nets (one row per control point) return equal nets on all ranks; they are collective.
-class Layout {
+class RowShare {
  public:
   /// `space`, `symmetry` and `phases` must outlive this object. The time of all exchanges between ranks is recorded in `phases`. Collective.
-  Layout(const spline::Space& space, const surface::Symmetry& symmetry, Phases& phases);
+  RowShare(const spline::Space& space, const surface::Symmetry& symmetry, Phases& phases);
 
   const Ranks& ranks() const { return ranks_; }
   const std::vector<int>& points() const { return share_.points; }      ///< rank-owned control points, ascending
