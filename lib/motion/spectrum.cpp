@@ -225,7 +225,7 @@ Pairs shifted(const SmallChanges& changes, const SpectrumOptions& options, const
   using Numbers = Eigen::Map<const Eigen::VectorXd>;
   const coupling::Krylov krylov(solver);
   const coupling::LinearSystem system{
-      {{"shape", n}},
+      coupling::one_block("shape", n),
       [&](const double* in, double* out) {
         const Eigen::VectorXd y = Numbers(in, n);
         Eigen::Map<Eigen::VectorXd>(out, n) = y - step * linearised(y);

@@ -192,7 +192,7 @@ std::string solvers_line(const Scene& scene, const VelocityUnknowns& unknowns) {
   return line.empty() ? "no iterative solver" : line;
 }
 
-/// Returns the line of the plan that names the blocks of unknowns of a velocity (BlockSystem), and those that are eliminated.
+/// Returns the line of the plan that names the blocks of unknowns of a velocity (coupling::System), and those that are eliminated.
 std::string blocks_line(const Scene& scene, const VelocityUnknowns& unknowns) {
   const bool constrained = unknowns.deforms && scene.volume.constrained();
   std::string unknown, eliminated;

@@ -9,7 +9,7 @@
 
 namespace tanktread {
 
-/// Unknowns of the equations that are solved for each velocity of a scene (coupling::BlockSystem).
+/// Unknowns of the equations that are solved for each velocity of a scene (coupling::System).
 struct VelocityUnknowns {
   bool deforms = false, bodies = false;  ///< whether there are deformable particles and rigid bodies
   bool tractions = false;                ///< whether the unknowns of rigid bodies are their tractions

@@ -221,7 +221,6 @@ constexpr const char* desingularised =
     "its identities hold in unbounded fluid for closed surfaces with a normal at all points; give `adaptive` or `fixed`";
 constexpr const char* unsteady = "nothing is steady in a flow or a cell that changes in time";
 constexpr const char* drift = "it is for a particle that deforms in unbounded fluid, in a flow whose gradient is uniform";
-constexpr const char* blocks = "the system of all blocks has a factored wall and a prescribed flow rate; give `schur`";
 constexpr const char* interface = "only the interface of a drop slides over the fluid and can have a surfactant";
 }  // namespace reason
 

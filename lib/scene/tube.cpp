@@ -90,10 +90,9 @@ TubeRow with_channel(const coupling::Tube& tube, const stokes::AmbientFlow& flow
 
 void reject_with_tube(const ParticleScene& particle_scene, Rejections& to) {
   const stokes::FlowOptions& flow = particle_scene.flow;
-  const coupling::SolverOptions& solvers = particle_scene.solvers;
-  const bool tube = particle_scene.tube.present, all_blocks = !solvers.eliminates_walls();
+  const bool tube = particle_scene.tube.present;
   const bool fixed = tube && surface::properties(particle_scene.tube.kind()).fixed;
-  const Chosen confined = particle_scene.duct_choice(), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
+  const Chosen confined = particle_scene.duct_choice();
   to.pair(!particle_scene.runs_in_time() && fixed && flow.held == "flow rate", particle_scene.sought(), "Flow/held `flow rate`",
           "a particle in a channel moves with the fluid if the flow rate is prescribed, and can be at rest only if the pressure drop is; "
           "give `pressure drop`");
@@ -105,8 +104,6 @@ void reject_with_tube(const ParticleScene& particle_scene, Rejections& to) {
           "the length of a periodic tube is its period");
   to.pair(tube && particle_scene.quadrature.rule == quadrature::LayerRule::desingularised, "Quadrature/rule `desingularised`", confined,
           reason::desingularised);
-  to.pair(tube && solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system, reason::blocks);
-  to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `pressure drop`", system, reason::blocks);
 }
 
 void check_fit(const ParticleScene& particle_scene, const Body& body) {

@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "system/equations/volumes.hpp"
+
 namespace tanktread::coupling {
 
 namespace {
@@ -30,12 +32,81 @@ Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::Vec
   return result.unaryExpr([](double m) { return m > 0 ? 1 / m : 0; });
 }
 
+/// The collocation sites with frozen layers. The ambient velocity there is its change due to the displacement.
+class FrozenAtSites : public LayersAt {
+ public:
+  /// `ambient`: change of the ambient velocity at the sites or, if not `at_sites`, its control values.
+  FrozenAtSites(FrozenLayers& layers, double viscosity, Net ambient, bool at_sites)
+      : layers_(layers), viscosity_(viscosity), ambient_(std::move(ambient)), at_sites_(at_sites) {}
+
+  Net ambient() override { return ambient_; }
+  Net ambient_control_values() override { return at_sites_ ? Net() : ambient_; }
+  Net of_particles(const Net& load, const Net& density) override {
+    Net u = density.size() > 0 ? layers_.double_layer(density) : Net(Net::Zero(layers_.n_points(), 3));
+    if (load.size() > 0) u -= layers_.single_layer(load) / viscosity_;
+    return u;
+  }
+  void add_walls(const FluidWalls::Response& walls, Net& u) override { u += walls.tube.velocity; }
+
+ private:
+  FrozenLayers& layers_;
+  double viscosity_;
+  Net ambient_;
+  bool at_sites_;
+};
+
+/// Velocities of deformable particles in the Jacobian. Given is the work of a displacement; the rows of rigid bodies are the identity.
+class FrozenVelocities : public Equation {
+ public:
+  /// `moves`: whether velocities are sources, by the double layer or by viscous loads.
+  FrozenVelocities(std::span<const Particle> particles, const Membranes& membranes, Net work, bool has_double, bool moves)
+      : particles_(particles), membranes_(membranes), work_(std::move(work)), has_double_(has_double), moves_(moves) {}
+
+  void add_sources(const BlockVector& x, Given given, Sources& to) const override {
+    Net work = given == Given::included ? work_ : Net();
+    Net moving = System::particles(x);
+    if (moves_ && !moving.isZero(0)) {
+      clear_rigid(particles_, moving);
+      if (membranes_.viscous()) {
+        const Net viscous = membranes_.viscous_work_change(moving);
+        work = work.size() > 0 ? Net(viscous + work) : viscous;
+      }
+      if (has_double_) to.density = std::move(moving);
+    }
+    if (work.size() > 0) to.add_load(membranes_.solved(std::move(work)));
+  }
+  void add_residual(const BlockVector& x, const Sources&, const SurfaceVelocity& u, Given, BlockVector& r) const override {
+    Net caused = u.control_values();
+    clear_rigid(particles_, caused);
+    System::particles(r) += System::particles(x) - caused;
+  }
+
+ private:
+  std::span<const Particle> particles_;
+  const Membranes& membranes_;
+  Net work_;
+  bool has_double_, moves_;
+};
+
+class FrozenTube : public Equation {
+ public:
+  explicit FrozenTube(Tube& tube) : tube_(tube) {}
+  void answer(const BlockVector&, Given, Sources& to) const override {
+    to.walls.emplace().tube.velocity = tube_.frozen_response(to.load, to.density);
+  }
+
+ private:
+  Tube& tube_;
+};
+
 }  // namespace
 
 CapsuleJacobian::CapsuleJacobian(VelocitySolver& solver, FrozenLayers& frozen)
-    : parameters_(solver.parameters()), flow_(solver.flow()), flow_at_sites_(solver.flow_at_targets()), targets_(solver.targets()),
+    : parameters_(solver.parameters()), flow_(solver.flow()),
+      flow_at_sites_(solver.walls().any() || !solver.flow().affine()), targets_(solver.targets()),
       membranes_(solver.membranes()), volumes_(solver.volumes()), frozen_(frozen), explicit_(solver.is_explicit()), tube_(solver.walls().tube),
       interface_(solver.interface()), counts_(solver.counts()),
+      unknowns_(std::make_shared<const Layout>(blocks_of_particles(parameters_.particles))),
       step_solver_(parameters_.solvers.of(parameters_.solvers.implicit_step)),
       inner_solver_(parameters_.solvers.of(parameters_.solvers.velocity)) {
   if (std::ranges::none_of(parameters_.particles, [](const Particle& one) { return one.material.area_order > 0; })) return;
@@ -100,40 +171,31 @@ Net CapsuleJacobian::without_pressure(Net work, const Net& db) const {
 ///
 /// P is the volume projection (2.8), v_inf the ambient velocity, R the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the
 /// membrane tangent. `added_work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies, B is the
-/// identity and B J dx is 0. The layers and the tube are applied once, to the sum of all loads.
+/// identity and B J dx is 0. This is the residual of the system with frozen layers and walls, in which the displacement is what is given.
 Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& added_work) {
-  const bool has_velocity = v.size() > 0 && !explicit_, displaced = dx.size() > 0;
-  if (!has_velocity && !displaced) return v;
-  Net moving, work_change;
-  if (has_velocity) {
-    moving = projection_.applied(v);
-    clear_rigid(parameters_.particles, moving);
-    if (membranes_.viscous()) work_change = membranes_.viscous_work_change(moving);
-  }
+  const bool displaced = dx.size() > 0;
+  if (explicit_ && !displaced) return v;
+  Net work, moved;
   if (displaced) {
-    Net h = shift * membranes_.work_change(dx);
-    if (added_work.size() > 0) h += shift * added_work;
-    work_change = work_change.size() > 0 ? Net(work_change + h) : std::move(h);
+    work = shift * membranes_.work_change(dx);
+    if (added_work.size() > 0) work += shift * added_work;
+    moved = flow_at_sites_ ? Net(shift * (targets_.at_sites() * dx)) : Net(shift * dx * flow_.gradient(Vec3::Zero()).transpose());
+    for (Eigen::Index i = 0; flow_at_sites_ && i < moved.rows(); ++i)
+      moved.row(i) = (moved.row(i) * gradients_[static_cast<size_t>(i)].transpose()).eval();
   }
-  const Net load = work_change.size() > 0 ? membranes_.solved(std::move(work_change)) : Net();
-  Net u = Net::Zero(std::max(v.rows(), dx.rows()), 3);
-  if (has_velocity && frozen_.has_double()) u = frozen_.double_layer(moving);
-  if (load.size() > 0) u -= frozen_.single_layer(load) / parameters_.viscosity;
-  if (tube_) u += tube_->frozen_response(load, moving);
-  if (displaced && flow_at_sites_) {
-    const Net at_sites = shift * (targets_.at_sites() * dx);
-    for (Eigen::Index i = 0; i < u.rows(); ++i) u.row(i) += at_sites.row(i) * gradients_[static_cast<size_t>(i)].transpose();
-  }
-  Net change = targets_.collocated(std::move(u));
-  if (displaced && !flow_at_sites_) change += shift * dx * flow_.gradient(Vec3::Zero()).transpose();
-  clear_rigid(parameters_.particles, change);
-  projection_.apply(change);
-  return v.size() > 0 ? Net(v - change) : Net(-change);
+  System::Equations equations;
+  equations.push_back(std::make_unique<FrozenVelocities>(parameters_.particles, membranes_, std::move(work), frozen_.has_double(), !explicit_));
+  if (projection_.active()) equations.push_back(std::make_unique<VolumeConstraint>(projection_, nullptr));
+  if (tube_) equations.push_back(std::make_unique<FrozenTube>(*tube_));
+  const auto layers = std::make_shared<FrozenAtSites>(frozen_, parameters_.viscosity, std::move(moved), flow_at_sites_);
+  const System system(unknowns_, std::move(equations), layers, [this](const Net& u) { return targets_.collocated(u); });
+  const BlockVector x = v.size() > 0 ? system.of(v) : BlockVector(unknowns_);
+  return System::particles(system.residual(x, displaced ? Given::included : Given::omitted));
 }
 
 /// Solves B v = rhs for v to the relative residual `tolerance`.
 Net CapsuleJacobian::fluid_velocity(const Net& rhs, double tolerance) {
-  const LinearSystem system{velocity_blocks(parameters_.particles), on_nets(rhs.rows(), [this](const Net& u) { return product(u, {}, 0, {}); }), {}};
+  const LinearSystem system{unknowns_->blocks(), on_nets(rhs.rows(), [this](const Net& u) { return product(u, {}, 0, {}); }), {}};
   Eigen::VectorXd v = flat(rhs);
   counts_.solver_iterations += inner_solver_.solve(system, flat(rhs), v, tolerance).iterations;
   return as_net(v);
@@ -182,7 +244,7 @@ Net CapsuleJacobian::solve_step(double shift, const Apply& product, const Apply&
   latest_shift_ = shift;
   if (area_) area_->factor(shift);
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(rhs.size());
-  const LinearSystem system{{{"displacement", rhs.size()}}, product, precondition};
+  const LinearSystem system{one_block("displacement", rhs.size()), product, precondition};
   const SolveReport report = step_solver_.solve(system, flat(rhs), solution, tolerance * tolerance_factor());
   ++counts_.solves;
   counts_.solver_iterations += report.iterations;

@@ -86,6 +86,7 @@ class CapsuleJacobian {
   InterfaceMotion* interface_;  // null if no control points slide
   OperationCounts& counts_;
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
+  std::shared_ptr<const Layout> unknowns_;  // velocities of the particles
   Krylov step_solver_, inner_solver_;
   double latest_shift_ = 0;      // shift gamma dt of the implicit system solved last
   VolumeProjection projection_;  // projection P (2.8); not active if the volumes are free

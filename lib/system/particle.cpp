@@ -64,11 +64,13 @@ std::vector<double> viscosity_contrasts(std::span<const Particle> particles) {
   return result;
 }
 
-Blocks velocity_blocks(std::span<const Particle> particles) {
-  if (particles.size() == 1) return {{"velocity", 3 * particles.front().block.n_points}};
-  Blocks blocks;
-  for (const Particle& particle : particles)
-    blocks.push_back({formatted("velocity of particle %d", static_cast<int>(blocks.size()) + 1), 3 * particle.block.n_points});
+std::vector<Block> blocks_of_particles(std::span<const Particle> particles) {
+  std::vector<Block> blocks;
+  for (const Particle& one : particles) {
+    const int p = static_cast<int>(blocks.size());
+    const std::string name = particles.size() == 1 ? "velocity" : formatted("velocity of particle %d", p + 1);
+    blocks.push_back({.name = name, .on = p, .rows = one.block.n_points});
+  }
   return blocks;
 }
 

@@ -14,7 +14,7 @@
 #include "stokes/layer.hpp"
 #include "system/options.hpp"
 #include "system/rigid_motion.hpp"
-#include "system/solvers/krylov.hpp"
+#include "system/blocks/layout.hpp"
 
 namespace tanktread::coupling {
 
@@ -81,8 +81,8 @@ Eigen::VectorXd viscosity_contrasts_of_points(std::span<const Particle> particle
 /// Returns the viscosity contrast of each element of all particles; empty if all are 0.
 std::vector<double> viscosity_contrasts(std::span<const Particle> particles);
 
-/// Returns the blocks of unknown velocities in linear systems, one block per particle.
-Blocks velocity_blocks(std::span<const Particle> particles);
+/// Returns the blocks of the unknowns on particles, one block per particle in their order.
+std::vector<Block> blocks_of_particles(std::span<const Particle> particles);
 
 /// Sets the rows of rigid bodies to 0.
 void clear_rigid(std::span<const Particle> particles, Net& net);

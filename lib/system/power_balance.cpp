@@ -49,10 +49,10 @@ void Powers::add_columns(Columns& to) const {
 }
 
 PowerBalance::PowerBalance(Capsule& capsule, const Ranks& ranks)
-    : capsule_(capsule), space_(capsule.membrane().space()), ranks_(ranks), gauss_points_(gauss_points(space_)),
+    : capsule_(capsule), space_(capsule.membrane().space()), gauss_points_(gauss_points(space_)),
       values_(value_matrix(space_, gauss_points_)), mass_(space_),
-      layers_(space_, gauss_points_, capsule.solver().membranes().unstressed(), capsule.particles(), capsule.parameters().quadrature,
-              capsule.parameters().medium.get()) {}
+      layers_(space_, gauss_points_, values_, capsule.solver().membranes().unstressed(), capsule.parameters(), capsule.parameters().quadrature,
+              capsule.solver().walls(), ranks) {}
 
 Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   const std::shared_ptr<Evaluation> e = capsule_.evaluate_on_demand(x, slope, 0);
@@ -151,14 +151,9 @@ Net PowerBalance::residual_velocity(Evaluation& e, Net v, const RigidParticles& 
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (const auto& cell = capsule_.cell(); cell && !capsule_.tube()) layers_.repeat(*cell);
   capsule_.solver().move_into_cell(x, &v);
-  const Net inside = density(v, rigid);
   const FluidWalls::Response response = e.wall_response();
-  const Net at = values_ * x;
-  layers_.set_shape(x);
-  return values_ * v - flow.velocities(at) - ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
-    layers_.apply(load, inside, capsule_.parameters().viscosity, own, u);
-    capsule_.solver().walls().add_velocity_at(values_, x, response, own, u);
-  });
+  layers_.set_shape(x, flow.velocities(values_ * x));
+  return values_ * v - velocities(layers_, {.load = load, .density = density(v, rigid), .walls = response, .ambient = true});
 }
 
 }  // namespace tanktread::coupling

@@ -9,7 +9,7 @@
 #include "base/types.hpp"
 #include "membrane/mass.hpp"
 #include "system/capsule.hpp"
-#include "system/targets/layer_pair.hpp"
+#include "system/targets/layers_at.hpp"
 #include "system/parallel/ranks.hpp"
 
 namespace tanktread::coupling {
@@ -52,11 +52,10 @@ class PowerBalance {
 
   Capsule& capsule_;
   const spline::Space& space_;
-  const Ranks& ranks_;
   stokes::Sites gauss_points_;
   Eigen::SparseMatrix<double> values_;  // N_A at `gauss_points_`
   membrane::MassMatrix mass_;
-  LayerPair layers_;
+  LayersBetween layers_;
 };
 
 }  // namespace tanktread::coupling

@@ -129,66 +129,31 @@ Net VelocitySolver::load_and_projection(const Net& x, WorkOfLoads& known, Volume
 Net VelocitySolver::solve_in_cell(const Net& x, const Net& guess, SolvedShape& found) {
   if (!in_fluid(x)) return not_a_number(x);
   push_bodies(x);
-  VolumeProjection volume;
-  const Net fluid = bodies_.tractions ? solve_first_kind(x, volume, found) : solve_second_kind(x, guess, volume, found);
+  const std::shared_ptr<AtShape> at = at_shape(x, found.virtual_work, keeps_multipliers());
+  const Net fluid = bodies_.tractions ? solve_tractions(at, found) : solve_second_kind(*at, guess, found);
   if (!interface_) return fluid;
   found.fluid = symmetric(fluid);
   const auto clock = phases_.time("interface motion");
-  Net v = interface_->velocity(x, volume.gradient.size() > 0 ? volume.gradient : volumes_.gradient(x), fluid, found.slip);
-  volume.apply(v);  // removes the small change of volume that the spline interpolation of the normal velocity causes
+  Net v = interface_->velocity(x, at->volume.active() ? at->volume.gradient : volumes_.gradient(x), fluid, found.slip);
+  at->volume.apply(v);  // removes the small change of volume that the spline interpolation of the normal velocity causes
   return v;
 }
 
-/// Computes the fluid velocity of (4.2) step by step: the load of membranes and rigid bodies, the velocity that this load causes plus the ambient
-/// velocity, and the solution of the linear system for the velocity or, without one, the projection onto constant volumes. The unknowns of rigid
-/// bodies are the densities w of (2.23), which are replaced by the velocities of the bodies at the end. Sets `volume`, and
-/// loads, unknowns and the response of a tube in `found`.
-Net VelocitySolver::solve_second_kind(const Net& x, const Net& guess, VolumeProjection& volume, SolvedShape& found) {
+/// Solves the system at a shape. The unknowns of rigid bodies are the densities w of (2.23), which are replaced by the velocities of the bodies at
+/// the end. Returns the fluid velocity, and sets loads, unknowns and the response of a tube in `found`.
+Net VelocitySolver::solve_second_kind(AtShape& at, const Net& guess, SolvedShape& found) {
   RigidParticles& rigid = bodies_.rigid;
-  Net f = load_and_projection(x, found.virtual_work, &volume);
-  rigid.add_load(f);
-  found.load = f;
-  Net v = explicit_velocity(x, f, {}, &found.response);
-  rigid.add_load_correction(v);
-  rigid.subtract_prescribed(v);
-  if (has_velocity_system()) v = solve_velocity(x, f, volume, v, interface_ ? Net() : guess, found.error);
-  else volume.apply(v);
+  Sources known;
+  BlockVector y = at.system->right_hand_side(&known);
+  if (has_velocity_system()) y = solve_velocity(at, y, interface_ ? Net() : guess, found.error);
+  else if (tube_) found.response = std::move(known.walls->tube);  // no load depends on the unknowns
+  Net v = System::particles(y);
+  at.volume.apply(v);
   found.unknowns = v;
-  if (viscous()) found.load += membranes_.viscous_load(x, symmetric(v));
+  found.load = is_explicit() ? std::move(known.load) : at.system->load(at.system->of(symmetric(v)));
   if (rigid.empty()) return v;
   found.unknowns = symmetric(v);
-  found.load += rigid.completing_load(v);
   rigid.store_density(v);
-  return v;
-}
-
-/// Computes the fluid velocity of (4.2) as solve_second_kind() does, but with the tractions on rigid bodies as unknowns (2.40). Sets `volume`,
-/// and loads, unknowns and the response of a tube in `found`.
-Net VelocitySolver::solve_first_kind(const Net& x, VolumeProjection& volume, SolvedShape& found) {
-  found.load = bodies_.tractions->all_rigid() ? Net(Net::Zero(x.rows(), 3)) : load_and_projection(x, found.virtual_work, &volume);
-  Net v = explicit_velocity(x, found.load, {}, nullptr);
-  volume.apply(v);
-  found.unknowns = solve_tractions(x, volume, symmetric(v), found);
-  return found.unknowns;
-}
-
-/// Returns v_inf - (1/mu) R^-1 A f of (4.2), with the ambient velocity v_inf, the collocation matrix R and the single layer A. Adds the velocity that
-/// walls cause (add_walls) in response to the load f and, if given, to the velocity of the particles. Stores the response of a tube in `answer`, if
-/// given, unless a linear system for the velocity follows, because the solution changes the response. The response then belongs to the final load,
-/// because without a linear system no load depends on the unknowns.
-Net VelocitySolver::explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer) {
-  Net u = layers_.apply_single(x, f);
-  if (flow_at_targets()) {
-    const bool known = tube_ && flow_.duct();
-    u = (known ? flow_.amplitude() * tube_->ambient() : flow_.velocities(targets_.values() * x)) - u / parameters_.viscosity;
-    Tube::Response response = add_walls(f, particle_velocity, true, u);
-    if (answer && tube_ && !has_velocity_system()) *answer = std::move(response);
-    const auto clock = phases_.time("projection");
-    return targets_.control_values(std::move(u));
-  }
-  Net v = flow_.velocities(x);  // exact control values in an affine flow, because basis functions sum to one
-  const auto clock = phases_.time("projection");
-  v -= targets_.control_values(std::move(u)) / parameters_.viscosity;
   return v;
 }
 
@@ -214,19 +179,9 @@ Net VelocitySolver::defect(const Net& shape, const Net& given) {
   Net u = given;
   const Net x = place(shape, &u);
   if (!in_fluid(x)) return not_a_number(x);
-  VolumeProjection volume;
-  Net projected = u;
   WorkOfLoads work;
-  Net f = load_and_projection(x, work, &volume);
-  volume.apply(projected);
-  if (viscous()) f += membranes_.viscous_load(x, projected);
-  Net residual = explicit_velocity(x, f, layers_.has_double() ? projected : Net(), nullptr) - projected;
-  if (layers_.has_double()) {
-    const auto clock = phases_.time("velocity system");
-    residual += targets_.control_values(layers_.apply_double(x, projected));
-  }
-  volume.apply(residual);
-  return symmetric(residual - (u - projected));
+  const std::shared_ptr<AtShape> at = at_shape(x, work, false);
+  return symmetric(-System::particles(at->system->residual(at->system->of(u), Given::included)));
 }
 
 stokes::Evaluations VelocitySolver::kernel_evaluations() const {
@@ -279,19 +234,6 @@ Vec3 VelocitySolver::cell_origin(const Net& x) const {
   if (!tube_) return Vec3::Zero();
   if (tube_->fixed()) return (tube_->wall().start + tube_->wall().end) / 2 * Vec3::UnitX();
   return x.col(0).mean() * Vec3::UnitX();
-}
-
-/// Adds to u, a velocity at the targets, the velocity that plates and posts (2.47), or a tube whose wall traction is eliminated (2.5), cause in
-/// response to the load f and the velocity v of the particles. The walls must be set to the shape. If `with_empty`, also adds the velocity that the
-/// solids cause without particles. Returns the response of the tube.
-Tube::Response VelocitySolver::add_walls(const Net& f, const Net& v, bool with_empty, Net& u) {
-  if (!walls_.any()) return {};
-  const auto clock = phases_.time("wall");
-  FluidWalls eliminated = walls_;
-  if (!eliminates_walls()) eliminated.tube = nullptr;
-  FluidWalls::Response response = eliminated.respond(f, v, with_empty);
-  eliminated.add_velocity(response, targets_, u);
-  return response.tube;
 }
 
 }  // namespace tanktread::coupling

@@ -16,16 +16,16 @@
 #include "system/solids/bodies/body_preconditioner.hpp"
 #include "system/solids/fluid_walls.hpp"
 #include "system/solved_shape.hpp"
+#include "system/system.hpp"
 #include "system/targets/particle_layers.hpp"
 #include "system/volumes.hpp"
 
 namespace tanktread::coupling {
 
 class RigidTractions;
-struct BlockSystem;
 
-/// Solves for the velocity v(x) of all particles at a shape x, the stacked control nets. solve() is the entry point; solve_second_kind() lists its
-/// stages. The functions are in velocity_solver.cpp, and those of linear systems in velocity_solver_systems.cpp.
+/// Solves for the velocity v(x) of all particles at a shape x, the stacked control nets. solve() is the entry point. The
+/// functions are in velocity_solver.cpp; at_shape(), which lists the equations of a scene, and the solves are in velocity_solver_systems.cpp.
 ///
 /// Basic equation, without a wall (2.4), (4.2):
 ///
@@ -37,8 +37,8 @@ struct BlockSystem;
 /// on all other particles, which holds for the volumes (VolumeProjection).
 ///
 /// Solution: if lambda = 1, then D = 0, and the velocity needs no assembly and no linear solve. Otherwise Belos solves P B P v = P rhs, where rhs is
-/// the right-hand side of the equation above. P removes the mode for which B becomes singular as lambda -> 0. BlockSystem describes this system, and
-/// the choices of further unknowns: the multipliers of b.v = 0, the wall traction and the pressure drop of a tube.
+/// the right-hand side of the equation above. P removes the mode for which B becomes singular as lambda -> 0. Further unknowns
+/// may be the multipliers of b.v = 0, the wall traction and the pressure drop of a tube. System contains all of them.
 ///
 /// Viscous membranes and interfaces: B includes the velocity caused by the load M0^{-1} C v (3.10), where v is the fluid velocity:
 ///
@@ -126,9 +126,6 @@ class VelocitySolver {
   /// Returns whether the wall traction is eliminated from the velocity system, so that only the particles have unknowns in the system.
   bool eliminates_walls() const { return !tube_ || bodies_.tractions || parameters_.solvers.eliminates_walls(); }
 
-  /// Returns whether the ambient velocity is evaluated at the targets. Otherwise it is affine, and exact at the control points.
-  bool flow_at_targets() const { return walls_.any() || !flow_.affine(); }
-
   /// Result of move_into_cell(). `shifts`: what was subtracted for each particle; empty without a lattice. `origin`: x1 of the origin of the frame of
   /// a straight periodic wall, which moves with the particles; not set for other walls.
   struct CellMove {
@@ -176,30 +173,33 @@ class VelocitySolver {
     std::unique_ptr<RigidTractions> tractions;
     std::optional<OneBodyInverses> isolated;
   };
-  bool keeps_multipliers() const { return parameters_.volume.constrained() && parameters_.solvers.keeps_multipliers(!eliminates_walls()); }
+  bool keeps_multipliers() const {
+    return parameters_.volume.constrained() && !bodies_.tractions && parameters_.solvers.keeps_multipliers(!eliminates_walls());
+  }
   bool has_velocity_system() const { return !is_explicit() || !eliminates_walls() || keeps_multipliers(); }
   // In the functions below, x is a shape whose particles are in the cell (place), if there is a lattice.
+  /// The system at the shape x, with what it refers to.
+  struct AtShape {
+    Net x;
+    VolumeProjection volume;  // projection (2.8) at x; not active if the volumes are free
+    std::optional<System> system;
+  };
   // Stages.
   Net solve_in_cell(const Net& x, const Net& guess, SolvedShape& found);
-  Net solve_second_kind(const Net& x, const Net& guess, VolumeProjection& volume, SolvedShape& found);
-  Net solve_first_kind(const Net& x, VolumeProjection& volume, SolvedShape& found);
+  Net solve_second_kind(AtShape& at, const Net& guess, SolvedShape& found);
   Net load_and_projection(const Net& x, WorkOfLoads& known, VolumeProjection* volume);
   bool in_fluid(const Net& x);
   void push_bodies(const Net& x);
-  Net explicit_velocity(const Net& x, const Net& f, const Net& particle_velocity, std::optional<Tube::Response>* answer);
   // Cells of lattices, tubes, plates and posts.
   bool deform_cell(double time);
   Vec3 cell_origin(const Net& x) const;
-  Tube::Response add_walls(const Net& f, const Net& v, bool with_empty, Net& u);
-  // Linear systems (velocity_solver_systems.cpp).
-  Net velocities_in(const Net& y) const;
-  Net dependent_load(const Net& x, const Net& y);
-  Net particle_rows(const Net& x, const Net& y, const Net& load, const Net& caused);
-  BlockSystem block_system(const Net& x, const VolumeProjection& volume);
+  // The system and its solution (velocity_solver_systems.cpp).
+  std::shared_ptr<const Layout> unknowns(bool multipliers);
+  std::shared_ptr<AtShape> at_shape(const Net& x, WorkOfLoads& known, bool multipliers);
   bool uses_inverse(double error, double tolerance) const;
   Apply velocity_preconditioner(const Net& x);
-  Net solve_velocity(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs, const Net& guess, double error);
-  Net solve_tractions(const Net& x, const VolumeProjection& volume, const Net& flow, SolvedShape& found);
+  BlockVector solve_velocity(AtShape& at, const BlockVector& right, const Net& guess, double error);
+  Net solve_tractions(const std::shared_ptr<AtShape>& at, SolvedShape& found);
   void record_solve(const SolveReport& report, bool finite, double tolerance);
 
   // Order of initialisation: the initialiser of a member may use the members declared before it. The constructor's body sets up tractions and the
@@ -231,6 +231,7 @@ class VelocitySolver {
   Bodies bodies_;
   std::unique_ptr<InterfaceMotion> interface_;  // set if any control points slide along an interface
   Krylov krylov_;
+  std::array<std::shared_ptr<const Layout>, 2> unknowns_;  // see unknowns(); set at the first call
   std::function<Net(const Net&)> inverse_;  // see use_inverse()
   Forces forces_;
 };

@@ -1,4 +1,4 @@
-// The unknowns of VelocitySolver: the linear system for the velocity, and the tractions on rigid bodies.
+// The system of VelocitySolver at one shape, and its solution: the velocity system, and the tractions on rigid bodies.
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,48 @@
 #include <utility>
 
 #include "base/formatted.hpp"
-#include "system/block_system.hpp"
-#include "system/velocity_solver.hpp"
+#include "system/equations/particles.hpp"
+#include "system/equations/volumes.hpp"
+#include "system/equations/walls.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
+#include "system/velocity_solver.hpp"
 
 namespace tanktread::coupling {
 
 namespace {
+
 constexpr double few_iterations = 1e-5;  // relative residual above which a solve with an approximate inverse takes about three iterations
+
+/// The targets on the particles at the shape x, with exact or assembled layers.
+class LayersAtTargets : public LayersAt {
+ public:
+  /// `bodies`: single layer of the bodies whose unknown is the traction; null if there are none, or on a lattice.
+  LayersAtTargets(VelocitySolver& solver, Net x, BodyLayer* bodies) : solver_(solver), x_(std::move(x)), bodies_(bodies) {}
+
+  Net ambient() override {
+    const stokes::AmbientFlow& flow = solver_.flow();
+    const Tube* const tube = solver_.walls().tube;
+    return tube && flow.duct() ? Net(flow.amplitude() * tube->ambient()) : flow.velocities(solver_.targets().values() * x_);
+  }
+  Net ambient_control_values() override {
+    const bool at_sites = std::ranges::any_of(solver_.particles(), &Particle::by_traction);  // rows that need the velocity at the sites
+    return at_sites || solver_.walls().any() || !solver_.flow().affine() ? Net() : solver_.flow().velocities(x_);
+  }
+  Net of_particles(const Net& load, const Net& density) override {
+    Net others = load, on_bodies;
+    if (bodies_ && load.size() > 0) clear_rigid(solver_.particles(), others), on_bodies = load - others;
+    Net u = solver_.layers().apply(x_, density, others.isZero(0) ? Net() : others);
+    if (on_bodies.size() > 0 && !on_bodies.isZero(0)) u += bodies_->velocity(-on_bodies);
+    return u;
+  }
+  void add_walls(const FluidWalls::Response& walls, Net& u) override { solver_.walls().add_velocity(walls, solver_.targets(), u); }
+
+ private:
+  VelocitySolver& solver_;
+  Net x_;
+  BodyLayer* bodies_;
+};
+
 }  // namespace
 
 /// Adds an iterative solve to the counts. Throws RunFailure if it did not converge although its solution is finite (`finite`).
@@ -29,64 +63,41 @@ void VelocitySolver::record_solve(const SolveReport& report, bool finite, double
   if (finite) require_convergence(report, system, tolerance);
 }
 
-/// Returns the velocities in the unknowns y of the particles: y, with zero in the rows of bodies whose unknown is the traction.
-Net VelocitySolver::velocities_in(const Net& y) const {
-  Net v = y;
-  if (bodies_.tractions) clear_rigid(particles(), v);
-  return v;
+/// Returns the layout of the unknowns: those of the particles and, unless they are eliminated, of the wall and of the volumes.
+std::shared_ptr<const Layout> VelocitySolver::unknowns(bool multipliers) {
+  std::shared_ptr<const Layout>& kept = unknowns_[multipliers];
+  if (kept) return kept;
+  std::vector<Block> blocks = blocks_of_particles(particles());
+  if (!eliminates_walls()) std::ranges::copy(DuctWall::unknowns(*tube_, parameters_.viscosity), std::back_inserter(blocks));
+  if (multipliers) blocks.push_back(VolumeConstraint::unknowns(particles()));
+  return kept = std::make_shared<const Layout>(std::move(blocks));
 }
 
-/// Returns the load that depends on the unknowns y of the particles: viscous stresses of membranes, loads of bodies with prescribed motion (2.23),
-/// and tractions on bodies (2.40). No rows if there is no such load.
-Net VelocitySolver::dependent_load(const Net& x, const Net& y) {
-  Net load;
-  const auto add = [&load](Net part) { load = load.size() > 0 ? Net(load + part) : std::move(part); };
-  if (viscous()) add(membranes_.viscous_load(x, velocities_in(y)));
-  if (bodies_.rigid.prescribed() && !bodies_.tractions) add(bodies_.rigid.completing_load(y));
-  if (!bodies_.tractions) return load;
-  if (load.size() == 0) load = Net::Zero(y.rows(), 3);
-  for (const Particle& one : particles())
-    if (one.rigid) one.block.rows(load) = -one.block.rows(y);
-  return load;
-}
-
-/// Returns B y for the unknowns y of all particles and the load dependent_load(x, y). A row is an equation of one of three kinds:
-///
-///   deformable particle                  v - R^-1 u       (4.2)
-///   body whose unknown is w              (2.23), see RigidParticles::complete
-///   body whose unknown is the traction   u at the sites   (2.40)
-///
-/// u is the velocity that y and its load cause, including the response of walls that are eliminated. `caused`: the part of u due to the tractions on
-/// bodies, if it is known already; otherwise empty.
-Net VelocitySolver::particle_rows(const Net& x, const Net& y, const Net& load, const Net& caused) {
-  if (is_explicit() && !bodies_.tractions) return y;  // y causes no velocity
-  const Net v = velocities_in(y);
-  Net other = load;  // load whose velocity is not contained in `caused`
-  if (caused.size() > 0) clear_rigid(particles(), other);
-  Net u = layers_.apply(x, v, other.isZero(0) ? Net() : other);
-  if (caused.size() > 0) u += caused;
-  add_walls(load, v, false, u);
-  if (bodies_.tractions && bodies_.tractions->all_rigid()) return u;
-  Net rows = v - targets_.serial_control_values(u);
-  if (!bodies_.tractions) {
-    bodies_.rigid.complete(v, rows);
-    return rows;
+/// Returns the system at the shape x in the cell, to which the walls and the rigid bodies must be set. `known`: virtual work of the loads at x,
+/// computed here if it has no rows. `multipliers`: whether the multipliers of the volumes are unknowns.
+std::shared_ptr<VelocitySolver::AtShape> VelocitySolver::at_shape(const Net& x, WorkOfLoads& known, bool multipliers) {
+  const auto at = std::make_shared<AtShape>(AtShape{.x = x, .volume = {}, .system = {}});
+  layers_.discard_rows();
+  System::Equations equations;
+  const std::shared_ptr<const Layout> layout = unknowns(multipliers);
+  if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid; })) {
+    Net load = load_and_projection(x, known, &at->volume);
+    equations.push_back(std::make_unique<DeformableVelocities>(particles(), membranes_, x, std::move(load), layers_.has_double()));
   }
-  for (const Particle& one : particles())
-    if (one.rigid) one.block.rows(rows) = one.block.rows(u);
-  return rows;
-}
-
-/// Returns the system for the unknowns of all particles at the shape x and, unless they are eliminated, those of the wall and of the volumes. The
-/// result refers to this object, x and `volume`.
-BlockSystem VelocitySolver::block_system(const Net& x, const VolumeProjection& volume) {
-  BlockSystem system{.load = [this, &x](const Net& y) { return dependent_load(x, y); },
-                     .particles = [this, &x](const Net& y, const Net& load) { return particle_rows(x, y, load, {}); },
-                     .control_values = [this](const Net& at_sites) { return targets_.collocation().solve(at_sites); },
-                     .volume = volume,
-                     .multipliers = keeps_multipliers()};
-  if (!eliminates_walls()) system.tube = tube_.get(), system.unit = tube_->wall().radius() / parameters_.viscosity;
-  return system;
+  BodyLayer* const bodies = bodies_.tractions ? &bodies_.tractions->layer() : nullptr;
+  if (bodies) equations.push_back(std::make_unique<BodyTractions>(particles(), *bodies, layers_.repeats()));
+  else if (!bodies_.rigid.empty()) equations.push_back(std::make_unique<BodyDensities>(particles(), bodies_.rigid));
+  if (at->volume.active()) equations.push_back(std::make_unique<VolumeConstraint>(at->volume, multipliers ? layout.get() : nullptr));
+  if (!eliminates_walls())
+    equations.push_back(std::make_unique<DuctWall>(*tube_, parameters_.viscosity, *layout, parameters_.solvers.tube));
+  else if (walls_.any())
+    equations.push_back(std::make_unique<EliminatedWalls>(walls_, phases_));
+  at->system.emplace(layout, std::move(equations), std::make_shared<LayersAtTargets>(*this, x, layers_.repeats() ? nullptr : bodies),
+                     [this](const Net& u) {
+                       const auto clock = phases_.time("projection");
+                       return targets_.control_values(u);
+                     });
+  return at;
 }
 
 /// Returns whether the inverse of use_inverse() is the preconditioner of a solve that allows the error `error`, with the relative residual
@@ -111,55 +122,43 @@ Apply VelocitySolver::velocity_preconditioner(const Net& x) {
   });
 }
 
-/// Solves the BlockSystem for the velocities at x and returns the velocity of the particles. `rhs`: v_inf - (1/mu) R^-1 A f, which
-/// includes the response to the load f of walls that are eliminated. The initial guess is rhs if `guess` is empty or there are rigid bodies, and
-/// otherwise `guess`. `error`: see Evaluation::solve.
-Net VelocitySolver::solve_velocity(const Net& x, const Net& f, const VolumeProjection& volume, const Net& rhs, const Net& guess, double error) {
+/// Solves the system for its right-hand side `right` and returns the unknowns. The initial guess is `right` if `guess` is empty or there are rigid
+/// bodies, and otherwise `guess`. `error`: see Evaluation::solve.
+BlockVector VelocitySolver::solve_velocity(AtShape& at, const BlockVector& right, const Net& guess, double error) {
   const auto clock = phases_.time("velocity system");
   const auto least = [](const Particle& one) { return one.radius * std::sqrt(static_cast<double>(one.block.n_points)); };
   const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
-  BlockSystem system = block_system(x, volume);
-  const Eigen::VectorXd right = system.right_hand_side(rhs, f);
   const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
   const bool by_inverse = uses_inverse(error, tolerance);
-  layers_.assemble(x, viscous(), by_inverse);
-  if (by_inverse) system.of_particles = on_nets(x.rows(), inverse_);
-  else if (eliminates_walls()) system.of_particles = velocity_preconditioner(x);
-  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(right.size());
-  unknowns.head(rhs.size()) = flat(guess.size() > 0 && bodies_.rigid.empty() ? guess : as_net(right.head(rhs.size())));
-  const SolveReport report =
-      krylov_.solve(system.linear_system(velocity_blocks(particles()), parameters_.solvers.tube), right, unknowns, tolerance);
-  record_solve(report, unknowns.allFinite(), tolerance);
-  Net v = as_net(unknowns.head(rhs.size()));
-  volume.apply(v);
-  return v;
+  layers_.assemble(at.x, viscous(), by_inverse);
+  if (by_inverse) at.system->set_inverse_of_particles(on_nets(at.x.rows(), inverse_));
+  else if (eliminates_walls()) at.system->set_inverse_of_particles(velocity_preconditioner(at.x));
+  const bool guessed = guess.size() > 0 && bodies_.rigid.empty();
+  BlockVector y = at.system->projected(at.system->of(guessed ? guess : Net(System::particles(right))));
+  record_solve(at.system->solve(krylov_, right, y, tolerance), y.allFinite(), tolerance);
+  return y;
 }
 
-/// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). Returns the velocity of all particles. `flow`:
-/// part of the velocity that does not depend on these unknowns. Adds the loads that depend on the unknowns to the load
-/// of `found`, and sets its response of a tube.
-Net VelocitySolver::solve_tractions(const Net& x, const VolumeProjection& volume, const Net& flow, SolvedShape& found) {
+/// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). Returns the velocity of all particles. Sets the
+/// load, the unknowns and the response of a tube of `found`.
+Net VelocitySolver::solve_tractions(const std::shared_ptr<AtShape>& at, SolvedShape& found) {
   const auto clock = phases_.time("tractions");
-  layers_.assemble(x, viscous(), false);
-  // The functions contain copies of x and volume, because RigidTractions keeps them for moment().
-  const auto projected = [volume](Net y) { return volume.applied(std::move(y)); };
-  const auto product = [this, x, projected](const Net& given, const Net& caused) {
-    const Net y = projected(given);
-    return projected(particle_rows(x, y, dependent_load(x, y), caused));
-  };
-  const auto load = [this, x, projected, known = found.load](const Net& y) { return Net(known + dependent_load(x, projected(y))); };
+  layers_.assemble(at->x, viscous(), false);
   std::vector<Vec3> centres;
   std::vector<RigidDrive> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
   const bool responds = layers_.repeats() || walls_.any() || !is_explicit();
-  const RigidTractions::Solution& solution =
-      bodies_.tractions->solve(x, centres, driven, flow_, RigidTractions::Surroundings{flow, responds, product, load});
-  Net v = velocities_in(projected(solution.unknowns));
+  const RigidTractions::Solution& solution = bodies_.tractions->solve(
+      at->x, centres, driven, flow_, RigidTractions::Surroundings{std::shared_ptr<const System>(at, &*at->system), responds});
+  const BlockVector y = at->system->projected(at->system->of(solution.unknowns));
+  Net v = System::particles(y);
+  clear_rigid(particles(), v);
   auto body = solution.bodies.begin();
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) bodies_.rigid.set_motion(p, body->motion, body->force, body->torque, v), ++body;
-  found.load = load(solution.unknowns);
+  found.load = at->system->load(y);
+  found.unknowns = v;
   for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, v.allFinite(), parameters_.solvers.tolerance);
   if (tube_) found.response = tube_->respond(found.load, v, solution.pressure_correction);
   return v;

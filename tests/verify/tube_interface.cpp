@@ -51,7 +51,7 @@ Interface interface(const Sphere& sphere, const Duct& duct, double ratio) {
   };
   Eigen::VectorXd v = unbounded.solve(Flat(flow.data(), 3 * n));
   const Eigen::VectorXd rhs = v;
-  const coupling::SolveReport report = coupling::Krylov({"GMRES"}).solve({{{"velocity", v.size()}}, apply, {}}, rhs, v, 1e-8);
+  const coupling::SolveReport report = coupling::Krylov({"GMRES"}).solve({coupling::one_block("velocity", v.size()), apply, {}}, rhs, v, 1e-8);
   EXPECT_TRUE(report.converged);
   Interface result;
   result.velocity = Eigen::Map<const Net>(v.data(), n, 3);

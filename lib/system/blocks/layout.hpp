@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,6 +28,7 @@ struct Block {
   double unit = 1;
 
   Eigen::Index size() const { return rows * components; }
+  bool operator==(const Block&) const = default;
 };
 
 /// Index of a block in its layout.
@@ -58,7 +58,7 @@ class Layout {
          const Vec3& of_planes = Vec3::Ones());
   ~Layout();
 
-  std::span<const Block> blocks() const { return blocks_; }
+  const std::vector<Block>& blocks() const { return blocks_; }
   const Block& operator[](BlockId id) const { return blocks_[id.at]; }
   BlockId id(std::string_view name, int on) const;                ///< throws std::logic_error if there is no such block
   Eigen::Index first(BlockId id) const { return first_[id.at]; }  ///< index of the first number of the block among all numbers

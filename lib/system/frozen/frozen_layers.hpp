@@ -60,6 +60,7 @@ class FrozenLayers {
   Net single_layer(const Net& f);        ///< returns A f
   Net double_layer(const Net& v) const;  ///< returns D v
 
+  Eigen::Index n_points() const { return unstressed_.rows(); }
   bool has_double() const { return layers_.has_double(); }
   bool empty() const { return at_.size() == 0; }  ///< true until the first call of assemble()
   double bytes() const;                     ///< memory in bytes, over all ranks, of the layers whose size grows like N^2

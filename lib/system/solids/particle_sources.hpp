@@ -25,7 +25,7 @@ struct SourceTargets {
 ///
 ///   u = -(1/mu) G_C f + (1/8 pi) int_C T q n dGamma,   q = (1 - lambda) v
 ///
-/// where the single layer G_C of the particles includes the factor 1/(8 pi) but not 1/mu. LayerPair is the counterpart for points on the particles.
+/// where the single layer G_C of the particles includes the factor 1/(8 pi) but not 1/mu. LayersAt is the counterpart for points on the particles.
 ///
 /// Order of calls: set() after construction, or set_reference() and set_contrasts(); set_shape() for each shape; then add_velocity() for any f and v.
 /// If several f and v have equal targets, call prepared() once for each shape and pass its result. Nets of particles have one row per control point.

@@ -49,7 +49,7 @@ LinearSystem ChosenPreconditioner::join(const LinearSystem& system) {
   if (kind_ == "none") result.precondition = {};
   if (kind_ == "none" || kind_ == "own") return result;
   const Eigen::Index n = std::accumulate(system.blocks.begin(), system.blocks.end(), Eigen::Index(0),
-                                         [](Eigen::Index sum, const UnknownBlock& block) { return sum + block.size; });
+                                         [](Eigen::Index sum, const Block& block) { return sum + block.size(); });
   result.product = [this, &system, n](const double* in, double* out) {
     system.product(in, out);
     recycled_.record(Eigen::Map<const Eigen::VectorXd>(in, n), Eigen::Map<Eigen::VectorXd>(out, n));

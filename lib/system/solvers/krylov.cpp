@@ -56,9 +56,9 @@ std::vector<std::pair<std::string, double>> residuals_of(const LinearSystem& sys
   system.product(x.data(), ax.data());
   std::vector<std::pair<std::string, double>> residuals;
   Eigen::Index first = 0;
-  for (const UnknownBlock& block : system.blocks) {
-    residuals.emplace_back(block.name, (b - ax).segment(first, block.size).norm() / b.norm());
-    first += block.size;
+  for (const Block& block : system.blocks) {
+    residuals.emplace_back(block.name, (b - ax).segment(first, block.size()).norm() / b.norm());
+    first += block.size();
   }
   return residuals;
 }
@@ -90,7 +90,7 @@ struct Krylov::Impl {
   BelosChoice belos;
   ChosenPreconditioner chosen;
   long generation = 0;  // value of generation_ at the latest solve
-  Blocks blocks;
+  std::vector<Block> blocks;
   Teuchos::RCP<FunctionOperator> product, preconditioner;
   Teuchos::RCP<Vectors> unknowns, right;
   Teuchos::RCP<Problem> problem;
@@ -101,7 +101,7 @@ struct Krylov::Impl {
       blocks = system.blocks;
       chosen.forget();
       const auto map = replicated(std::accumulate(blocks.begin(), blocks.end(), Eigen::Index(0),
-                                                  [](Eigen::Index sum, const UnknownBlock& block) { return sum + block.size; }));
+                                                  [](Eigen::Index sum, const Block& block) { return sum + block.size(); }));
       unknowns = Teuchos::rcp(new Vectors(map, 1));
       right = Teuchos::rcp(new Vectors(map, 1));
       product = Teuchos::rcp(new FunctionOperator(map));

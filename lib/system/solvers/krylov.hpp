@@ -10,17 +10,13 @@
 #include <Eigen/Core>
 
 #include "base/types.hpp"
+#include "system/blocks/layout.hpp"
 #include "system/solvers/options.hpp"
 
 namespace tanktread::coupling {
 
-/// A named block of unknowns, for example velocity, traction or pressure drop.
-struct UnknownBlock {
-  std::string name;
-  Eigen::Index size = 0;
-  bool operator==(const UnknownBlock&) const = default;
-};
-using Blocks = std::vector<UnknownBlock>;
+/// Returns one block of n unknowns.
+inline std::vector<Block> one_block(std::string name, Eigen::Index n) { return {{.name = std::move(name), .rows = n, .components = 1}}; }
 
 /// A linear map on the unknowns of all blocks, stored one block after another.
 using Apply = std::function<void(const double* in, double* out)>;
@@ -32,7 +28,7 @@ inline Apply on_nets(Eigen::Index n, std::function<Net(const Net&)> map) {
 
 /// A linear system. Its operators may be distributed internally, but must return equal values on every rank, up to round-off.
 struct LinearSystem {
-  Blocks blocks;
+  std::vector<Block> blocks;
   Apply product;
   Apply precondition;  ///< optional: approximate inverse of `product`; applied from the right, so that residuals refer to the unpreconditioned system
 };

@@ -156,7 +156,7 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
     if (!out.get_f().is_null()) Thyra::assign(out.get_f().ptr(), *vector_of(space_, numbers(f_, unit_)));
     if (out.get_W_op().is_null()) return;
     chosen_.refresh();
-    newton_ = {{{"places", x.size()}}, on_nets(x.rows(), [this, x, f = f_](const Net& direction) -> Net {
+    newton_ = {one_block("places", x.size()), on_nets(x.rows(), [this, x, f = f_](const Net& direction) -> Net {
       const double size = norm_(direction), e = size > 0 ? 1e-4 / size : 1;
       const Net y = x + e * direction;
       return (g_(y) - y - f) / e;

@@ -41,7 +41,7 @@ struct SolverOptions {
   bool in_lattice = false;                        ///< true in a Domain without a tube, where the double layer is always matrix-free
   bool in_duct = true;                            ///< false in scenes without a tube or channel, where `tube` and `wall` have no effect
   std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values:
-                                                  ///< preconditioner of one system for all unknowns (BlockSystem)
+                                                  ///< preconditioner of one system for all unknowns (DuctWall)
   std::string volume = "auto";                    ///< constant volumes in the system for velocities: projection, or multipliers as unknowns. auto:
                                                   ///< multipliers only if the wall tractions are unknowns
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (see WallSolver)

@@ -58,8 +58,8 @@ bool solves(IterativeOptions options, const List& list) {
       Eigen::Map<Eigen::VectorXd>(out, n) = 0.25 * Eigen::Map<const Eigen::VectorXd>(in, n);
     };
     Eigen::VectorXd x = Eigen::VectorXd::Zero(n), y = x;
-    krylov.solve({{{"unknowns", n}}, apply, {}}, Eigen::VectorXd::Ones(n), x, 1e-6);
-    krylov.solve({{{"unknowns", n}}, apply, precondition}, Eigen::VectorXd::Ones(n), y, 1e-6);
+    krylov.solve({one_block("unknowns", n), apply, {}}, Eigen::VectorXd::Ones(n), x, 1e-6);
+    krylov.solve({one_block("unknowns", n), apply, precondition}, Eigen::VectorXd::Ones(n), y, 1e-6);
     return x.allFinite() && y.allFinite();
   });
 }

@@ -69,7 +69,7 @@ Net ParticleLayers::product(const stokes::Rows<double>& rows, const Net& field) 
 }
 
 Net ParticleLayers::apply(const Net& x, const Net& v, const Net& f) {
-  Net u = !pair_.double_layer ? targets_.zero() : double_rows_.cols() > 0 ? product(double_rows_, v) : apply_double(x, v);
+  Net u = !pair_.double_layer || v.size() == 0 ? targets_.zero() : double_rows_.cols() > 0 ? product(double_rows_, v) : apply_double(x, v);
   if (f.size() > 0) u -= (single_rows_.cols() > 0 ? product(single_rows_, f) : apply_single(x, f)) / parameters_.viscosity;
   return u;
 }

@@ -27,17 +27,14 @@ class ParticleLayers {
   const stokes::Layer& single_layer() const { return pair_.single_layer; }
   bool has_double() const { return pair_.double_layer.has_value(); }
 
-  /// Returns A f on the surface x. Skips the sum if f is zero.
-  Net apply_single(const Net& x, const Net& f);
-
-  Net apply_double(const Net& x, const Net& v);  ///< returns D v on the surface x
-
   /// Assembles the rows of the layers on the surface x for apply() if the options ask for it. `single`: whether apply() will need A. `few`: whether
   /// only a few products are needed, for which assembly does not pay off.
   void assemble(const Net& x, bool single, bool few);
 
-  /// Returns D v - (1/mu) A f, with the double layer D and the single layer A on the surface x, which must have been passed to assemble(). An empty f
-  /// is treated as zero.
+  void discard_rows() { single_rows_.resize(0, 0), double_rows_.resize(0, 0); }  ///< required before another surface than that of assemble()
+
+  /// Returns D v - (1/mu) A f, with the double layer D and the single layer A on the surface x, by the rows that assemble() has made, if any. An
+  /// empty v or f is treated as zero.
   Net apply(const Net& x, const Net& v, const Net& f);
 
   /// Returns the rows of D at these collocation sites on every rank, for the surface that assemble() set. The owner of a site computes its rows.
@@ -46,6 +43,8 @@ class ParticleLayers {
   stokes::Evaluations evaluations() const { return pair_.evaluations(); }  ///< kernel evaluations of this rank
 
  private:
+  Net apply_single(const Net& x, const Net& f);
+  Net apply_double(const Net& x, const Net& v);
   Net product(const stokes::Rows<double>& rows, const Net& field) const;
 
   const CapsuleParameters& parameters_;

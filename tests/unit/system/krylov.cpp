@@ -27,7 +27,7 @@ Eigen::MatrixXd nonsymmetric(int n) {
 
 SolveReport solve(const Krylov& krylov, const Apply& apply, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance,
                   const Apply& precondition = {}) {
-  return krylov.solve({{{"unknowns", b.size()}}, apply, precondition}, b, x, tolerance);
+  return krylov.solve({one_block("unknowns", b.size()), apply, precondition}, b, x, tolerance);
 }
 
 TEST(Krylov, SolvesANonsymmetricSystemToTheTolerance) {
@@ -105,7 +105,8 @@ TEST(Krylov, ReportsTheResidualOfEachBlockIfItDidNotConverge) {
   const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
   for (const char* name : {"GMRES", "Block GMRES", "BICGSTAB"}) {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-    const SolveReport report = Krylov({name, list}).solve({{{"velocity", n - 1}, {"pressure drop", 1}}, apply, {}}, b, x, 1e-10);
+    const std::vector<Block> blocks = {{.name = "velocity", .rows = n - 1, .components = 1}, {.name = "pressure drop", .rows = 1, .components = 1}};
+    const SolveReport report = Krylov({name, list}).solve({blocks, apply, {}}, b, x, 1e-10);
     EXPECT_EQ(report.iterations, 1) << name;
     ASSERT_EQ(report.residuals.size(), 2u) << name;
     EXPECT_NEAR(report.residuals[0].second, (a * x - b).head(n - 1).norm() / b.norm(), 1e-14) << name;
@@ -132,8 +133,10 @@ TEST(Krylov, SolvesTheSameInOneBlockAndInSeveral) {
                                                                                                       // ones
     Eigen::VectorXd x = Eigen::VectorXd::Zero(n), y = x;
     const Krylov krylov({name});
-    EXPECT_TRUE(krylov.solve({{{"all", n}}, apply, {}}, b, x, 1e-10).converged) << name;
-    EXPECT_TRUE(krylov.solve({{{"one", 40}, {"two", 19}, {"three", 1}}, apply, {}}, b, y, 1e-10).converged) << name;
+    const std::vector<Block> several = {
+        {.name = "one", .rows = 20, .components = 2}, {.name = "two", .rows = 19, .components = 1}, {.name = "three", .rows = 1, .components = 1}};
+    EXPECT_TRUE(krylov.solve({one_block("all", n), apply, {}}, b, x, 1e-10).converged) << name;
+    EXPECT_TRUE(krylov.solve({several, apply, {}}, b, y, 1e-10).converged) << name;
     EXPECT_LT((a * x - b).norm(), 2e-10 * b.norm()) << name;
     EXPECT_LT((x - y).norm(), 1e-12 * x.norm()) << name;
   }
@@ -154,7 +157,7 @@ TEST(Krylov, EveryPreconditionerLeadsToTheSolution) {
       const Krylov krylov(IterativeOptions{name, nullptr, preconditioner});
       for (int repeated = 0; repeated < 2; ++repeated) {
         Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-        const SolveReport report = krylov.solve({{{"unknowns", n}}, apply, {}}, b, x, 1e-6);
+        const SolveReport report = krylov.solve({one_block("unknowns", n), apply, {}}, b, x, 1e-6);
         EXPECT_TRUE(report.converged) << name << ", " << preconditioner;
         EXPECT_LT((a * x - b).norm(), 2e-6 * b.norm()) << name << ", " << preconditioner;
         iterations[preconditioner] = report.iterations;
@@ -175,7 +178,7 @@ TEST(Krylov, DiscardsRecycledProducts) {
   const Krylov krylov(IterativeOptions{"GMRES", nullptr, "recycled"});
   const auto solved = [&] {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-    const int iterations = krylov.solve({{{"unknowns", n}}, apply, {}}, Eigen::VectorXd::LinSpaced(n, -1, 2), x, 1e-6).iterations;
+    const int iterations = krylov.solve({one_block("unknowns", n), apply, {}}, Eigen::VectorXd::LinSpaced(n, -1, 2), x, 1e-6).iterations;
     return std::pair(iterations, x);
   };
   const auto [iterations, x] = solved();

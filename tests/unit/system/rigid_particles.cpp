@@ -205,7 +205,7 @@ TEST(RigidTractions, AFailedSolveKeepsTheInitialGuess) {
   const CapsuleParameters alone = single_body(one.space, 1, viscosity, one.parameters.quadrature, one.parameters.solvers);
   RigidTractions tractions(one.space, one.rest, one.rest, alone, {}, {}, one.ranks);
   const auto fails = [](const double*, double* out) { std::fill_n(out, 3, std::numeric_limits<double>::quiet_NaN()); };
-  const LinearSystem system{{{"traction", 3}}, fails, {}};
+  const LinearSystem system{one_block("traction", 3), fails, {}};
   Eigen::VectorXd unknowns = Eigen::VectorXd::Ones(3);
   EXPECT_THROW(tractions.solve_iteratively(system, Eigen::VectorXd::Ones(3), unknowns), RunFailure);
   EXPECT_TRUE(unknowns == Eigen::VectorXd::Ones(3));

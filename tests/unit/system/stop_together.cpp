@@ -39,7 +39,7 @@ class StopTogether : public testing::Test {
 
   void solve(const IterativeOptions& options) {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(n);
-    Krylov(options).solve({{{"unknowns", n}}, map(), {}}, Eigen::VectorXd::Ones(n), x, 1e-10);
+    Krylov(options).solve({one_block("unknowns", n), map(), {}}, Eigen::VectorXd::Ones(n), x, 1e-10);
     EXPECT_TRUE(x.allFinite());
   }
 

@@ -64,20 +64,14 @@ double FreeBodyInTube::pressure_drop(const Net& position) const {
   return pressure_correction(position, found) - body_.tube()->pressure_of(found.density);
 }
 
-/// Returns the velocity that the force density f causes at the sites in the tube. f and the velocity have components in axes that turn with the body,
-/// by `turn` since the start.
-Net FreeBodyInTube::caused(const Net& f, const Mat3& turn) const {
-  return body_.layer().velocity(f) + body_.tube()->respond(-f * turn.transpose()).velocity * turn;
-}
-
 /// Returns the force density on the body at rest at `position` in the tube, which causes the given velocities at its sites.
 Net FreeBodyInTube::density_at_rest(const Net& position, const Net& velocities) const {
   const Mat3 turn = rotation_of(position);
   const Eigen::Index n = 3 * surface_.rows();
-  const Apply apply = on_nets(n / 3, [&](const Net& f) { return caused(f, turn); });
+  const Apply apply = on_nets(n / 3, [&](const Net& f) { return body_.caused(-f, turn); });
   Eigen::VectorXd right(n), z = Eigen::VectorXd::Zero(n);
   Eigen::Map<Net>(right.data(), n / 3, 3) = velocities * turn;
-  iterations_ += body_.solve_iteratively({{{"traction", n}}, apply, body_.layer().preconditioner()}, right, z);
+  iterations_ += body_.solve_iteratively({one_block("traction", n), apply, body_.layer().preconditioner()}, right, z);
   ++solves_;
   return as_net(z) * turn.transpose();
 }
@@ -100,7 +94,7 @@ BoundedFreeBody::Solution FreeBodyInTube::in_body_axes(const Net& position, doub
   const auto apply = [&](const double* in, double* out) {
     const Net f = unit * Eigen::Map<const Net>(in, n, 3);
     const Six motion = Eigen::Map<const Six>(in + 3 * n).cwiseProduct(of_motion);
-    Eigen::Map<Net>(out, n, 3) = caused(f, turn) - rigid_velocity(body_.sites(), motion_of(motion), centre_);
+    Eigen::Map<Net>(out, n, 3) = body_.caused(-f, turn) - rigid_velocity(body_.sites(), motion_of(motion), centre_);
     Eigen::Map<Six>(out + 3 * n) = balance(f).cwiseQuotient(of_force);
   };
   const auto precondition = [&](const double* in, double* out) {
@@ -119,7 +113,8 @@ BoundedFreeBody::Solution FreeBodyInTube::in_body_axes(const Net& position, doub
   Eigen::Map<Net>(right.data(), n, 3) = -flow * turn;
   right.tail<6>() << turn.transpose() * driven_.force / force_unit, turn.transpose() * driven_.torque / (force_unit * radius_);
   if (unknowns_.size() != right.size()) unknowns_ = Eigen::VectorXd::Zero(right.size());
-  iterations_ += body_.solve_iteratively({{{"traction", 3 * n}, {"rigid motion", 6}}, apply, precondition}, right, unknowns_);
+  iterations_ += body_.solve_iteratively({{{.name = "traction", .rows = n}, {.name = "rigid motion", .rows = 2}}, apply, precondition}, right,
+                                         unknowns_);
   const Net f = unit * as_net(unknowns_.head(3 * n));
   const RigidMotion motion = motion_of(Six(unknowns_.tail<6>()).cwiseProduct(of_motion));
   return {{turn * motion.velocity, turn * motion.angular_velocity}, f * turn.transpose(),

@@ -78,7 +78,6 @@ class FreeBodyInTube : public BoundedFreeBody {
   Solution solve(const Net& position) const override;
   Solution in_body_axes(const Net& position, double slower) const;
   double pressure_correction(const Net& position, const Solution& found) const;
-  Net caused(const Net& f, const Mat3& turn) const;
   Net density_at_rest(const Net& position, const Net& velocities) const;
 
   double viscosity_;

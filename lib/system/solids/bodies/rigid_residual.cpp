@@ -27,20 +27,15 @@ quadrature::Options for_residual(quadrature::Options options) {
 }  // namespace
 
 RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters,
-                             const Ranks& ranks)
-    : viscosity_(parameters.viscosity),
-      ranks_(ranks),
+                             const FluidWalls& walls, const Ranks& ranks)
+    : walls_(walls),
       between_(between_sites(space, rest, blocks_of_bodies(parameters.particles))),
-      layers_(space, between_.sites, unstressed, parameters.particles, for_residual(parameters.quadrature), parameters.medium.get()) {}
+      layers_(space, between_.sites, between_.values, unstressed, parameters, for_residual(parameters.quadrature), walls, ranks) {}
 
-Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls) {
-  layers_.set_shape(x);
-  const FluidWalls::Response response = walls.respond(load, v, true);
-  flow += ranks_.divided<Net>(static_cast<int>(between_.values.rows()), 3, [&](std::span<const int> own, Net& u) {
-    layers_.apply(load, v, viscosity_, own, u);
-    walls.add_velocity_at(between_.values, x, response, own, u);
-  });
-  return between_.weights * (between_.values * v - flow);
+Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net flow) {
+  layers_.set_shape(x, std::move(flow));
+  const Net u = velocities(layers_, {.load = load, .density = v, .walls = walls_.respond(load, v, true), .ambient = true});
+  return between_.weights * (between_.values * v - u);
 }
 
 }  // namespace tanktread::coupling

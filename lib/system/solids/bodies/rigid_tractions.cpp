@@ -28,6 +28,19 @@ void set_unit_strains(const Net& at, const spline::Block& block, const Vec3& cen
     columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
 }
 
+/// The sites of a lone body, in a position turned by `turn` from the position of the layer.
+class AloneAtSites : public LayersAt {
+ public:
+  AloneAtSites(BodyLayer& layer, const Mat3& turn) : layer_(layer), turn_(turn) {}
+  Net ambient() override { throw std::logic_error("the ambient flow on a lone body is given apart"); }
+  Net of_particles(const Net& load, const Net&) override { return layer_.velocity(-load * turn_) * turn_.transpose(); }
+  void add_walls(const FluidWalls::Response& walls, Net& u) override { u += walls.tube.velocity; }
+
+ private:
+  BodyLayer& layer_;
+  Mat3 turn_;
+};
+
 std::vector<Particle> bodies_among(std::span<const Particle> particles) {
   std::vector<Particle> bodies;
   std::ranges::copy_if(particles, std::back_inserter(bodies), [](const Particle& one) { return one.rigid.has_value(); });
@@ -89,7 +102,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed
       walls_(walls),
       medium_(parameters.medium),
       layer_(particles_, parameters, own, ranks),
-      residual_(space, unstressed, rest, parameters, ranks),
+      residual_(space, unstressed, rest, parameters, walls_, ranks),
       collocation_(collocation_matrix(space)),
       mass_(space, 8),  // mass matrix by eight Gauss points per direction, because the area element is not a polynomial
       krylov_(parameters.solvers.of(parameters.solvers.velocity)),
@@ -100,13 +113,18 @@ void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
   repeats_ = true;
 }
 
-/// Returns B y (see Surroundings::product), the left-hand side of the system for the unknowns y, including the regularising term of (2.10).
+/// Returns the left-hand side of the system for the unknowns y.
 Net RigidTractions::product(const Net& y) {
-  const Net caused = repeats_ ? Net() : layer_.velocity(y);
-  if (!around_) return walls_.tube ? Net(caused + walls_.tube->respond(load(y)).velocity) : caused;
-  Net all = around_->product(y, caused);
-  if (repeats_) all += layer_.regular(y);
-  return all;
+  if (!around_) return caused(load(y));
+  const System& system = *around_->system;
+  return System::particles(system.residual(system.of(y), Given::omitted));
+}
+
+Net RigidTractions::caused(const Net& load, const Mat3& turn) {
+  AloneAtSites at(layer_, turn);
+  Sources sources{.load = load * turn.transpose()};
+  if (walls_.tube) sources.walls = walls_.respond(sources.load, {}, false);
+  return velocities(at, sources) * turn;
 }
 
 /// Returns the unknowns y, one column per column of `velocities`. In rows of bodies, `velocities` are velocities at the sites; in other rows, they
@@ -116,7 +134,7 @@ Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
   if (!responds()) return layer_.solved(velocities);
   const Eigen::Index n = velocities.rows();
-  const LinearSystem system{{{"traction", n}}, on_nets(n / 3, [this](const Net& y) { return product(y); }), layer_.preconditioner()};
+  const LinearSystem system{one_block("traction", n), on_nets(n / 3, [this](const Net& y) { return product(y); }), layer_.preconditioner()};
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, velocities.cols());
   for (Eigen::Index k = 0; k < all.cols(); ++k) {
     if (velocities.col(k).isZero(0)) continue;
@@ -172,14 +190,13 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   // Indices of the columns that follow the columns of the unit motions: ambient flow, and flow of the duct (the same column unless `apart`).
   const Eigen::Index with_flow = m, with_duct = apart ? m + 1 : m;
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, with_duct + 1), fields = Eigen::MatrixXd::Zero(n, m);
-  const Net at_sites = around_ ? Net(collocation_ * around_->flow) : flow.velocities(sites_);
-  Net empty = around_ ? Net(-around_->flow) : at_sites;  // v_inf on bodies, minus the known velocity on other particles; its density is subtracted
+  // v_inf on bodies, minus the known velocity on other particles; its density is subtracted
+  const Net empty = around_ ? Net(-System::particles(around_->system->right_hand_side())) : flow.velocities(sites_);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
     const spline::Block& block = particles_[p].block;
     set_unit_motions(sites_, block, centres[p], velocities.middleCols<6>(column));
     set_unit_motions(x, block, centres[p], fields.middleCols<6>(column));
-    block.rows(empty) = block.rows(at_sites);
   }
   velocities.col(with_flow) = flat(empty);
   if (apart) velocities.col(with_duct) = flat(walls_.tube->flow().velocities(sites_));
@@ -198,7 +215,7 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   for (const Particle& body : particles_) body.block.rows(v) = body.block.rows(as_net(moving));
   const Net between = flow.velocities(residual_.points().values * x);
   solution_ = {};
-  solution_.shape = x, solution_.residual = flat(residual_.integrated(x, load(unknowns), v, between, walls_));
+  solution_.shape = x, solution_.residual = flat(residual_.integrated(x, load(unknowns), v, between));
   const Eigen::VectorXd correction = corrections(unknowns, of_all, solution_.residual), change = freed(free, resistance, -correction.head(m));
   motion += change;
   y += z * change;
@@ -227,7 +244,7 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
 double RigidTractions::pressure_correction_of(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, double slower,
                                               const Net& z) {
   const Net places = residual_.points().values * x, of_duct = walls_.tube->flow().velocities(places);
-  const Eigen::VectorXd residual = flat(residual_.integrated(x, load(f), v, flow.velocities(places) - slower * of_duct, walls_));
+  const Eigen::VectorXd residual = flat(residual_.integrated(x, load(f), v, flow.velocities(places) - slower * of_duct));
   return walls_.tube->pressure_correction(residual_.points(), of_duct, f, corrections(f, flat(z), residual)[0]);
 }
 

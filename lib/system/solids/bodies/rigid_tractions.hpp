@@ -1,7 +1,7 @@
 #pragma once
 // Integral equation of the first kind for the tractions on rigid bodies, also among deformable particles.
 
-#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,6 +20,7 @@
 #include "system/rigid_motion.hpp"
 #include "system/solids/bodies/rigid_residual.hpp"
 #include "system/solvers/krylov.hpp"
+#include "system/system.hpp"
 
 namespace tanktread::coupling {
 
@@ -62,17 +63,11 @@ class RigidTractions {
   /// Sets the periodic cell of the particles, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
 
-  /// Interactions of the bodies with walls, with deformable particles and with images on a lattice. Nets have one row per control point of all
-  /// particles. The unknowns y are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
+  /// Interactions of the bodies with walls, with deformable particles and with images on a lattice: the system of all particles. Its unknowns y are
+  /// the force densities f in rows of bodies (BodyTractions), and the velocity v in rows of deformable particles.
   struct Surroundings {
-    Net flow;       ///< control values of the velocity (4.2) due to the ambient flow and known loads
+    std::shared_ptr<const System> system;
     bool responds;  ///< true if the velocity on the bodies depends on y not only through the single layers of the bodies
-
-    /// Returns B y, the left-hand side of the linear system for y. `caused`: velocity at all collocation sites due to the force densities f in y;
-    /// empty on a lattice. Rows of bodies contain the velocity at the sites due to y. All other rows contain v minus the control values of the
-    /// velocity due to y, projected onto constant volumes. Collective.
-    std::function<Net(const Net& y, const Net& caused)> product;
-    std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
   };
 
   /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, call Tube::set_shape(x) before. `around`:
@@ -109,6 +104,10 @@ class RigidTractions {
   /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
   SolvedBody integrals(std::size_t p, const Net& f);
 
+  /// Returns the velocity that the load f on a lone body causes at its sites, with the response of a tube. f and the velocity have components in axes
+  /// that turn with the body, by `turn` since the net that was set last. Collective.
+  Net caused(const Net& load, const Mat3& turn = Mat3::Identity());
+
   /// Returns the positions of the collocation sites of all particles on the net passed to set_shape() last.
   const Net& sites() const { return sites_; }
 
@@ -137,7 +136,7 @@ class RigidTractions {
   Net product(const Net& y);
   Net force_densities(const Net& y) const;
   Net completed(const Eigen::VectorXd& y);
-  Net load(const Net& y) const { return around_ ? around_->load(y) : Net(-y); }
+  Net load(const Net& y) const { return around_ ? around_->system->load(around_->system->projected(around_->system->of(y))) : Net(-y); }
   Eigen::VectorXd corrections(const Net& y, const Eigen::MatrixXd& z, const Eigen::VectorXd& residual);
 
   std::vector<Particle> particles_;  // the bodies

@@ -106,35 +106,35 @@ Net Tube::solve_wall(const Net& rhs) { return viscosity() * wall_->solve(rhs); }
 
 double Tube::viscosity() const { return particle_->parameters.viscosity; }
 
-/// Sets the wall traction, and adds the contribution of v to the pressure drop.
-void Tube::respond_open(const Net& f, const Net& v, Response& response) {
-  Net on_wall = Net::Zero(wall_->points().sites().rows(), 3);
-  if (v.size() > 0 && particle_->sources.has_double()) on_wall += particle_on_wall({}, v);
-  response.pressure_drop += pressure_of_velocity(v, &on_wall);
-  if (f.size() > 0) on_wall += particle_on_wall(f);
-  response.wall_traction = solve_wall(on_wall) + response.pressure_drop * wall_->traction_per_pressure_drop();
+Tube::Response Tube::cause(const Net& f, const Net& v, double pressure_correction) {
+  if (latest_shape_.rows() == 0) throw std::logic_error("a tube needs the shape of the particles before it responds");
+  Response found;
+  found.pressure_drop = pressure_of(f) + pressure_correction;
+  if (cell()) {
+    ParticleData::Cause both = particle_->cause(f, v);
+    found.on_wall = wall_->points().collocated(both.at_wall);
+    found.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? nullptr : &found.on_wall);
+    found.velocity = on_particle(std::move(both.at_sites));
+    found.load = f, found.particle_velocity = v;
+    return found;
+  }
+  found.velocity = Net::Zero(particle_->sites().rows(), 3), found.on_wall = Net::Zero(wall_->points().sites().rows(), 3);
+  if (v.size() > 0 && particle_->sources.has_double()) found.on_wall += particle_on_wall({}, v);
+  found.pressure_drop += pressure_of_velocity(v, &found.on_wall);
+  if (f.size() > 0) found.on_wall += particle_on_wall(f);
+  return found;
 }
 
-/// Sets the wall traction and adds the contribution of v to the pressure drop. Adds the velocity due to the images of the particle.
-void Tube::respond_periodic(const Net& f, const Net& v, Response& response) {
-  ParticleData::Cause cause = particle_->cause(f, v);
-  const Net on_wall = wall_->points().collocated(cause.at_wall);
-  response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? nullptr : &on_wall);
-  response.wall_traction = solve_wall(on_wall);
-  response.velocity += on_particle(std::move(cause.at_sites));
-  response.load = f, response.particle_velocity = v;
+void Tube::add_answer(Response& response) {
+  response.velocity = response.velocity + wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
+  if (const double slower = flow_rate_reduction(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
 }
 
 Tube::Response Tube::respond(const Net& f, const Net& v, double pressure_correction) {
-  if (latest_shape_.rows() == 0) throw std::logic_error("a tube needs the shape of the particles before it responds");
   const auto clock = phases_.time("wall");
-  Response response;
-  response.velocity = Net::Zero(particle_->sites().rows(), 3);
-  response.pressure_drop = pressure_of(f) + pressure_correction;
-  if (cell()) respond_periodic(f, v, response);
-  else respond_open(f, v, response);
-  response.velocity = response.velocity + wall_on_particle(response.wall_traction) + response.pressure_drop * particle_->inlet;
-  if (const double slower = flow_rate_reduction(response.pressure_drop); slower != 0) response.velocity -= slower * particle_->ambient;
+  Response response = cause(f, v, pressure_correction);
+  response.wall_traction = solve_wall(response.on_wall) + response.pressure_drop * wall_->traction_per_pressure_drop();
+  add_answer(response);
   return response;
 }
 

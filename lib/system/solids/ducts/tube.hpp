@@ -80,10 +80,10 @@ struct TubeParameters {
 ///   frame of the wall      uses of fixed() and DuctProperties::fixed, because a wall that is not fixed moves along x1 with the centroid
 ///   flow v_inf             uses of DuctProperties::parallel_flow; pressure_correction(), pressure_driven_velocity()
 ///   wall                   Wall::is_for(), flow_of_forces() and flow_of_double_layer()
-///   one pressure drop      respond_open(), frozen_response(), flow_rate(), flow_rate_reduction(), work(); BlockSystem (its unknown);
+///   one pressure drop      cause(), frozen_response(), flow_rate(), flow_rate_reduction(), work(); DuctWall (its unknown);
 ///                          PowerBalance::flow_power(); the pressure correction of RigidTractions; FreeBodyInTube::pressure_drop()
 ///   checks                 checks(), cap_velocity()
-///   system                 BlockSystem (known velocity of images), the single inlet in Wall and FlowWeights
+///   system                 the single inlet in Wall and FlowWeights
 ///   scene                  TubeRow in scene/tube.cpp; films() in scene/particles/gaps.cpp
 ///   record                 channel.h5 in record/results.cpp
 class Tube {
@@ -117,10 +117,17 @@ class Tube {
     Net wall_traction;
     double pressure_drop = 0;  ///< disturbance dp of the pressure drop
     Net load, particle_velocity;  ///< load f and velocity v of the particle that cause this response; set only in a periodic duct
+    Net on_wall;                  ///< velocity that f and v cause at the wall: right-hand side of (2.6)
+    double caused_drop = 0;       ///< dp (2.7) of f and v, if `pressure_drop` is an unknown
   };
 
   /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `pressure_correction`: collocation-error correction of dp.
   Response respond(const Net& f, const Net& v = {}, double pressure_correction = 0);
+
+  /// Returns what f and v cause without the wall's answer: the velocity at the wall, dp (2.7) and the velocity due to images of the particle.
+  Response cause(const Net& f, const Net& v, double pressure_correction = 0);
+  /// Adds to the velocity of `response` the velocity due to its wall traction and its pressure drop.
+  void add_answer(Response& response);
 
   /// Computes rows `rows` of the velocity u of a response at points on the particle. `points`: values of its basis functions there. `x`: its control
   /// points (laboratory frame). Not collective, except if the duct repeats or its pressure drop is prescribed: then every rank must call it with the
@@ -224,8 +231,6 @@ class Tube {
   double empty_pressure_drop() const;
   Net pressure_driven_velocity(const Net& at) const;
   Net on_particle(const Net& own) const;
-  void respond_open(const Net& f, const Net& v, Response& response);
-  void respond_periodic(const Net& f, const Net& v, Response& response);
   double pressure_of_velocity(const Net& v, const Net* on_wall = nullptr);
   const FlowWeights& flow_weights();
 

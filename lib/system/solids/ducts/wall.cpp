@@ -163,7 +163,7 @@ Net Wall::iterated(const Net& rhs) const {
       Eigen::Map<Eigen::VectorXd>(out, n) = fundamental(found);
     };
   };
-  const LinearSystem system{{{"wall traction", b.size()}},
+  const LinearSystem system{one_block("wall traction", b.size()),
                             through([this](const Net& f, Net& u) { u = apply(f); }),
                             through([this](const Net& u, Net& f) { patches_of_rows_->apply(u, f); })};
   Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());

@@ -1,0 +1,50 @@
+#include "system/equations/walls.hpp"
+
+#include <utility>
+
+namespace tanktread::coupling {
+
+void EliminatedWalls::answer(const BlockVector&, Given given, Sources& to) const {
+  const bool with_empty = given == Given::included;
+  if (!with_empty && to.load.size() == 0 && to.density.size() == 0) return;
+  const auto clock = phases_.time("wall");
+  to.walls = walls_.respond(to.load, to.density, with_empty);
+}
+
+DuctWall::DuctWall(Tube& tube, double viscosity, const Layout& unknowns, std::string form)
+    : tube_(tube), form_(std::move(form)), unit_(tube.wall().radius() / viscosity), traction_(unknowns.id("wall traction", -1)),
+      drop_(unknowns.id("pressure drop", -1)) {}
+
+std::vector<Block> DuctWall::unknowns(const Tube& tube, double viscosity) {
+  const double unit = viscosity / tube.wall().radius();
+  return {{.name = "wall traction", .rows = static_cast<Eigen::Index>(tube.wall().sites.size()), .unit = unit},
+          {.name = "pressure drop", .rows = 1, .components = 1, .parity = Parity::scalar, .unit = unit}};
+}
+
+void DuctWall::answer(const BlockVector& x, Given, Sources& to) const {
+  to.walls.emplace();
+  Tube::Response& response = to.walls->tube = tube_.cause(to.load, to.density);
+  response.caused_drop = std::exchange(response.pressure_drop, x.value(drop_)(0, 0));
+  response.wall_traction = x.value(traction_);
+  tube_.add_answer(response);
+}
+
+void DuctWall::add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity&, Given, BlockVector& r) const {
+  const Tube::Response& response = from.walls->tube;
+  r(traction_) += tube_.wall_on_wall(response.wall_traction) - response.pressure_drop * tube_.inlet_on_wall() - response.on_wall;
+  r(drop_) += x(drop_) - Eigen::MatrixXd::Constant(1, 1, unit_ * response.caused_drop);
+}
+
+void DuctWall::precondition(const BlockVector& r, BlockVector& x) const {
+  x(traction_) = r(traction_), x(drop_) = r(drop_);
+  if (form_ == "block") return;
+  Net on_wall = r(traction_);
+  if (form_ == "block triangular") {
+    const Net y = System::particles(std::as_const(x));
+    x(drop_)(0, 0) += unit_ * tube_.pressure_of({}, y);
+    on_wall += x.value(drop_)(0, 0) * tube_.inlet_on_wall() + tube_.particle_on_wall({}, y);
+  }
+  x.set(traction_, tube_.solve_wall(on_wall));
+}
+
+}  // namespace tanktread::coupling

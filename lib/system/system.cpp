@@ -1,0 +1,93 @@
+#include "system/system.hpp"
+
+#include <utility>
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// Returns the number of control points of all particles. The blocks of the particles are the first ones.
+Eigen::Index n_points(const Layout& unknowns) {
+  Eigen::Index n = 0;
+  for (const Block& block : unknowns.blocks()) n += block.on >= 0 ? block.rows : 0;
+  return n;
+}
+
+}  // namespace
+
+Eigen::Map<Net> System::particles(BlockVector& x) { return {x.numbers().data(), n_points(*x.layout()), 3}; }
+Eigen::Map<const Net> System::particles(const BlockVector& x) { return {x.numbers().data(), n_points(*x.layout()), 3}; }
+
+System::System(std::shared_ptr<const Layout> unknowns, Equations equations, std::shared_ptr<LayersAt> layers,
+               std::function<Net(const Net&)> control_values)
+    : unknowns_(std::move(unknowns)), equations_(std::move(equations)), layers_(std::move(layers)), control_values_(std::move(control_values)) {}
+
+Sources System::sources(const BlockVector& x, Given given) const {
+  Sources all;
+  all.ambient = given == Given::included;
+  for (const auto& one : equations_) one->add_sources(x, given, all);
+  return all;
+}
+
+BlockVector System::residual(const BlockVector& x, Given given, Sources* found) const {
+  const BlockVector y = projected(x);
+  Sources all = sources(y, given);
+  for (const auto& one : equations_) one->answer(y, given, all);
+  const SurfaceVelocity u(*layers_, all, control_values_);
+  BlockVector r(unknowns_);
+  for (const auto& one : equations_) one->add_residual(y, all, u, given, r);
+  r = projected(std::move(r));
+  r += x;
+  r -= y;
+  if (found) *found = std::move(all);
+  return r;
+}
+
+BlockVector System::right_hand_side(Sources* found) const {
+  BlockVector r = residual(BlockVector(unknowns_), Given::included, found);
+  r *= -1;
+  return r;
+}
+
+BlockVector System::projected(BlockVector x) const {
+  for (const auto& one : equations_) one->project(x);
+  return x;
+}
+
+Net System::load(const BlockVector& x) const {
+  Net load = sources(x, Given::included).load;
+  return load.size() > 0 ? load : Net(Net::Zero(particles(x).rows(), 3));
+}
+
+BlockVector System::of(const Net& of_particles) const {
+  BlockVector x(unknowns_);
+  particles(x) = of_particles;
+  return x;
+}
+
+BlockVector System::precondition(const BlockVector& r) const {
+  BlockVector x(unknowns_);
+  if (of_particles_) of_particles_(particles(r).data(), particles(x).data());
+  else particles(x) = particles(r);
+  for (const auto& one : equations_) one->precondition(r, x);
+  return x;
+}
+
+SolveReport System::solve(const Krylov& krylov, const BlockVector& right, BlockVector& x, double tolerance) const {
+  const auto on_numbers = [this](auto map) -> Apply {
+    return [this, map](const double* in, double* out) {
+      BlockVector v(unknowns_);
+      const Eigen::Index n = v.numbers().size();
+      v.numbers() = Eigen::Map<const Eigen::VectorXd>(in, n);
+      Eigen::Map<Eigen::VectorXd>(out, n) = map(v).numbers();
+    };
+  };
+  const LinearSystem system{unknowns_->blocks(), on_numbers([this](const BlockVector& v) { return residual(v, Given::omitted); }),
+                            on_numbers([this](const BlockVector& r) { return precondition(r); })};
+  Eigen::VectorXd found = x.numbers();
+  const SolveReport report = krylov.solve(system, right.numbers(), found, tolerance);
+  x.numbers() = found;
+  return report;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,104 @@
+#pragma once
+// The coupled system: kinds of equations for blocks of unknowns, and the one residual that all solves use.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "system/blocks/block_vector.hpp"
+#include "system/solvers/krylov.hpp"
+#include "system/targets/layers_at.hpp"
+
+namespace tanktread::coupling {
+
+/// Whether a residual contains what does not depend on the unknowns (ambient flow, given loads, forces and motions), or only its linear part.
+enum class Given { included, omitted };
+
+/// Velocity that the sources cause on the particles: at the targets, and its control values R^-1 u, computed at first use.
+class SurfaceVelocity {
+ public:
+  SurfaceVelocity(LayersAt& layers, const Sources& sources, const std::function<Net(const Net&)>& control_values)
+      : at_targets_(velocities(layers, sources, &known_)), map_(control_values) {}
+
+  /// Returns the velocity at the targets; without the ambient velocity if its control values are known (LayersAt::ambient_control_values).
+  const Net& at_targets() const { return at_targets_; }
+  const Net& control_values() const {
+    if (!control_values_) control_values_ = known_.size() > 0 ? Net(known_ + map_(at_targets_)) : map_(at_targets_);
+    return *control_values_;
+  }
+
+ private:
+  Net known_, at_targets_;
+  const std::function<Net(const Net&)>& map_;
+  mutable std::optional<Net> control_values_;
+};
+
+/// One kind of unknown on all surfaces that have it, with the equations that determine it, at one shape. The unknowns of the particles are three
+/// numbers per control point, whose meaning depends on the kind of the particle: System::particles gives all of them as one net. All other unknowns
+/// are blocks of their equations.
+class Equation {
+ public:
+  virtual ~Equation() = default;
+
+  /// Removes from x, unknowns or a residual, what this equation eliminates by a projection P: x becomes P x.
+  virtual void project(BlockVector& /*x*/) const {}
+
+  /// Adds the loads and velocities that the unknowns x put on the surfaces.
+  virtual void add_sources(const BlockVector& /*x*/, Given, Sources& /*to*/) const {}
+
+  /// Sets what a wall puts on the fluid, in answer to the sources of all particles: by its unknowns in x or, if they are eliminated, by its factors.
+  virtual void answer(const BlockVector& /*x*/, Given, Sources& /*to*/) const {}
+
+  /// Adds to r how much x violates this equation. `u`: velocity that the sources cause on the particles.
+  virtual void add_residual(const BlockVector& /*x*/, const Sources&, const SurfaceVelocity& /*u*/, Given, BlockVector& /*r*/) const {}
+
+  /// Changes x, an approximate solution for the residual r in which earlier equations have set their unknowns, to one that solves this equation too.
+  virtual void precondition(const BlockVector& /*r*/, BlockVector& /*x*/) const {}
+};
+
+/// The linear system of all unknowns at one shape: the only statement of the equations. Its residual is affine in the unknowns x. The right-hand side
+/// of a solve is -residual(0, included), the product of an iterative solver residual(x, omitted), and the defect of given velocities
+/// residual(x, included).
+class System {
+ public:
+  using Equations = std::vector<std::unique_ptr<const Equation>>;
+
+  /// `layers`: the targets on the particles. `control_values`: returns the control values of a velocity at the targets, R^-1 u.
+  System(std::shared_ptr<const Layout> unknowns, Equations equations, std::shared_ptr<LayersAt> layers,
+         std::function<Net(const Net&)> control_values);
+
+  const std::shared_ptr<const Layout>& unknowns() const { return unknowns_; }
+  static Eigen::Map<Net> particles(BlockVector& x);              ///< unknowns of all particles, one row per control point
+  static Eigen::Map<const Net> particles(const BlockVector& x);
+  BlockVector of(const Net& particles) const;                    ///< returns unknowns with these unknowns of the particles, and zero for all others
+
+  /// Returns the loads and velocities that x puts on the particles, without the answer of walls.
+  Sources sources(const BlockVector& x, Given given) const;
+
+  /// Returns how much x violates the equations: P (B P x - w) + (1 - P) x, with the operator B and the right-hand side w of (4.2) and the projection
+  /// P of the equations. `found`: if given, receives all sources.
+  BlockVector residual(const BlockVector& x, Given given, Sources* found = nullptr) const;
+  BlockVector right_hand_side(Sources* found = nullptr) const;   ///< -residual(0, included)
+  Net load(const BlockVector& x) const;                          ///< load of the fluids on all particles
+
+  /// Removes from x what the equations eliminate by projection: P x.
+  BlockVector projected(BlockVector x) const;
+
+  /// Sets an approximate inverse of the rows of the particles; by default, and if it is empty, the identity.
+  void set_inverse_of_particles(Apply of_particles) { of_particles_ = std::move(of_particles); }
+  BlockVector precondition(const BlockVector& r) const;
+
+  /// Solves residual(x, omitted) = right to the relative residual `tolerance`, from the guess x.
+  SolveReport solve(const Krylov& krylov, const BlockVector& right, BlockVector& x, double tolerance) const;
+
+ private:
+  std::shared_ptr<const Layout> unknowns_;
+  Equations equations_;
+  std::shared_ptr<LayersAt> layers_;
+  std::function<Net(const Net&)> control_values_;
+  Apply of_particles_;
+};
+
+}  // namespace tanktread::coupling
