@@ -126,11 +126,12 @@ Tanktread:
 
 def the_block_system_includes_velocity_dependent_loads_and_conserves_every_volume():
     """A prescribed body and a viscous membrane together with other particles, in a tube with ends and in a periodic
-    tube."""
+    tube, and at a prescribed pressure drop."""
     viscous = DECK.replace("pre-inflation: 0.02", "pre-inflation: 0.02, shear viscosity: 1.0")
     viscous = viscous.replace("final time: 0.3", "fixed step: 1.0e-3, final time: 1.0e-3")
     periodic = BESIDE_OTHERS.replace("axial elements: 8}", "axial elements: 8, periodic length: 5.0}")
-    for name, text, of in ("ends", BESIDE_OTHERS, "capsule/"), ("period", periodic, "capsule/"), ("viscous", viscous, ""):
+    held = BESIDE_OTHERS.replace("{type: duct}", "{type: duct, held: pressure drop}")
+    for name, text, of in (("ends", BESIDE_OTHERS, "capsule/"), ("period", periodic, "capsule/"), ("held", held, "capsule/"), ("viscous", viscous, "")):
         found = {}
         for form in "schur", "block triangular":
             settings = [f"Solvers/tube={form}", "Solvers/tolerance=1e-10", "Solvers/Belos/Maximum Iterations=2000",

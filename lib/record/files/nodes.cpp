@@ -129,7 +129,7 @@ Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>
     const double* at = sums + n * derivative + k;
     return Vec3(at[0], at[n_parts * n], at[2 * n_parts * n]);
   };
-  jets.clear();
+  jets.clear(), jets.reserve(static_cast<std::size_t>(n));
   for (int k = 0; k < n; ++k) jets.push_back({part(0, k), part(1, k), part(2, k), part(3, k), part(4, k), part(5, k)});
   return points;
 }
@@ -138,7 +138,7 @@ Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>
 /// value from the element with the lowest index. The jets are computed by all threads.
 template <class Use>
 void Nodes::each_cell(const Net& net, Use use) const {
-  constexpr int at_a_time = 256;
+  const int at_a_time = std::min(256, map_.n_elements());
   std::vector<Points> points(at_a_time);
   std::vector<std::vector<surface::Jet>> all(at_a_time);
   for (int end = map_.n_elements(); end > 0; end -= at_a_time) {
