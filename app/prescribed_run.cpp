@@ -73,8 +73,9 @@ int StationaryRun::record(const Body& body, Columns& row, const SurfaceSnapshot&
   results.record(row);
   for (const Warning& remark : remarks) results.warn(remark);
   if (const std::string coarse = coarse_wall(scene_, body, row); !coarse.empty()) results.warn(coarse);
-  motion::State state;
-  state.x = body.rest;
+  motion::TimeState state;
+  state.x = coupling::State(std::make_shared<coupling::Layout>(std::vector<coupling::Block>{{"shape", 0, body.rest.rows()}}));
+  state.x(coupling::BlockId{0}) = body.rest;
   results.save({}, state, {}, results.sample(snapshot, state.time));
   if (scene_.output.surface_text) results.write_surface(body.rest);
   clock_.reset();

@@ -110,7 +110,7 @@ class Run : AnyRun {
   /// Makes one step and records its row. Returns the reason to end the run early, or an empty text. If a stop signal arrives within the step or the
   /// step fails, discards the step. Throws RunFailure if the step fails.
   std::string step() {
-    const motion::State before = state_;
+    const motion::TimeState before = state_;
     const RunTotals totals = totals_;
     adapting_ = false;
     const std::string error = error_of([this] { advance(); });
@@ -148,7 +148,7 @@ class Run : AnyRun {
   void advance() {
     const double snapshot = scene_.next_snapshot(state_.time);
     const bool lands = scene_.lands_on_snapshots();
-    motion::State before = state_;
+    motion::TimeState before = state_;
     within_step_.reset();
     steps_.advance(state_, lands ? snapshot : scene_.time.final_time, before);
     check_mesh();
@@ -210,12 +210,12 @@ class Run : AnyRun {
   }
 
   /// Interpolates the state at the latest snapshot time that the step has passed. The snapshot shows this state.
-  void interpolate_within(const motion::State& before) {
+  void interpolate_within(const motion::TimeState& before) {
     double time = scene_.next_snapshot(before.time);
     for (double next = scene_.next_snapshot(time); next <= state_.time && next > time; next = scene_.next_snapshot(time)) time = next;
     const motion::DenseOutput dense(before, state_);
-    motion::State& state = within_step_.emplace().state;
-    state.time = time, state.x = dense.shape(time), state.history = {dense.slope(time)};
+    motion::TimeState& state = within_step_.emplace().state;
+    state.time = time, state.x = dense.state(time), state.history = {dense.slope(time)};
   }
 
   void record() {
@@ -233,7 +233,7 @@ class Run : AnyRun {
   void check_mesh() {
     if (first_.particle.rigid()) return;
     const auto clock = phases_.time("soundness");
-    quality_ = soundness(particles_->bezier(), state_.x, ranks_);
+    quality_ = soundness(particles_->bezier(), particles_->surface(state_.x), ranks_);
   }
 
   /// Prints a warning for each limit of validity that the last step has come close to.
@@ -260,7 +260,7 @@ class Run : AnyRun {
 
   /// Evaluates and returns the snapshot that is due, at the end of the last step or at a time within the step.
   Results::Sampled sample() {
-    const motion::State& shown = within_step_ ? within_step_->state : state_;
+    const motion::TimeState& shown = within_step_ ? within_step_->state : state_;
     particles_->dynamics().set_time(shown.time, steps_.began());
     return results_.sample(particles_->snapshot(shown), shown.time);
   }
@@ -277,7 +277,7 @@ class Run : AnyRun {
     if (gap >= least) return;
     const auto* const system = particles_->capsule();
     const std::span<const coupling::Particle> particles = system ? system->particles() : std::span<const coupling::Particle>();
-    fail(nearest_to_wall(scene_, particles_->body(), particles, state_.x) +
+    fail(nearest_to_wall(scene_, particles_->body(), particles, particles_->surface(state_.x)) +
          formatted(" touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap, list.c_str(), contact_gap, least));
   }
 
@@ -325,7 +325,7 @@ class Run : AnyRun {
   std::unique_ptr<ParticleSystem> particles_;
   Results results_;
   TimeSteps steps_;
-  motion::State state_;
+  motion::TimeState state_;
   RunTotals totals_;
   Columns row_;
   bool snapshot_due_ = false;
@@ -334,7 +334,7 @@ class Run : AnyRun {
   stokes::Evaluations earlier_kernel_;        // kernel evaluations of the earlier parts of a resumed run
   output::Entries<double> earlier_seconds_;
   struct WithinStep {
-    motion::State state;
+    motion::TimeState state;
     std::optional<Results::Sampled> sampled;  // snapshot sampled on the previous mesh, if the latest step has adapted the mesh
   };
   std::optional<WithinStep> within_step_;  // state of the snapshot that is due at a time within the last step, if any

@@ -93,9 +93,9 @@ class SteadyRun : protected AnyRun {
 
   /// Finds the steady shape of the current system by approach_steady(), after the search from `start` has failed with the report `failed` and the
   /// best iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a history, or if approach_steady() does not find it.
-  motion::SteadyReport approach(const Net& start, Net& x, const motion::SteadyReport& failed) {
+  motion::SteadyReport approach(const coupling::State& start, coupling::State& x, const motion::SteadyReport& failed) {
     if (!(scene_.particle_scenes().front().speed() > 0) || scene_.varies_in_time()) return failed;
-    Net reached = start;
+    coupling::State reached = start;
     const auto equations = [&](double amplitude) {
       if (amplitude == 1) return equations_of(system_);
       Scene weaker = system_->scene;
@@ -161,7 +161,8 @@ class SteadyRun : protected AnyRun {
     const auto clock = phases_.time("output");
     output::Checkpoint checkpoint;
     system_->particles->store(checkpoint);
-    for (int k = 0; const motion::Mode& mode : found_.modes) checkpoint.arrays["mode " + std::to_string(++k)] = mode.real;
+    const ParticleSystem& particles = *system_->particles;
+    for (int k = 0; const motion::Mode& mode : found_.modes) checkpoint.arrays["mode " + std::to_string(++k)] = particles.surface(mode.real);
     SurfaceSnapshot snapshot = system_->particles->snapshot(state_);
     if (scene_.output.surface_text) results_.write_surface(snapshot.surface);
     snapshot.fields = [this, of_shape = snapshot.fields](const output::Nodes& nodes) {
@@ -169,9 +170,8 @@ class SteadyRun : protected AnyRun {
       int k = 0;
       for (const motion::Mode& mode : found_.modes) {
         const std::string name = "mode " + std::to_string(++k);
-        const Eigen::Index n = system_->particles->capsule()->n_points();
-        fields.push_back({name, nodes.values(mode.real.topRows(n))});
-        if (mode.rate.imag() != 0) fields.push_back({name + " imaginary", nodes.values(mode.imaginary.topRows(n))});
+        fields.push_back({name, nodes.values(system_->particles->surface(mode.real))});
+        if (mode.rate.imag() != 0) fields.push_back({name + " imaginary", nodes.values(system_->particles->surface(mode.imaginary))});
       }
       return fields;
     };
@@ -207,7 +207,7 @@ class SteadyRun : protected AnyRun {
   const Warn warn_once_ = [this](const Warning& warning) {
     if (warnings_.fresh(warning)) results_.warn(warning);
   };
-  motion::State state_;
+  motion::TimeState state_;
   motion::StepReport report_;
   RunTotals totals_;
   SteadyRow found_;
@@ -231,7 +231,7 @@ class SteadySearch : public SteadyRun {
   void search() override {
     motion::SteadyReport found;
     do {
-      const Net start = state_.x;
+      const coupling::State start = state_.x;
       found = motion::find_steady(*system_->equations, scene_.steady, scene_.solvers, state_.x);
       if (!found.converged) found = approach(start, state_.x, found);
     } while (found.converged && adapt());
@@ -282,9 +282,9 @@ class BranchSearch : public SteadyRun {
   void search() override {
     pool_.begin_branch(first_);
     motion::Branch branch([this](double parameter, double second) { return equations_of(pool_.at({parameter, second}, state_.x)); },
-                          [this](double parameter, std::vector<Net>& shapes) { return adapt_at({parameter, first_[1]}, shapes); },
+                          [this](double parameter, std::vector<coupling::State>& states) { return adapt_at({parameter, first_[1]}, states); },
                           scene_.continuation, scene_.steady, scene_.solvers, first_[0], first_[1], state_.x);
-    branch.search([&](Net& x, const motion::SteadyReport& failed) { return approach(state_.x, x, failed); });
+    branch.search([&](coupling::State& x, const motion::SteadyReport& failed) { return approach(state_.x, x, failed); });
     for (int k = 0; const auto point = branch.next(); ++k) {
       coupling::stop_together();
       use(pool_.at({point->parameter, point->second}, state_.x));
@@ -299,15 +299,15 @@ class BranchSearch : public SteadyRun {
     if (branch.cut_short()) results_.warn("Continuation/points ended the branch before its parameter reached Continuation/to: set more points");
   }
 
-  /// Adapts the mesh at a point of the branch to the last of `shapes`, and transfers all `shapes` to the new mesh. Returns whether the mesh has
+  /// Adapts the mesh at a point of the branch to the last of `states`, and transfers all `states` to the new mesh. Returns whether the mesh has
   /// changed.
-  bool adapt_at(const Parameters& parameters, std::vector<Net>& shapes) {
+  bool adapt_at(const Parameters& parameters, std::vector<coupling::State>& states) {
     use(pool_.at(parameters, state_.x));
     state_.history.clear(), state_.places.clear();
-    for (Net& shape : shapes) state_.places.push_back({state_.time, std::move(shape)});
+    for (coupling::State& one : states) state_.places.push_back({state_.time, std::move(one)});
     state_.x = state_.places.back().x;
     const bool changed = adapt();
-    for (std::size_t k = 0; k < shapes.size(); ++k) shapes[k] = std::move(state_.places[k].x);
+    for (std::size_t k = 0; k < states.size(); ++k) states[k] = std::move(state_.places[k].x);
     if (changed) pool_.adapted();
     return changed;
   }

@@ -25,7 +25,7 @@ motion::TimeOptions time_options(const Scene& scene) {
 TimeSteps::TimeSteps(const Scene& scene, ParticleSystem& particles)
     : scene_(scene), particles_(particles), scheme_(motion::integrator(time_options(scene), scene.solvers.nox)) {}
 
-void TimeSteps::advance(motion::State& state, double limit, motion::State& before) {
+void TimeSteps::advance(motion::TimeState& state, double limit, motion::TimeState& before) {
   motion::GuardedDynamics motion(particles_.dynamics());
   try {
     if (motion::cross_kink(motion, state)) before = state;
@@ -41,7 +41,7 @@ void TimeSteps::advance(motion::State& state, double limit, motion::State& befor
 
 /// Makes a time step. If particles are too close after the step for the contact limiter to keep them apart, repeats the step from the state
 /// `before` with half its size.
-void TimeSteps::advance_apart(coupling::Dynamics& motion, motion::State& state, double limit, const motion::State& before) {
+void TimeSteps::advance_apart(coupling::Dynamics& motion, motion::TimeState& state, double limit, const motion::TimeState& before) {
   motion::StepReport discarded;  // sums over the steps that are repeated
   for (;;) {
     report_ = scheme_->advance(motion, state, limit);
@@ -51,10 +51,10 @@ void TimeSteps::advance_apart(coupling::Dynamics& motion, motion::State& state, 
       throw RunFailure(
           "after a step of fixed length particles are too close for Contact/limiter to hold them apart: set a smaller Time/fixed step");
     discarded.iterations = report_.iterations, discarded.rejected = report_.rejected + 1;
-    Net frozen = std::move(state.frozen);
+    coupling::State frozen = std::move(state.frozen);
     const double frozen_time = state.frozen_time;
     state = before;
-    if (state.frozen.rows() != frozen.rows() || state.frozen != frozen) state.secants = {};  // they belong to the old operator
+    if (state.frozen != frozen) state.secants = {};  // they belong to the old operator
     state.frozen = std::move(frozen), state.frozen_time = frozen_time;
     state.step = report_.step / 2;
   }

@@ -16,13 +16,13 @@ class TimeSteps {
   /// Makes a step that ends at the time `limit` or earlier. If the motion is not smooth at the start of the step (a kink), the scheme restarts there,
   /// and `before` becomes the state after the kink. Throws RunFailure if the step fails, and Stopped if a stop signal arrives within the
   /// step.
-  void advance(motion::State& state, double limit, motion::State& before);
+  void advance(motion::TimeState& state, double limit, motion::TimeState& before);
 
   const motion::StepReport& report() const { return report_; }  ///< returns the report of the last step
   double began() const { return began_; }                       ///< returns the time at which the last step began
 
  private:
-  void advance_apart(coupling::Dynamics& motion, motion::State& state, double limit, const motion::State& before);
+  void advance_apart(coupling::Dynamics& motion, motion::TimeState& state, double limit, const motion::TimeState& before);
 
   const Scene& scene_;
   ParticleSystem& particles_;

@@ -9,6 +9,7 @@
 #include "motion/integrator.hpp"
 #include "scene/member.hpp"
 #include "scene/scene.hpp"
+#include "system/coupled_motion.hpp"
 #include "tests/membrane_totals.hpp"
 #include "tests/shape_measures.hpp"
 
@@ -27,15 +28,16 @@ class Evolution {
     arrange(members_);
     capsule = make_capsule(members_, body(), phases_, nullptr, std::nullopt);
     scheme_ = motion::integrator(scene.time);
-    state.x = body().initial;
-    motion::begin(*capsule, state);
-    state.step = motion::first_step(*capsule, state, scene.time);
+    motion = std::make_unique<coupling::CoupledMotion>(*capsule);
+    state.x = motion->start(body().initial);
+    motion::begin(*motion, state);
+    state.step = motion::first_step(*motion, state, scene.time);
   }
   Evolution(const Evolution&) = delete;
 
   /// Advances by one step, not beyond the time `limit`. Throws RunFailure.
   motion::StepReport step(double limit) {
-    const motion::StepReport report = scheme_->advance(*capsule, state, limit);
+    const motion::StepReport report = scheme_->advance(*motion, state, limit);
     ++steps;
     return report;
   }
@@ -46,13 +48,15 @@ class Evolution {
   }
 
   const Body& body() const { return *members_.front().body; }
-  surface::Deformation deformation() const { return surface::deformation(capsule->geometry(), state.x); }
-  double volume_error() const { return capsule->volume_error(capsule->geometry().volume(state.x)); }
-  double energy() const { return membrane::energy(capsule->membrane(), state.x); }
+  Net x() const { return motion->shape(state.x); }  ///< control net of the current shape
+  surface::Deformation deformation() const { return surface::deformation(capsule->geometry(), x()); }
+  double volume_error() const { return capsule->volume_error(capsule->geometry().volume(x())); }
+  double energy() const { return membrane::energy(capsule->membrane(), x()); }
 
   Scene scene;
   std::shared_ptr<coupling::Capsule> capsule;
-  motion::State state;
+  std::unique_ptr<coupling::CoupledMotion> motion;
+  motion::TimeState state;
   int steps = 0;
 
  private:

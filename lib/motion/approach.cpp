@@ -17,7 +17,7 @@ std::string Approach::text() const {
 }
 
 Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
-                         const coupling::SolverOptions& solvers, Net& x) {
+                         const coupling::SolverOptions& solvers, State& x) {
   // The full flow is reached by continuation in its amplitude, from 0 to 1. At each amplitude, a steady shape is searched for.
   // least_step: smallest step of the amplitude. coarse: tolerance of each search, unless Steady/tolerance is larger. far: largest distance between
   // the first and the last shape of a search, divided by the particle radius. few: a search with fewer iterations makes the next step of the
@@ -30,7 +30,7 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
   Approach way;
   const std::shared_ptr<SteadyEquations> full = family(1);
   SteadyEquations shorter = full->with_step(0.1 * full->step());
-  Net found = x;
+  State found = x;
   for (int k = 0; k < most_short_searches && !way.last.converged; ++k)
     way.last = find_steady(shorter, options, solvers, found, k + 1 < most_short_searches ? in_vain : options.iterations);
   if (way.last.converged && full->dynamics().norm(full->residual(found)) < largest_motion) {
@@ -39,10 +39,10 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
     return way;
   }
   bool exhausted = false;  // true if the full flow was solved to the coarse tolerance but not to Steady/tolerance
-  const auto found_at = [&](double amplitude, Net& y) {
+  const auto found_at = [&](double amplitude, State& y) {
     SteadyOptions here = options;
     here.tolerance = std::max(options.tolerance, coarse);
-    const Net from = y;
+    const State from = y;
     const std::shared_ptr<SteadyEquations> equations = family(amplitude);
     way.last = find_steady(*equations, here, solvers, y);
     if (!way.last.converged || !(equations->dynamics().norm(y - from) < far)) return false;
@@ -53,10 +53,10 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
     return !exhausted;
   };
   double amplitude = 0, step = 0.5;
-  Net before;  // shape at the previous amplitude
+  State before;  // shape at the previous amplitude
   for (int k = 0; k < most_searches && amplitude < 1 && step > least_step && !exhausted; ++k) {
     const double next = std::min(1., amplitude + step);
-    Net y = x;
+    State y = x;
     if (way.amplitudes.size() > 1) {
       const double last = way.amplitudes[way.amplitudes.size() - 2];
       y += (next - amplitude) / (amplitude - last) * (x - before);

@@ -29,6 +29,6 @@ struct Approach {
 /// shape at the last amplitude for which a search succeeded, and `last.why` to the obstacle there. `family`: function that returns the equations at
 /// an amplitude. Collective.
 Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
-                         const coupling::SolverOptions& solvers, Net& x);
+                         const coupling::SolverOptions& solvers, State& x);
 
 }  // namespace tanktread::motion

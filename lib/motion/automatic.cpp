@@ -18,12 +18,12 @@ constexpr double bs3 = 0, tr_bdf2 = 1, rkc2 = 2;  // values of Choice::scheme
 
 }  // namespace
 
-/// Memory of the automatic choice of schemes, at the front of State::memory. The memory of the chosen scheme follows.
+/// Memory of the automatic choice of schemes, at the front of TimeState::memory. The memory of the chosen scheme follows.
 struct Automatic::Choice {
   double scheme = bs3;
   double stiffness = 0;
   double age = 0;         ///< steps since the stiffness was measured
-  double points = 0;      ///< number of control points when the stiffness was measured; 0: not measured yet
+  double size = 0;        ///< number of numbers of a state when the stiffness was measured; 0: not measured yet
   double work = 0;        ///< work of TR-BDF2 per unit of time, in velocity evaluations; 0: TR-BDF2 was not tried yet
   double since = 0;       ///< steps since the last change of scheme
   double then = 0;        ///< stiffness when the scheme was last changed
@@ -34,14 +34,14 @@ Scheme& Automatic::chosen(const Choice& choice) {
   return choice.scheme == tr_bdf2 ? static_cast<Scheme&>(implicit_) : explicit_;
 }
 
-void Automatic::measure(coupling::Dynamics& dynamics, State& state, Choice& choice) const {
-  if (choice.points == static_cast<double>(state.x.rows()) && choice.age < measured_every) return;
-  if (state.frozen.size() == 0) freeze(dynamics, state, state.time);
+void Automatic::measure(coupling::Dynamics& dynamics, TimeState& state, Choice& choice) const {
+  if (choice.size == static_cast<double>(state.x.numbers().size()) && choice.age < measured_every) return;
+  if (state.frozen.empty()) freeze(dynamics, state, state.time);
   measure_stiffness(dynamics, state, choice);
 }
 
 /// Updates the choice of the scheme after an accepted step.
-void Automatic::reconsider(const State& state, const StepReport& report, Choice& choice) const {
+void Automatic::reconsider(const TimeState& state, const StepReport& report, Choice& choice) const {
   choice.age += 1;
   choice.since += 1;
   const double longest = stable / std::max(choice.stiffness, 1e-300);
@@ -63,7 +63,7 @@ void Automatic::reconsider(const State& state, const StepReport& report, Choice&
   choice.then = choice.stiffness;
 }
 
-StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double limit) {
+StepReport Automatic::advance(coupling::Dynamics& dynamics, TimeState& state, double limit) {
   begin(dynamics, state);
   Choice choice = remembered<Choice>(state.memory);
   if (dynamics.frozen_bytes() > 1e9 * options_.largest_operator || choice.scheme == rkc2) {
@@ -71,7 +71,7 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
   } else if (dynamics.defect_spares_system()) {
     choice.scheme = tr_bdf2;
   } else {
-    const bool first = choice.points == 0;
+    const bool first = choice.size == 0;
     measure(dynamics, state, choice);
     if (first && choice.scheme == bs3 && state.step * choice.stiffness > stable) {  // the first step would exceed the stability limit of BS3
       choice.scheme = tr_bdf2;
@@ -79,8 +79,8 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
     }
   }
 
-  // The chosen scheme receives only the part of State::memory that belongs to it.
-  State inner = state;
+  // The chosen scheme receives only the part of TimeState::memory that belongs to it.
+  TimeState inner = state;
   const std::size_t own = std::min(values_of(choice).size(), inner.memory.size());
   inner.memory.erase(inner.memory.begin(), inner.memory.begin() + static_cast<std::ptrdiff_t>(own));
   const double before = choice.scheme;

@@ -32,7 +32,7 @@ struct Differentiation {
 }  // namespace
 
 /// Makes a starting step by TR-BDF2, and stores the position before this step for later BDF3 steps.
-StepReport Bdf3::start(coupling::Dynamics& dynamics, State& state, double limit) {
+StepReport Bdf3::start(coupling::Dynamics& dynamics, TimeState& state, double limit) {
   PastPosition before{state.time, state.x};
   const StepReport report = starter_.advance(dynamics, state, limit);
   state.places.insert(state.places.begin(), std::move(before));
@@ -43,12 +43,12 @@ StepReport Bdf3::start(coupling::Dynamics& dynamics, State& state, double limit)
   return report;
 }
 
-StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limit) {
+StepReport Bdf3::advance(coupling::Dynamics& dynamics, TimeState& state, double limit) {
   if (state.places.size() < places) return start(dynamics, state, limit);
-  if (state.frozen.size() == 0) freeze(dynamics, state, state.time);
+  if (state.frozen.empty()) freeze(dynamics, state, state.time);
   const Memory memory = remembered<Memory>(state.memory);
   coupling::Secants secants = state.secants;
-  const std::array<const Net*, places + 1> nets{&state.x, &state.places[0].x, &state.places[1].x, &state.places[2].x};
+  const std::array<const State*, places + 1> positions{&state.x, &state.places[0].x, &state.places[1].x, &state.places[2].x};
   std::array<double, places + 1> times{};
   for (size_t i = 0; i < places; ++i) times[i + 1] = state.places[i].time - state.time;
   const double allowed = options_.tolerance * step_share(options_.tolerance, 3);
@@ -57,8 +57,8 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
   while (attempts.report.rejected < patience) {
     const double dt = attempts.next();
     const Differentiation scheme(times, dt);
-    const Net rhs = -scheme.shift * (scheme.a[0] * *nets[0] + scheme.a[1] * *nets[1] + scheme.a[2] * *nets[2]);
-    const Net predicted = interpolated(times, nets, dt);
+    const State rhs = -scheme.shift * (scheme.a[0] * *positions[0] + scheme.a[1] * *positions[1] + scheme.a[2] * *positions[2]);
+    const State predicted = interpolated(times, positions, dt);
     Stage stage;
     stage.time = state.time + dt;
     stage.y = predicted;
@@ -85,7 +85,7 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     attempts.reject(std::min(factor, 0.8), error);
   }
 
-  State fresh = state;
+  TimeState fresh = state;
   fresh.history.resize(1);
   fresh.places.clear();
   fresh.memory.clear();

@@ -71,17 +71,17 @@ void BranchPoint::add_columns(bool follows_fold, Columns& to) const {
 }
 
 Branch::Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady,
-               const coupling::SolverOptions& solvers, double parameter, double second, Net x)
+               const coupling::SolverOptions& solvers, double parameter, double second, State x)
     : family_(std::move(family)), remesh_(std::move(remesh)), options_(options), steady_(steady), solvers_(solvers), start_(parameter),
       second_(second), first_(family_(parameter, second)), x_(std::move(x)) {}
 
 double Branch::inner(const Place& a, const Place& b) const {
   const double unit = first_->unit_length();
-  return a.x.cwiseProduct(b.x).sum() / (unit * unit) + a.q * b.q;
+  return dot(a.x, b.x) / (unit * unit) + a.q * b.q;
 }
 
-std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& x) {
-  Net found = x;
+std::optional<Branch::Solved> Branch::at_parameter(double parameter, const State& x) {
+  State found = x;
   SteadyReport report = find_steady(*family_(parameter, second_), steady_, solvers_, found);
   if (!report.converged && !(report.rest < noise * steady_.tolerance) && last_.empty() && search_) report = search_(found, report);
   why_ = report.why.empty() ? "" : ", because " + report.why;
@@ -101,34 +101,46 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     // towards the middle of the branch, so that the parameter stays in the range of its key
     const double aside = std::copysign(1e-3 * std::max(std::abs(from.q), std::abs(step_)), (start_ + options_.to) / (2 * unit_) - from.q);
     here->dynamics().freeze(from.x);
-    const Net slope = (family_((from.q + aside) * unit_, second_)->residual(from.x) - here->residual(from.x)) / aside;
+    const State slope = (family_((from.q + aside) * unit_, second_)->residual(from.x) - here->residual(from.x)) / aside;
     if (!slope.allFinite()) return {};
-    const Net b = here->precondition(from.x, slope);
-    Net best;
+    const State b = here->precondition(from.x, slope);
+    Place best;
     double least = std::numeric_limits<double>::infinity();
-    const auto norm = [&](const Net& joined) {
-      return std::hypot(here->dynamics().norm(joined.topRows(joined.rows() - 1)), joined(joined.rows() - 1, 0));
+    // vectors of the iteration: a state, and the change of the scaled parameter
+    const std::span<const coupling::Block> blocks = from.x.layout()->blocks();
+    std::vector<coupling::Block> of_iteration(blocks.begin(), blocks.end());
+    of_iteration.push_back({"parameter", -1, 1, 1, coupling::Parity::scalar});
+    const auto layout = std::make_shared<coupling::Layout>(std::move(of_iteration));
+    const Eigen::Index n = from.x.numbers().size();
+    const auto joined = [&](const Place& place) {
+      State both(layout);
+      both.numbers() << place.x.numbers(), place.q;
+      return both;
     };
-    const auto corrected = [&](const Net& joined) -> Net {
-      const Place at{joined.topRows(joined.rows() - 1), from.q + joined(joined.rows() - 1, 0)};
-      const Net r = here->residual(at.x) + (at.q - from.q) * slope;
-      if (!r.allFinite()) return Net::Constant(joined.rows(), 3, std::numeric_limits<double>::quiet_NaN());
-      const Net a = here->precondition(at.x, r);
-      const double more = -inner(normal, Place{at.x + a, at.q} - predicted) / inner(normal, {b, 1});
-      Net result = joined;
-      result.topRows(a.rows()) += a + more * b;
-      result(a.rows(), 0) += more;
-      if (const double size = norm(result - joined); size < least) least = size, best = joined;
-      return result;
+    const auto place_of = [&](const State& both) {
+      Place place{State(from.x.layout()), both.numbers()[n]};
+      place.x.numbers() = both.numbers().head(n);
+      return place;
     };
-    Net joined = Net::Zero(from.x.rows() + 1, 3);
-    joined.topRows(from.x.rows()) = from.x;
-    const coupling::FixedPoint solver(steady_.method, solvers_.nox, solvers_.of(solvers_.steady), coupling::FixedPoint::deep(joined.size()));
+    const auto size = [&](const Place& place) { return std::hypot(here->dynamics().norm(place.x), place.q); };
+    const auto corrected = [&](const State& both) -> State {
+      const Place at = place_of(both);
+      const State r = here->residual(at.x) + at.q * slope;
+      if (!r.allFinite()) return coupling::not_a_number(both);
+      const State a = here->precondition(at.x, r);
+      const double more = -inner(normal, Place{at.x + a, from.q + at.q} - predicted) / inner(normal, {b, 1});
+      const Place change{a + more * b, more};
+      if (const double length = size(change); length < least) least = length, best = at;
+      return joined({at.x + change.x, at.q + change.q});
+    };
+    State found = joined({from.x, 0});
+    const coupling::FixedPoint solver(steady_.method, solvers_.nox, solvers_.of(solvers_.steady), coupling::FixedPoint::deep(n + 1));
     const int most = std::min(steady_.iterations, most_iterations);
-    const coupling::NonlinearReport report = solver.solve(corrected, norm, tolerance, most, joined);
+    const auto norm = [&](const State& both) { return size(place_of(both)); };
+    const coupling::NonlinearReport report = solver.solve(corrected, norm, tolerance, most, found);
     if (!report.converged && !(least < noise * tolerance)) return {};
     solved.iterations = std::max(solved.iterations, report.converged ? report.iterations : 0);
-    solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
+    solved.place = {best.x, from.q + best.q};
     if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // not on this branch
     const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
     // estimated error, because dG/dp is evaluated at `from` and not at the solution: distance from `from`, times the change of the scaled parameter
@@ -205,11 +217,11 @@ std::optional<Branch::Solved> Branch::stepped() {
 void Branch::adapt() {
   constexpr int most = 6;
   for (int k = 0; k < most; ++k) {
-    std::vector<Net> shapes{last_[last_.size() - 2].place.x, last_.back().place.x};
-    if (!remesh_(last_.back().place.q * unit_, shapes)) return;
+    std::vector<State> states{last_[last_.size() - 2].place.x, last_.back().place.x};
+    if (!remesh_(last_.back().place.q * unit_, states)) return;
     last_.erase(last_.begin(), last_.end() - 2);
     first_ = family_(last_.back().place.q * unit_, second_);
-    for (std::size_t i = 0; i < 2; ++i) last_[i].place.x = std::move(shapes[i]);
+    for (std::size_t i = 0; i < 2; ++i) last_[i].place.x = std::move(states[i]);
     ahead_.front().first = last_[1];
     const Place t = unit(last_[1].place - last_[0].place);
     for (Solved& one : last_) {

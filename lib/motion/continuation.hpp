@@ -38,7 +38,7 @@ struct ContinuationOptions {
 /// A steady shape on a branch.
 struct BranchPoint {
   double parameter = 0, second = 0;
-  Net x;
+  State x;
   bool fold = false;   ///< true if the parameter reverses its direction here
   int iterations = 0;  ///< number of NOX iterations
   double rest = 0;     ///< estimated error of the shape; at a fold, relative error of the parameter, see Continuation/fold tolerance
@@ -69,16 +69,16 @@ class Branch {
 
   /// Adapts the mesh to the last of the given shapes, which is steady at `parameter`, and transfers all shapes to the new mesh. From then on, the
   /// function Family of the branch must return equations on the new mesh. Returns false if the mesh does not change. Collective.
-  using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
+  using Remesh = std::function<bool(double parameter, std::vector<State>& states)>;
 
   /// Starts the branch at `parameter`, with the steady shape that a search from `x` finds. `second`: value of the second parameter if the first fold
   /// is continued.
   Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
-         double parameter, double second, Net x);
+         double parameter, double second, State x);
 
   /// Alternative search for the first point, called if the first search fails. x: best iterate of the failed search, replaced by the result.
   /// `failed`: report of the failed search. Returns the report of the new search. Collective.
-  using Search = std::function<SteadyReport(Net& x, const SteadyReport& failed)>;
+  using Search = std::function<SteadyReport(State& x, const SteadyReport& failed)>;
   void search(Search other) { search_ = std::move(other); }
 
   /// Returns the next point of the branch, which may be a fold. If there is a second parameter, returns the points up to the first fold, and then the
@@ -90,7 +90,7 @@ class Branch {
 
  private:
   struct Place {
-    Net x;
+    State x;
     double q = 0;  // scaled parameter
     Place operator-(const Place& other) const { return {x - other.x, q - other.q}; }
     Place along(const Place& t, double ds) const { return {x + ds * t.x, q + ds * t.q}; }
@@ -111,7 +111,7 @@ class Branch {
     const double size = length(a);
     return {a.x / size, a.q / size};
   }
-  std::optional<Solved> at_parameter(double parameter, const Net& x);
+  std::optional<Solved> at_parameter(double parameter, const State& x);
   std::optional<Solved> on_plane(const Place& predicted, const Place& normal, double tolerance);
   std::optional<Solved> stepped();
   Place predicted(const Place& t) const;
@@ -134,7 +134,7 @@ class Branch {
   const coupling::SolverOptions& solvers_;
   double start_, second_, unit_ = 1;  // q = parameter/unit
   std::shared_ptr<SteadyEquations> first_;
-  Net x_;
+  State x_;
   std::vector<Solved> last_;  // latest points of the branch, at most three, latest last
   std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength; the flag is true for a fold
   std::vector<Fold> folds_;       // the two latest folds, found at two values of the second parameter

@@ -49,7 +49,7 @@ std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   const double first = three[2].s - three[0].s;
   double before = std::numeric_limits<double>::quiet_NaN();
   const auto combined = [&](const Eigen::RowVector3d& weights) {
-    Place sum{Net::Zero(x_.rows(), 3), 0};
+    Place sum{State(x_.layout()), 0};
     for (std::size_t i = 0; i < 3; ++i) sum = sum.along(three[i].place, weights[static_cast<Eigen::Index>(i)]);
     return sum;
   };

@@ -32,18 +32,18 @@ bool GuardedDynamics::done(const std::function<bool()>& act) {
   return worst == fine;
 }
 
-Net GuardedDynamics::tried(const Net& like, const std::function<Net()>& evaluate) {
-  Net result;
-  const bool had = coupling::finite(like) && done([&] { return (result = evaluate()).allFinite(); });
+State GuardedDynamics::tried(const State& like, const std::function<State()>& evaluate) {
+  State result;
+  const bool had = coupling::finite(like.numbers()) && done([&] { return (result = evaluate()).allFinite(); });
   return had ? result : coupling::not_a_number(like);
 }
 
-Net GuardedDynamics::velocity(const Net& x) {
+State GuardedDynamics::velocity(const State& x) {
   coupling::stop_together();
   return tried(x, [&] { return motion_.velocity(x); });
 }
 
-void GuardedDynamics::freeze(const Net& x) {
+void GuardedDynamics::freeze(const State& x) {
   const auto freeze = [&] {
     motion_.freeze(x);
     return true;
@@ -51,57 +51,57 @@ void GuardedDynamics::freeze(const Net& x) {
   if (!done(freeze)) throw RunFailure("the Jacobian's operators cannot be assembled: " + failure_);
 }
 
-void GuardedDynamics::linearise(const Net& x) {
+void GuardedDynamics::linearise(const State& x) {
   linearised_ = done([&] {
     motion_.linearise(x);
     return true;
   });
 }
 
-Net GuardedDynamics::solve(double shift, const Net& r, double tolerance, const coupling::Secants& secants) {
+State GuardedDynamics::solve(double shift, const State& r, double tolerance, const coupling::Secants& secants) {
   if (!linearised_) return coupling::not_a_number(r);
   return tried(r, [&] { return motion_.solve(shift, r, tolerance, secants); });
 }
 
-Net GuardedDynamics::defect(const Net& x, const Net& u) {
+State GuardedDynamics::defect(const State& x, const State& u) {
   coupling::stop_together();
   return tried(x, [&] { return motion_.defect(x, u); });
 }
 
-Net GuardedDynamics::correction(double shift, const Net& defect, double tolerance, const coupling::Secants& secants) {
+State GuardedDynamics::correction(double shift, const State& defect, double tolerance, const coupling::Secants& secants) {
   if (!linearised_) return coupling::not_a_number(defect);
   return tried(defect, [&] { return motion_.correction(shift, defect, tolerance, secants); });
 }
 
-Net GuardedDynamics::jacobian_error(const Net& change, const Net& delta, double shift) {
+State GuardedDynamics::jacobian_error(const State& change, const State& delta, double shift) {
   return tried(change, [&] { return motion_.jacobian_error(change, delta, shift); });
 }
 
-Net GuardedDynamics::derivative(const Net& x, const Net& v, const Net& delta) {
+State GuardedDynamics::derivative(const State& x, const State& v, const State& delta) {
   return tried(delta, [&] { return motion_.derivative(x, v, delta); });
 }
 
-void GuardedDynamics::restore_constraints(Net& x) {
+void GuardedDynamics::restore_constraints(State& x) {
   x = tried(x, [&] {
-    Net restored = x;
+    State restored = x;
     motion_.restore_constraints(restored);
     return restored;
   });
 }
 
-void GuardedDynamics::improve_start(Net& y, const Net& before, double shift) {
+void GuardedDynamics::improve_start(State& y, const State& before, double shift) {
   y = tried(y, [&] {
-    Net improved = y;
+    State improved = y;
     motion_.improve_start(improved, before, shift);
     return improved;
   });
 }
 
-double GuardedDynamics::distance(const Net& from, const Net& to) const {
+double GuardedDynamics::distance(const State& from, const State& to) const {
   return coupling::decided([&] { return std::vector{motion_.distance(from, to)}; }).front();
 }
 
-double GuardedDynamics::norm(const Net& displacement) const {
+double GuardedDynamics::norm(const State& displacement) const {
   return coupling::decided([&] { return std::vector{motion_.norm(displacement)}; }).front();
 }
 

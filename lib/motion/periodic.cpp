@@ -50,30 +50,28 @@ void PeriodicOptions::declare(deck::Section& section) {
 namespace {
 
 /// Returns the translation along `drifts` that is contained in the displacement d.
-Vec3 drift(const coupling::Dynamics& dynamics, const std::vector<coupling::RigidMotion>& drifts, const Net& d) {
+Vec3 drift(const std::vector<coupling::RigidMotion>& drifts, const State& d) {
   Vec3 all = Vec3::Zero();
   for (const coupling::RigidMotion& one : drifts) {
-    const Net field = dynamics.moved(d, one);
-    all += field.cwiseProduct(d).sum() / field.squaredNorm() * one.velocity;
+    const State field = moved(d, one);
+    all += dot(field, d) / field.numbers().squaredNorm() * one.velocity;
   }
   return all;
 }
 
 /// Returns the displacement d without its translation along `drifts`.
-Net without(const coupling::Dynamics& dynamics, const std::vector<coupling::RigidMotion>& drifts, const Net& d) {
-  return d - dynamics.moved(d, {.velocity = drift(dynamics, drifts, d)});
-}
+State without(const std::vector<coupling::RigidMotion>& drifts, const State& d) { return d - moved(d, {.velocity = drift(drifts, d)}); }
 
 /// Returns the shape x after a period, rotated back and moved back along free translations to the shape `start` before the period.
-Net returned(const coupling::Dynamics& dynamics, const PeriodicOptions& options, const Net& x, const Net& start) {
-  const Net turned = dynamics.turned(x, Eigen::AngleAxisd(-options.turn * std::numbers::pi / 180, Vec3::UnitY()).toRotationMatrix());
-  return start + without(dynamics, options.drifts, turned - start);
+State returned(const PeriodicOptions& options, const State& x, const State& start) {
+  const State back = turned(x, Eigen::AngleAxisd(-options.turn * std::numbers::pi / 180, Vec3::UnitY()).toRotationMatrix());
+  return start + without(options.drifts, back - start);
 }
 
 /// Integrates from x until `done` returns true after a step, or the time `most` has passed.
-State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox, const Net& x, double most,
-          const std::function<bool(const State& before, const State& after)>& done) {
-  State state;
+TimeState run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox, const State& x, double most,
+          const std::function<bool(const TimeState& before, const TimeState& after)>& done) {
+  TimeState state;
   state.x = x;
   dynamics.restore_constraints(state.x);
   begin(dynamics, state);
@@ -84,7 +82,7 @@ State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shar
   state.step = time.initial_step ? *time.initial_step : first_step(dynamics, state, until_most);
   const std::unique_ptr<Integrator> scheme = integrator(until_most, nox);
   while (state.time < most * (1 - 1e-12)) {
-    const State before = state;
+    const TimeState before = state;
     scheme->advance(dynamics, state, most);
     if (done(before, state)) break;
   }
@@ -94,34 +92,34 @@ State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shar
 }  // namespace
 
 ReturnMap::ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox,
-                     const PeriodicOptions& options, Net c)
+                     const PeriodicOptions& options, State c)
     : dynamics_(dynamics), time_(time), nox_(std::move(nox)), options_(options), origin_(std::move(c)) {
   if (options_.driven) return;
-  normal_ = without(dynamics, options.drifts, dynamics.velocity(origin_));
-  if (!normal_.allFinite() || normal_.isZero(0))
+  normal_ = without(options.drifts, dynamics.velocity(origin_));
+  if (!normal_.allFinite() || normal_.norm() == 0)
     throw RunFailure("the shape is at rest, or its velocity is not finite, so that no periodic motion can be found");
-  normal_ /= normal_.norm();
+  normal_ = normal_ / normal_.norm();
 }
 
-Net ReturnMap::back(const Net& x) const { return returned(dynamics_, options_, x, origin_); }
+State ReturnMap::back(const State& x) const { return returned(options_, x, origin_); }
 
-Net ReturnMap::arrived(double period, const Net& start, const Net& end) {
+State ReturnMap::arrived(double period, const State& start, const State& end) {
   period_ = period;
-  mean_velocity_ = drift(dynamics_, options_.drifts, end - start) / period;
+  mean_velocity_ = drift(options_.drifts, end - start) / period;
   if (options_.turn != 0) mean_velocity_[0] = mean_velocity_[2] = 0;
   return back(end);
 }
 
-Net ReturnMap::operator()(const Net& x) {
+State ReturnMap::operator()(const State& x) {
   if (options_.driven) {
-    const State after = run(dynamics_, time_, nox_, x, options_.period, [](const State&, const State&) { return false; });
+    const TimeState after = run(dynamics_, time_, nox_, x, options_.period, [](const TimeState&, const TimeState&) { return false; });
     dynamics_.set_time(0, 0);
     return arrived(options_.period, x, after.x);
   }
-  const auto ahead = [&](const Net& y) { return normal_.cwiseProduct(back(y) - origin_).sum(); };
-  Net found;
+  const auto ahead = [&](const State& y) { return dot(normal_, back(y) - origin_); };
+  State found;
   const double most = 1.5 * options_.period;
-  run(dynamics_, time_, nox_, x, most, [&](const State& before, const State& after) {
+  run(dynamics_, time_, nox_, x, most, [&](const TimeState& before, const TimeState& after) {
     const double least = 0.5 * options_.period;
     if (after.time < least || !(ahead(before.x) < 0 && ahead(after.x) >= 0)) return false;
     const DenseOutput within(before, after);
@@ -129,31 +127,31 @@ Net ReturnMap::operator()(const Net& x) {
     while (late - early > 1e-14 * late) {
       const double middle = 0.5 * (early + late);
       if (middle <= early || middle >= late) break;
-      (ahead(within.shape(middle)) < 0 ? early : late) = middle;
+      (ahead(within.state(middle)) < 0 ? early : late) = middle;
     }
     if (late < least) return false;
-    found = arrived(late, x, within.shape(late));
+    found = arrived(late, x, within.state(late));
     return true;
   });
-  if (found.size() == 0)
+  if (found.empty())
     throw RunFailure(formatted("the shape did not recur within the time %.6g: give another Periodic/period or Periodic/turn", most));
   return found;
 }
 
-Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox,
-                  const PeriodicOptions& options, Net x) {
+State after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox,
+                  const PeriodicOptions& options, State x) {
   constexpr int settling = 3;
   for (int k = 0; k < settling; ++k)
-    x = returned(dynamics, options, run(dynamics, time, nox, x, options.period, [](const State&, const State&) { return false; }).x, x);
+    x = returned(options, run(dynamics, time, nox, x, options.period, [](const TimeState&, const TimeState&) { return false; }).x, x);
   return x;
 }
 
 PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::ParameterList>& nox,
-                             const std::function<Net(const Net& x, const Net& p)>& without_sliding, Net& x) {
-  const auto norm = [&](const Net& d) { return map.dynamics().norm(d); };
+                             const std::function<State(const State& x, const State& p)>& without_sliding, State& x) {
+  const auto norm = [&](const State& d) { return map.dynamics().norm(d); };
   double rest = std::numeric_limits<double>::infinity();
-  const auto back = [&](const Net& y) {
-    Net p = without_sliding(y, map(y));
+  const auto back = [&](const State& y) {
+    State p = without_sliding(y, map(y));
     rest = norm(p - y);
     return p;
   };
@@ -163,8 +161,8 @@ PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::Para
   return {found.iterations, found.converged, rest};
 }
 
-Net ReturnMap::derivative(const Net& x, const Net& d) {
-  const double radius = 1 / dynamics_.norm(dynamics_.moved(x, coupling::unit_motion(1)));  // R_C
+State ReturnMap::derivative(const State& x, const State& d) {
+  const double radius = 1 / dynamics_.norm(moved(x, coupling::unit_motion(1)));  // R_C
   return central_difference(*this, x, d, options_.difference * radius);
 }
 

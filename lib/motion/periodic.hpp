@@ -21,6 +21,8 @@ class Section;
 
 namespace tanktread::motion {
 
+using coupling::State;
+
 /// Options of the search for periodic motions, `Periodic/*` of the deck.
 struct PeriodicOptions {
   bool present = false;       ///< true if the deck has the section Periodic
@@ -48,34 +50,34 @@ class ReturnMap {
   /// Defines the plane (4.27) through the shape c. The motion has returned when it crosses this plane. The motion and `time` must
   /// outlive this object. Collective, like all other functions.
   ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox, const PeriodicOptions& options,
-            Net c);
+            State c);
 
   /// Returns the return map of another motion with the same options. Its plane passes through the shape c.
-  ReturnMap with(coupling::Dynamics& dynamics, Net c) const { return {dynamics, time_, nox_, options_, std::move(c)}; }
+  ReturnMap with(coupling::Dynamics& dynamics, State c) const { return {dynamics, time_, nox_, options_, std::move(c)}; }
 
   /// Returns P(x) (4.27), the shape at the next crossing of the plane. Throws RunFailure if the motion does not return to the plane.
-  Net operator()(const Net& x);
+  State operator()(const State& x);
   double period() const { return period_; }  ///< T of the latest return
   /// Mean velocity over the period of the latest return, along free translations. With a rotation R, only its component along x2 is known and not 0.
   const Vec3& mean_velocity() const { return mean_velocity_; }
 
   /// Returns the derivative of P at its fixed point x along the displacement d, by central_difference() with displacements of up to difference x R_C.
   /// Errors of the time steps change the result by about resolution() |d|.
-  Net derivative(const Net& x, const Net& d);
+  State derivative(const State& x, const State& d);
   double resolution() const { return time_.tolerance / options_.difference; }  ///< smallest multiplier that errors of time steps do not hide
 
   coupling::Dynamics& dynamics() { return dynamics_; }
   const PeriodicOptions& options() const { return options_; }
 
  private:
-  Net back(const Net& x) const;
-  Net arrived(double period, const Net& start, const Net& end);
+  State back(const State& x) const;
+  State arrived(double period, const State& start, const State& end);
 
   coupling::Dynamics& dynamics_;
   const TimeOptions& time_;
   std::shared_ptr<Teuchos::ParameterList> nox_;
   PeriodicOptions options_;
-  Net origin_, normal_;
+  State origin_, normal_;
   double period_ = 0;
   Vec3 mean_velocity_ = Vec3::Zero();
 };
@@ -90,13 +92,13 @@ struct PeriodicReport {
 /// Returns the shape to which the motion leads from x in three times PeriodicOptions::period. After each period, the shape is rotated back by the
 /// angle `turn` of the options and moved back along free translations. The result serves as the point c of the plane in ReturnMap (Poincare section).
 /// Collective.
-Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox,
-                  const PeriodicOptions& options, Net x);
+State after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox,
+                  const PeriodicOptions& options, State x);
 
 /// Finds the shape x that the return map P (4.27) maps to itself, starting from x, by NOX (`anderson`). `without_sliding`: function of x and P(x)
 /// that returns P(x) without the motion of points along interfaces since x. Collective. Throws RunFailure if a shape does not return.
 PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::ParameterList>& nox,
-                             const std::function<Net(const Net& x, const Net& p)>& without_sliding, Net& x);
+                             const std::function<State(const State& x, const State& p)>& without_sliding, State& x);
 
 /// Returns the `number` eigenpairs of largest magnitude of a linear map on n unknowns, by Arnoldi's method with 2 `number` + 4 products. The
 /// eigenvalues of the derivative of a return map are the Floquet multipliers, except the multiplier 1 of a shift in time. Collective.

@@ -12,16 +12,16 @@ constexpr double worth_assembling = 0.3;  // least deformation since the last as
 constexpr double without_rate = 0.1;      // factor of the allowed error where the contraction rate is assumed, not observed
 }  // namespace
 
-void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage) {
+void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const State& rhs, double shift, coupling::Secants& secants, Stage& stage) {
   double previous = 0;
-  Net before, delta;
+  State before, delta;
   for (int k = 0; k < options.newton_iterations; ++k) {
-    const Net defect = dynamics.defect(stage.y, (stage.y - rhs) / shift);
+    const State defect = dynamics.defect(stage.y, (stage.y - rhs) / shift);
     ++stage.iterations;
     if (!defect.allFinite()) return;
     // only the first correction gives a secant, because later corrections are so small that quadrature errors dominate them
     if (k == 1 && options.secants > 0) {
-      const Net jacobian_error = dynamics.jacobian_error(defect - before, delta, shift);
+      const State jacobian_error = dynamics.jacobian_error(defect - before, delta, shift);
       if (!jacobian_error.allFinite()) return;
       secants.add(delta, jacobian_error, options.secants);
     }
@@ -45,7 +45,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
   }
 }
 
-Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error,
+Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, TimeState& state, coupling::Secants& secants, Stage& last, double error,
               int power, const Memory& memory) {
   // A newly assembled operator speeds up the iteration only if the shape has changed. Otherwise slow contraction is due to the terms neglected in
   // (4.3).
@@ -65,13 +65,13 @@ Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& s
   return {small && last.y.allFinite(), step_factor(error, small ? memory.error : 0, power)};
 }
 
-Net interpolated(std::span<const double> times, std::span<const Net* const> nets, double t) {
-  Net sum = Net::Zero(nets[0]->rows(), 3);
-  for (std::size_t i = 0; i < nets.size(); ++i) {
+State interpolated(std::span<const double> times, std::span<const State* const> states, double t) {
+  State sum(states[0]->layout());
+  for (std::size_t i = 0; i < states.size(); ++i) {
     double weight = 1;
-    for (std::size_t j = 0; j < nets.size(); ++j)
+    for (std::size_t j = 0; j < states.size(); ++j)
       if (j != i) weight *= (t - times[j]) / (times[i] - times[j]);
-    sum += weight * *nets[i];
+    sum += weight * *states[i];
   }
   return sum;
 }

@@ -7,7 +7,7 @@
 
 namespace tanktread::motion {
 
-/// Memory of the step controller between steps, stored at the front of State::memory.
+/// Memory of the step controller between steps, stored at the front of TimeState::memory.
 struct Memory {
   double error = 0;  ///< local error of the last accepted step divided by the tolerance; 0 before the first step
   double step = 0;   ///< size of the last accepted step
@@ -16,8 +16,8 @@ struct Memory {
 /// Stage of an implicit scheme, y - shift v(y) = rhs with the velocity v, and its solution.
 struct Stage {
   double time = 0;      ///< time at which the velocity v is evaluated; used only by `judge`
-  Net y;                ///< start value of the iteration, and after `solve` the solution
-  Net slope;            ///< slope (y - rhs)/shift of the result
+  State y;                ///< start value of the iteration, and after `solve` the solution
+  State slope;            ///< slope (y - rhs)/shift of the result
   double rate = 0;      ///< contraction rate observed in this step, by this stage or an earlier stage; 0 if none was observed yet
   double error = 0;     ///< upper bound of the distance of the result from the exact solution of the stage, in the norm of `Time/tolerance`
   int iterations = 0;   ///< number of evaluations of the defect
@@ -36,7 +36,7 @@ struct Stage {
 /// to be 1/2, and the error must be ten times smaller, so that a second evaluation is made unless the first correction is very small. Errors of
 /// stages that end after one evaluation point the same way in all steps and add up: they were four fifths of the error of four red cells in a tube.
 /// The rate is never taken below the relative residual of the linear solves.
-void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage);
+void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const State& rhs, double shift, coupling::Secants& secants, Stage& stage);
 
 /// Decision on an attempted step.
 struct Verdict {
@@ -48,10 +48,10 @@ struct Verdict {
 /// the step size to the power `power`. Restores the volume at the end of an accepted step; if this fails, the step is rejected. If the iteration
 /// failed or contracted too slowly, and the shape has changed since the layer operators were last assembled, assembles them again at state.x and
 /// deletes the secants. Throws RunFailure if a step of fixed size was not solved or its volume not restored.
-Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error,
+Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, TimeState& state, coupling::Secants& secants, Stage& last, double error,
               int power, const Memory& memory);
 
-/// Returns the value at t of the polynomial through nets[i] at times[i].
-Net interpolated(std::span<const double> times, std::span<const Net* const> nets, double t);
+/// Returns the value at t of the polynomial through states[i] at times[i].
+State interpolated(std::span<const double> times, std::span<const State* const> states, double t);
 
 }  // namespace tanktread::motion

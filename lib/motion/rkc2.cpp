@@ -12,12 +12,12 @@ constexpr double margin = 1.1;    // safety factor on the stiffness rho, because
 constexpr int lasting_steps = 25;  // number of steps for which a measured stiffness is used
 constexpr int most_stages = 200;
 
-/// Content of State::memory.
+/// Content of TimeState::memory.
 struct StiffnessMemory {
   double stiffness = 0;  ///< measured stiffness
   double age = 0;        ///< number of steps since the stiffness was measured
   double error = 0;      ///< error of the last accepted step divided by the tolerance
-  double points = 0;     ///< number of control points of the mesh on which the stiffness was measured
+  double size = 0;       ///< number of numbers of a state when the stiffness was measured
 };
 
 /// Values T_j(w), T_j'(w) and T_j''(w) of the Chebyshev polynomials of degree j = 0 … s at the point w.
@@ -34,7 +34,7 @@ struct Chebyshev {
 
 /// Computes one RKC2 step of s stages (4.8) from x with slope v at the time `start` to start + dt. Evaluates s - 1 velocities, at the times start +
 /// c_j dt of the stages j.
-Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double start, double dt, int s) {
+State step(coupling::Dynamics& dynamics, const State& x, const State& v, double start, double dt, int s) {
   const double w0 = 1 + 2. / 13 / (s * s);  // damping parameter 2/13
   const Chebyshev c(s, w0);
   const double w1 = c.d[s] / c.dd[s];
@@ -42,13 +42,13 @@ Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double start,
   for (int j = 2; j <= s; ++j) b[j] = c.dd[j] / (c.d[j] * c.d[j]);
   b[0] = b[1] = b[2];
 
-  Net before = x, y = x + b[1] * w1 * dt * v;
+  State before = x, y = x + b[1] * w1 * dt * v;
   double c_before = 0, c_y = b[1] * w1;
   for (int j = 2; j <= s; ++j) {
     const double mu = 2 * b[j] * w0 / b[j - 1], nu = -b[j] / b[j - 2], weight = 2 * b[j] * w1 / b[j - 1];
     const double first = -(1 - b[j - 1] * c.t[j - 1]) * weight;
     dynamics.set_time(start + c_y * dt, start);
-    Net next = (1 - mu - nu) * x + mu * y + nu * before + dt * (weight * dynamics.velocity(y) + first * v);
+    State next = (1 - mu - nu) * x + mu * y + nu * before + dt * (weight * dynamics.velocity(y) + first * v);
     before = std::move(y);
     y = std::move(next);
     c_before = std::exchange(c_y, mu * c_y + nu * c_before + weight + first);
@@ -60,22 +60,22 @@ Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double start,
 
 int rkc2_stages(double dt, double rho) { return std::max(2, 1 + static_cast<int>(std::sqrt(1 + 1.54 * dt * rho))); }
 
-StepReport Rkc2::advance(coupling::Dynamics& dynamics, State& state, double limit) {
+StepReport Rkc2::advance(coupling::Dynamics& dynamics, TimeState& state, double limit) {
   begin(dynamics, state);
   StiffnessMemory memory = remembered<StiffnessMemory>(state.memory);
   Attempts attempts(options_, state, limit);
   const auto measure = [&] { attempts.report.iterations += measure_stiffness(dynamics, state, memory); };
-  if (memory.age >= lasting_steps || memory.points != static_cast<double>(state.x.rows())) measure();
+  if (memory.age >= lasting_steps || memory.size != static_cast<double>(state.x.numbers().size())) measure();
 
   for (;;) {
     const double rho = margin * memory.stiffness;
     const double dt = attempts.next(rho > 0 ? (most_stages * most_stages - 1) / (1.54 * rho) : 1e300);
-    const Net& v = state.history.front();
+    const State& v = state.history.front();
     const int stages = rkc2_stages(dt, rho);
-    Net y = step(dynamics, state.x, v, state.time, dt, stages);
+    State y = step(dynamics, state.x, v, state.time, dt, stages);
     dynamics.restore_constraints(y);
     dynamics.set_time(state.time + dt, state.time);
-    const Net slope = dynamics.velocity(y);
+    const State slope = dynamics.velocity(y);
     attempts.report.iterations += stages;
 
     const double error = dynamics.norm(0.8 * (state.x - y) + 0.4 * dt * (v + slope)) / (options_.tolerance * step_share(options_.tolerance, 2));

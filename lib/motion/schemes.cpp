@@ -42,7 +42,7 @@ void Attempts::reject(double part, double error) {
   ++report.rejected;
 }
 
-StepReport Attempts::accept(const coupling::Dynamics& dynamics, Net y, double error, double factor, double share) {
+StepReport Attempts::accept(const coupling::Dynamics& dynamics, State y, double error, double factor, double share) {
   report.step = size_;
   report.error = error * share * options_.tolerance;
   report.displacement = dynamics.norm(y - state_.x);
@@ -52,20 +52,20 @@ StepReport Attempts::accept(const coupling::Dynamics& dynamics, Net y, double er
   return report;
 }
 
-StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit) {
+StepReport Bs3::advance(coupling::Dynamics& dynamics, TimeState& state, double limit) {
   begin(dynamics, state);
   for (Attempts attempts(options_, state, limit);;) {
     const double dt = attempts.next();
-    const Net& k1 = state.history.front();
-    const auto slope = [&](double part, const Net& x) {
+    const State& k1 = state.history.front();
+    const auto slope = [&](double part, const State& x) {
       dynamics.set_time(state.time + part * dt, state.time);
       return dynamics.velocity(x);
     };
-    const Net k2 = slope(0.5, state.x + dt / 2 * k1);
-    const Net k3 = slope(0.75, state.x + 3 * dt / 4 * k2);
-    Net y = state.x + dt * (2. / 9 * k1 + 1. / 3 * k2 + 4. / 9 * k3);
+    const State k2 = slope(0.5, state.x + dt / 2 * k1);
+    const State k3 = slope(0.75, state.x + 3 * dt / 4 * k2);
+    State y = state.x + dt * (2. / 9 * k1 + 1. / 3 * k2 + 4. / 9 * k3);
     dynamics.restore_constraints(y);
-    const Net k4 = slope(1, y);
+    const State k4 = slope(1, y);
     attempts.report.iterations += 3;
 
     const double error = dynamics.norm(dt * (-5. / 72 * k1 + 1. / 12 * k2 + 1. / 9 * k3 - 1. / 8 * k4)) / options_.tolerance;
@@ -79,15 +79,16 @@ StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit
   }
 }
 
-double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations) {
-  if (direction.rows() != x.rows()) {  // start from random numbers, so that the direction contains every mode
-    std::minstd_rand generator(1);     // a generator that gives equal numbers with every standard library
-    direction = Net::NullaryExpr(x.rows(), 3, [&] { return static_cast<double>(generator()) / std::minstd_rand::max() - 0.5; });
+double stiffness(coupling::Dynamics& dynamics, const State& x, const State& v, State& direction, int iterations) {
+  if (direction.numbers().size() != x.numbers().size()) {  // start from random numbers, so that the direction contains every mode
+    std::minstd_rand generator(1);                         // a generator that gives equal numbers with every standard library
+    direction = State(x.layout());
+    for (double& number : direction.numbers()) number = static_cast<double>(generator()) / std::minstd_rand::max() - 0.5;
   }
-  direction /= dynamics.norm(direction);
+  direction = direction / dynamics.norm(direction);
   double rho = 0;
   for (int k = 0; k < iterations; ++k) {
-    const Net image = dynamics.derivative(x, v, direction);
+    const State image = dynamics.derivative(x, v, direction);
     rho = dynamics.norm(image);
     if (!(rho > 0) || !std::isfinite(rho)) return rho;
     direction = image / rho;

@@ -11,7 +11,7 @@
 
 namespace tanktread::motion {
 
-/// Returns a struct of doubles from the front of State::memory, or a default-constructed one if the memory is shorter. values_of() is its inverse.
+/// Returns a struct of doubles from the front of TimeState::memory, or a default-constructed one if the memory is shorter; inverse of values_of().
 template <class Memory>
 Memory remembered(const std::vector<double>& values) {
   Memory memory;
@@ -40,7 +40,7 @@ double step_share(double tolerance, int order);
 /// Chooses the sizes of the attempts at one step towards `limit`, and prepares the report of the step.
 class Attempts {
  public:
-  Attempts(const TimeOptions& options, State& state, double limit)
+  Attempts(const TimeOptions& options, TimeState& state, double limit)
       : options_(options), state_(state), limit_(limit),
         proposed_(options.fixed_step.value_or(std::min(state.step, options.maximum_step.value_or(1e300)))) {}
 
@@ -62,13 +62,13 @@ class Attempts {
   /// this step. If this step was shortened, for example to end at the time `limit`, the next step is at least as long as this step before it was
   /// shortened. `error`: error of the step divided by the allowed error, which is the tolerance times `share` (4.31). The scheme updates its history
   /// and memory itself.
-  StepReport accept(const coupling::Dynamics& dynamics, Net y, double error, double factor, double share = 1);
+  StepReport accept(const coupling::Dynamics& dynamics, State y, double error, double factor, double share = 1);
 
   StepReport report;  ///< the scheme counts `iterations`
 
  private:
   const TimeOptions& options_;
-  State& state_;
+  TimeState& state_;
   double limit_, proposed_, size_ = 0;
   double rejected_size_ = 0, rejected_error_ = 0;  // size and error of the previous rejected attempt
 };
@@ -86,7 +86,7 @@ class Scheme : public Integrator {
 class Bs3 : public Scheme {
  public:
   using Scheme::Scheme;
-  StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) override;
+  StepReport advance(coupling::Dynamics& dynamics, TimeState& state, double limit) override;
 };
 
 /// Runge-Kutta-Chebyshev of second order (Sommeijer, Shampine & Verwer 1998), explicit and stabilised. The number of stages depends on the step:
@@ -98,7 +98,7 @@ class Bs3 : public Scheme {
 class Rkc2 : public Scheme {
  public:
   using Scheme::Scheme;
-  StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) override;
+  StepReport advance(coupling::Dynamics& dynamics, TimeState& state, double limit) override;
 };
 
 /// Returns the number of stages that a step dt of RKC2 needs at the stiffness rho (4.8).
@@ -109,18 +109,18 @@ int rkc2_stages(double dt, double rho);
 /// least 0.9 rho. The iteration starts from `direction` and stores its last direction there, normalised to 1. If `direction` and x differ in size,
 /// the iteration starts from pseudo-random numbers that are the same in every run. An iteration costs one product with the frozen operator, or one
 /// velocity evaluation if nothing is assembled.
-double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations);
+double stiffness(coupling::Dynamics& dynamics, const State& x, const State& v, State& direction, int iterations);
 
 /// Measures the stiffness (4.7) at the state, with three iterations if the direction of an earlier measurement on the same mesh is known, otherwise
-/// with eight. Sets `stiffness`, unless the result is not finite, `age` (0) and `points` in the memory of a scheme. Returns the number of iterations.
+/// with eight. Sets `stiffness`, unless the result is not finite, `age` (0) and `size` in the memory of a scheme. Returns the number of iterations.
 template <class Memory>
-int measure_stiffness(coupling::Dynamics& dynamics, State& state, Memory& memory) {
-  const auto points = static_cast<double>(state.x.rows());
-  const int iterations = memory.points == points && state.direction.rows() == state.x.rows() ? 3 : 8;
+int measure_stiffness(coupling::Dynamics& dynamics, TimeState& state, Memory& memory) {
+  const auto size = static_cast<double>(state.x.numbers().size());
+  const int iterations = memory.size == size && state.direction.numbers().size() == state.x.numbers().size() ? 3 : 8;
   dynamics.set_time(state.time, state.time);
   const double found = stiffness(dynamics, state.x, state.history.front(), state.direction, iterations);
   if (std::isfinite(found)) memory.stiffness = found;
-  memory.age = 0, memory.points = points;
+  memory.age = 0, memory.size = size;
   return iterations;
 }
 
@@ -141,15 +141,15 @@ int measure_stiffness(coupling::Dynamics& dynamics, State& state, Memory& memory
 class CrankNicolson : public Scheme {
  public:
   CrankNicolson(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox);
-  StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) override;
+  StepReport advance(coupling::Dynamics& dynamics, TimeState& state, double limit) override;
 
  private:
   struct Iteration {
-    Net y;
+    State y;
     int count = 0;
     bool converged = false;
   };
-  Iteration iterate(coupling::Dynamics& dynamics, const State& state, double dt, const Net& start) const;
+  Iteration iterate(coupling::Dynamics& dynamics, const TimeState& state, double dt, const State& start) const;
 
   bool by_error_;
   std::unique_ptr<coupling::FixedPoint> solver_;  // NOX solver of the step; null for the fixed-point iteration (4.1) without acceleration
@@ -171,7 +171,7 @@ class CrankNicolson : public Scheme {
 class TrBdf2 : public Scheme {
  public:
   using Scheme::Scheme;
-  StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) override;
+  StepReport advance(coupling::Dynamics& dynamics, TimeState& state, double limit) override;
 };
 
 /// Third-order backward differentiation with variable steps. The derivative at t_{n+1} of the cubic through x_{n+1}, x_n, x_{n-1}, x_{n-2} is
@@ -186,10 +186,10 @@ class TrBdf2 : public Scheme {
 class Bdf3 : public Scheme {
  public:
   explicit Bdf3(const TimeOptions& options) : Scheme(options), starter_(options) {}
-  StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) override;
+  StepReport advance(coupling::Dynamics& dynamics, TimeState& state, double limit) override;
 
  private:
-  StepReport start(coupling::Dynamics& dynamics, State& state, double limit);
+  StepReport start(coupling::Dynamics& dynamics, TimeState& state, double limit);
   TrBdf2 starter_;
 };
 
@@ -206,13 +206,13 @@ class Bdf3 : public Scheme {
 class Automatic : public Scheme {
  public:
   explicit Automatic(const TimeOptions& options) : Scheme(options), explicit_(options), implicit_(options), stabilised_(options) {}
-  StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) override;
+  StepReport advance(coupling::Dynamics& dynamics, TimeState& state, double limit) override;
 
  private:
   struct Choice;
   Scheme& chosen(const Choice& choice);
-  void measure(coupling::Dynamics& dynamics, State& state, Choice& choice) const;
-  void reconsider(const State& state, const StepReport& report, Choice& choice) const;
+  void measure(coupling::Dynamics& dynamics, TimeState& state, Choice& choice) const;
+  void reconsider(const TimeState& state, const StepReport& report, Choice& choice) const;
 
   Bs3 explicit_;
   TrBdf2 implicit_;

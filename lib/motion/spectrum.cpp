@@ -89,41 +89,40 @@ namespace {
 class Linearised {
  public:
   Linearised(const SmallChanges& changes, double difference)
-      : changes_(changes), difference_(difference / changes.dynamics.norm(changes.dynamics.moved(changes.x, coupling::unit_motion(1)))),
+      : changes_(changes), difference_(difference / changes.dynamics.norm(moved(changes.x, coupling::unit_motion(1)))),
         kept_(changes.shapes.size(), static_cast<Eigen::Index>(changes.kept.size())) {
     const auto& [dynamics, shapes, x, kept] = changes;
     Eigen::Index n = 0;
     for (const Conserved& one : kept) {
-      const Net& gradient = one.gradient;
+      const State& gradient = one.gradient;
       Eigen::VectorXd by_y(shapes.size());
-      for (Eigen::Index k = 0; k < by_y.size(); ++k)
-        by_y[k] = gradient.cwiseProduct(shapes.displacement(Eigen::VectorXd::Unit(by_y.size(), k)).topRows(gradient.rows())).sum();
+      for (Eigen::Index k = 0; k < by_y.size(); ++k) by_y[k] = dot(gradient, shapes.displacement(Eigen::VectorXd::Unit(by_y.size(), k)));
       by_y -= kept_.leftCols(n) * (kept_.leftCols(n).transpose() * by_y);
       // skips the quantity if modes of this parity do not change it, or if it is a mirror image of an earlier one
       if (by_y.norm() > 1e-6 * gradient.norm()) kept_.col(n++) = by_y.normalized();
     }
     kept_.conservativeResize(Eigen::NoChange, n);
-    const std::vector<Net> fields = dynamics.relabellings(x);
+    const std::vector<State> fields = dynamics.relabellings(x);
     if (fields.empty()) return;
-    Eigen::MatrixXd all(x.size(), static_cast<Eigen::Index>(fields.size()));
-    for (Eigen::Index k = 0; k < all.cols(); ++k) all.col(k) = fields[static_cast<std::size_t>(k)].reshaped();
-    relabelling_ = all.colPivHouseholderQr().solve(dynamics.velocity(x).reshaped());
+    Eigen::MatrixXd all(x.numbers().size(), static_cast<Eigen::Index>(fields.size()));
+    for (Eigen::Index k = 0; k < all.cols(); ++k) all.col(k) = fields[static_cast<std::size_t>(k)].numbers();
+    relabelling_ = all.colPivHouseholderQr().solve(dynamics.velocity(x).numbers());
   }
 
   /// Returns J y. Throws RunFailure if a velocity cannot be evaluated.
   Eigen::VectorXd operator()(const Eigen::VectorXd& y) const {
-    const Net d = changes_.shapes.displacement(keeping(y));
-    if (d.isZero(0)) return Eigen::VectorXd::Zero(y.size());
-    const Net change = central_difference([this](const Net& x) { return velocity(x); }, changes_.x, d, difference_);
+    const State d = changes_.shapes.displacement(keeping(y));
+    if (d.norm() == 0) return Eigen::VectorXd::Zero(y.size());
+    const State change = central_difference([this](const State& x) { return velocity(x); }, changes_.x, d, difference_);
     if (!change.allFinite()) throw RunFailure("the evaluation of the velocity failed for a shape close to the steady shape");
     return keeping(changes_.shapes.coordinates(change));
   }
 
  private:
-  Net velocity(const Net& x) const {
-    Net v = changes_.dynamics.velocity(x);
+  State velocity(const State& x) const {
+    State v = changes_.dynamics.velocity(x);
     if (relabelling_.size() == 0 || !v.allFinite()) return v;
-    const std::vector<Net> fields = changes_.dynamics.relabellings(x);
+    const std::vector<State> fields = changes_.dynamics.relabellings(x);
     for (std::size_t k = 0; k < fields.size(); ++k) v -= relabelling_[static_cast<Eigen::Index>(k)] * fields[k];
     return v;
   }
@@ -137,11 +136,11 @@ class Linearised {
 
 /// Returns an orthonormal basis, in shape coordinates, of the given fields that have the symmetry of the shape coordinates. Fields that do not change
 /// the shape are left out: rotations of a sphere, and motions of points along the interface of a drop (relabellings).
-Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std::vector<Net>& fields) {
+Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std::vector<State>& fields) {
   constexpr double seen = 1e-3;
   Eigen::MatrixXd all(shapes.size(), static_cast<Eigen::Index>(fields.size()));
   Eigen::Index rank = 0;
-  for (const Net& field : fields) {
+  for (const State& field : fields) {
     if (!shapes.admits(field)) continue;
     Eigen::VectorXd y = shapes.coordinates(field);
     const double size = y.norm();
@@ -152,11 +151,11 @@ Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std:
 }
 
 /// Returns an orthonormal basis, in shape coordinates, of the translations (first = 0) or rotations (first = 3) of x.
-Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const Net& x, int first) {
-  const Net net = x.topRows(shapes.n_points());
+Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const State& x, int first) {
+  const Net net = shapes.motion().shape(x);
   const Vec3 centre = net.colwise().mean().transpose();
-  std::vector<Net> fields;
-  for (int k = first; k < first + 3; ++k) fields.push_back(coupling::rigid_velocity(net, coupling::unit_motion(k), centre));
+  std::vector<State> fields;
+  for (int k = first; k < first + 3; ++k) fields.push_back(shapes.motion().state_of(coupling::rigid_velocity(net, coupling::unit_motion(k), centre)));
   return orthonormal(shapes, fields);
 }
 
@@ -184,9 +183,8 @@ class Recognition {
 
 /// Returns the relative change b.d/(|b| |d|) of a conserved quantity with the gradient b = `kept` due to a mode d. The change is zero for all modes
 /// of nonzero rate, because conservation implies rate x b.d = 0.
-double gain(const Net& kept, const Mode& mode) {
-  const auto gained = [&](const Net& part) { return kept.cwiseProduct(part.topRows(kept.rows())).sum(); };
-  return std::hypot(gained(mode.real), gained(mode.imaginary)) / (kept.norm() * std::hypot(mode.real.norm(), mode.imaginary.norm()));
+double gain(const State& kept, const Mode& mode) {
+  return std::hypot(dot(kept, mode.real), dot(kept, mode.imaginary)) / (kept.norm() * std::hypot(mode.real.norm(), mode.imaginary.norm()));
 }
 
 /// Returns the eigenvector as a field on the surface, with the phase that makes it as real as possible, scaled to a maximum of 1.
@@ -194,10 +192,11 @@ Mode mode(const coupling::ShapeCoordinates& shapes, const Recognition& recogniti
   const std::complex<double> square = (y.array() * y.array()).sum();
   if (std::abs(square) > 0) y /= std::sqrt(square / std::abs(square));
   Mode found{rate, shapes.displacement(y.real()), shapes.displacement(y.imag()), recognition.kind(y)};
-  const Eigen::VectorXd squares = found.real.rowwise().squaredNorm() + found.imaginary.rowwise().squaredNorm();
-  const double moved = std::sqrt(squares.head(shapes.n_points()).maxCoeff()), any = std::sqrt(squares.maxCoeff());
-  const double largest = moved > 1e-6 * any ? moved : any;
-  found.real /= largest, found.imaginary /= largest;
+  const auto largest_of = [&](const auto& part) { return std::sqrt((part(found.real) + part(found.imaginary)).maxCoeff()); };
+  const double displaced = largest_of([&](const State& x) -> Eigen::VectorXd { return shapes.motion().shape(x).rowwise().squaredNorm(); });
+  const double any = largest_of([](const State& x) -> Eigen::VectorXd { return x.numbers().cwiseAbs2(); });
+  const double largest = displaced > 1e-6 * any ? displaced : any;
+  found.real = found.real / largest, found.imaginary = found.imaginary / largest;
   return found;
 }
 
@@ -231,7 +230,7 @@ Pairs shifted(const SmallChanges& changes, const SpectrumOptions& options, const
         Eigen::Map<Eigen::VectorXd>(out, n) = y - step * linearised(y);
       },
       [&](const double* in, double* out) {
-        const Net r = changes.shapes.displacement(Numbers(in, n));
+        const State r = changes.shapes.displacement(Numbers(in, n));
         Eigen::Map<Eigen::VectorXd>(out, n) = changes.shapes.coordinates(changes.dynamics.solve(step, r, 1e-2, {}));
       }};
   const auto inverse = [&](const double* in, double* out) {

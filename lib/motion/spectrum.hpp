@@ -1,6 +1,7 @@
 #pragma once
 // The linearised motion about a shape: growth rates and modes of small changes of shape.
 
+#include <algorithm>
 #include <complex>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@ class Section;
 }
 
 namespace tanktread::motion {
+
+using coupling::State;
 
 /// Options of the linear stability analysis, `Spectrum/*` of the deck.
 struct SpectrumOptions {
@@ -42,7 +45,7 @@ inline const std::string& name(ModeKind kind) { return mode_kinds.at(static_cast
 
 /// Gradient, with respect to the state, of a quantity that the motion conserves. `kind`: kind of the mode of rate 0 that the conservation causes.
 struct Conserved {
-  Net gradient;
+  State gradient;
   ModeKind kind;
 };
 
@@ -50,7 +53,7 @@ struct Conserved {
 struct SmallChanges {
   coupling::Dynamics& dynamics;              ///< motion of the shape
   const coupling::ShapeCoordinates& shapes;  ///< coordinates y of the changes
-  const Net& x;
+  const State& x;
   const std::vector<Conserved>& kept;        ///< conserved quantities; their gradients identify the modes that have rate 0 due to conservation
 };
 
@@ -58,7 +61,7 @@ struct SmallChanges {
 /// fields. It is scaled such that the largest displacement is 1. If no control point moves, the largest component is 1.
 struct Mode {
   std::complex<double> rate;
-  Net real, imaginary;
+  State real, imaginary;
   ModeKind kind = ModeKind::shape;
 };
 
@@ -74,8 +77,10 @@ void add_columns(const std::vector<Mode>& modes, int number, bool all_rigid, Col
 ///
 ///   (f(x + e d) - f(x - e d))/2e,   e max |d| = largest
 template <class Function>
-Net central_difference(Function&& f, const Net& x, const Net& d, double largest) {
-  const double e = largest / d.rowwise().norm().maxCoeff();
+State central_difference(Function&& f, const State& x, const State& d, double largest) {
+  double most = 0;
+  for (std::size_t k = 0; k < d.layout()->blocks().size(); ++k) most = std::max(most, d(coupling::BlockId{k}).rowwise().norm().maxCoeff());
+  const double e = largest / most;
   return (f(x + e * d) - f(x - e * d)) / (2 * e);
 }
 

@@ -32,39 +32,39 @@ namespace {
 
 /// Adds the component of `field` that is orthogonal to the orthonormal fields in `all`, normalised, if its norm is more than the fraction `least` of
 /// the field's norm.
-void join(std::vector<Net>& all, Net field, double least) {
+void join(std::vector<State>& all, State field, double least) {
   const double size = field.norm();
-  for (const Net& other : all) field -= other.cwiseProduct(field).sum() * other;
+  for (const State& other : all) field -= dot(other, field) * other;
   if (field.norm() > least * size) all.push_back(field / field.norm());
 }
 
 }  // namespace
 
-SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start, Obstacle obstacle)
+SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, State start, Obstacle obstacle)
     : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)), obstacle_(std::move(obstacle)) {}
 
-std::vector<Net> SteadyEquations::neutral(const Net& x) {
+std::vector<State> SteadyEquations::neutral(const State& x) {
   // Thresholds of the orthogonalisation: a field is dropped if its component orthogonal to the previous fields is smaller than this fraction of its
   // norm. `rounding`, for rigid motions, is above round-off. `between_meshes` is for motions of points along the surface (relabellings) and is above
   // the mesh error: on an axisymmetric drop, such a motion and a rigid rotation differ only by the mesh error.
   constexpr double rounding = 1e-6, between_meshes = 0.05;
-  std::vector<Net> all;
-  for (const coupling::RigidMotion& motion : free_) join(all, dynamics_.moved(x, motion), rounding);
-  for (const Net& field : dynamics_.relabellings(x)) join(all, field, between_meshes);
+  std::vector<State> all;
+  for (const coupling::RigidMotion& motion : free_) join(all, moved(x, motion), rounding);
+  for (const State& field : dynamics_.relabellings(x)) join(all, field, between_meshes);
   return all;
 }
 
-Net SteadyEquations::residual(const Net& x) {
-  Net volume = x;
+State SteadyEquations::residual(const State& x) {
+  State volume = x;
   dynamics_.restore_constraints(volume);
-  const Net v = dynamics_.velocity(x);
+  const State v = dynamics_.velocity(x);
   if (!v.allFinite()) return v;  // the neutral directions of such a shape may not exist
-  Net r = step_ * v + (volume - x);
-  for (const Net& field : neutral(x)) r -= (step_ * field.cwiseProduct(v).sum() + field.cwiseProduct(x - start_).sum()) * field;
+  State r = step_ * v + (volume - x);
+  for (const State& field : neutral(x)) r -= (step_ * dot(field, v) + dot(field, x - start_)) * field;
   return r;
 }
 
-Net SteadyEquations::precondition(const Net& x, const Net& r) {
+State SteadyEquations::precondition(const State& x, const State& r) {
   constexpr double linear_tolerance = 1e-2;
   if (!r.allFinite()) return r;
   dynamics_.linearise(x);
@@ -72,25 +72,25 @@ Net SteadyEquations::precondition(const Net& x, const Net& r) {
 }
 
 double SteadyEquations::unit_length() const {
-  const Net unit = Vec3::UnitY().transpose().replicate(start_.rows(), 1);
+  const State unit = moved(start_, coupling::unit_motion(1));
   return unit.norm() / dynamics_.norm(unit);
 }
 
-Net FixedPointError::operator()(const Net& x, const Net& f) {
+State FixedPointError::operator()(const State& x, const State& f) {
   // A column of dF (4.32) is ignored if its component orthogonal to the other columns is shorter than this fraction of the column.
   constexpr double independent = 1e-6;
-  Eigen::MatrixXd dx(x.size(), static_cast<Eigen::Index>(before_.size())), df(x.size(), dx.cols());
+  Eigen::MatrixXd dx(x.numbers().size(), static_cast<Eigen::Index>(before_.size())), df(dx.rows(), dx.cols());
   for (Eigen::Index j = 0; j < dx.cols(); ++j) {
     const auto& [other_x, other_f] = before_[static_cast<std::size_t>(j)];
-    const double size = std::max((f - other_f).norm(), std::numeric_limits<double>::min());
-    dx.col(j) = (x - other_x).reshaped() / size, df.col(j) = (f - other_f).reshaped() / size;
+    const double size = std::max((f.numbers() - other_f.numbers()).norm(), std::numeric_limits<double>::min());
+    dx.col(j) = (x.numbers() - other_x.numbers()) / size, df.col(j) = (f.numbers() - other_f.numbers()) / size;
   }
-  Net error = -f;
+  State error = -1 * f;
   if (dx.cols() > 0) {
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors;
     factors.setThreshold(independent);
-    const Eigen::VectorXd c = factors.compute(df).solve(f.reshaped().matrix());
-    error += ((dx + df) * c).reshaped(x.rows(), 3);
+    const Eigen::VectorXd c = factors.compute(df).solve(f.numbers());
+    error.numbers() += (dx + df) * c;
   }
   before_.emplace_back(x, f);
   if (static_cast<int>(before_.size()) > most_) before_.pop_front();
@@ -101,13 +101,13 @@ namespace {
 
 /// Makes implicit time steps, each so short that it changes x by less than `little`, until a step of the full length equations.step() also changes x
 /// by less than `little`. Returns whether x has changed.
-bool approach(SteadyEquations& equations, Net& x) {
+bool approach(SteadyEquations& equations, State& x) {
   constexpr double little = 0.2;
   constexpr int most = 100;
   const double full = equations.step();
   double step = full;
   for (int k = 0; k < most; ++k) {
-    Net delta;
+    State delta;
     const auto moves_little = [&] {
       SteadyEquations shorter = equations.with_step(step);
       delta = shorter.precondition(x, shorter.residual(x));
@@ -115,7 +115,7 @@ bool approach(SteadyEquations& equations, Net& x) {
     };
     while (!moves_little() && step > 1e-6 * full) step *= 0.5;
     if (step == full || !delta.allFinite()) return k > 0;
-    Net next = x + delta;
+    State next = x + delta;
     equations.dynamics().restore_constraints(next);
     if (!next.allFinite()) return k > 0;
     x = std::move(next);
@@ -126,18 +126,19 @@ bool approach(SteadyEquations& equations, Net& x) {
 
 }  // namespace
 
-SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x, int most_in_vain) {
+SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, State& x,
+                         int most_in_vain) {
   coupling::Dynamics& dynamics = equations.dynamics();
   dynamics.freeze(x);
   if (approach(equations, x)) dynamics.freeze(x);
-  Net best = x;
+  State best = x;
   double rest = std::numeric_limits<double>::infinity(), latest = rest;
   const bool bare = options.method == "newton-krylov" && solvers.steady.preconditioner == "none";
-  const int depth = coupling::FixedPoint::deep(x.size());
+  const int depth = coupling::FixedPoint::deep(x.numbers().size());
   FixedPointError error(depth);
   int in_vain = 0;  // number of iterations since the best iterate
-  const auto corrected = [&](const Net& y) -> Net {
-    const Net r = equations.residual(y), delta = equations.precondition(y, r);
+  const auto corrected = [&](const State& y) -> State {
+    const State r = equations.residual(y), delta = equations.precondition(y, r);
     latest = dynamics.norm(delta);
     if (delta.allFinite()) latest = std::max(latest, dynamics.norm(error(y, delta)));
     if (const double moved = dynamics.norm(r); !(moved < largest_motion)) latest = std::max(latest, moved);
@@ -147,9 +148,9 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
       return coupling::not_a_number(y);  // ends the iteration
     return y + (bare ? r : delta);
   };
-  const auto norm = [&](const Net& y) { return dynamics.norm(y); };
+  const auto norm = [&](const State& y) { return dynamics.norm(y); };
   // Norm of the error for NOX. A single correction gives no error estimate, so the first correction ends the iteration only if it is 0.
-  const coupling::FixedPoint::Norm error_norm = [&](const Net&) {
+  const coupling::FixedPoint::Norm error_norm = [&](const State&) {
     return latest == 0 || error.known() ? latest : std::numeric_limits<double>::max();
   };
   const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), depth);

@@ -19,6 +19,8 @@ class Section;
 
 namespace tanktread::motion {
 
+using coupling::State;
+
 /// Options of the search for steady shapes, `Steady/*` of the deck.
 struct SteadyOptions {
   bool present = false;             ///< true if the deck has the section Steady
@@ -50,20 +52,20 @@ struct SteadyReport {
 class SteadyEquations {
  public:
   /// Function that returns why searches that come to the shape x rarely find a steady shape, and what to do; empty if it knows no reason.
-  using Obstacle = std::function<std::string(const Net& x)>;
+  using Obstacle = std::function<std::string(const State& x)>;
 
   /// `step`: implicit step s of the preconditioner in (4.17), a time. `start`: the shape x0. `dynamics` must outlive this object.
-  SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start, Obstacle obstacle = {});
+  SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, State start, Obstacle obstacle = {});
 
   /// Returns G(x) (4.17) times the implicit step s; not finite if the evaluation fails. Collective.
-  Net residual(const Net& x);
+  State residual(const State& x);
   /// Returns (1 - s J)^{-1} r, with the implicit step s (4.17) and the frozen Jacobian J (4.3) linearised at x. Collective.
-  Net precondition(const Net& x, const Net& r);
+  State precondition(const State& x, const State& r);
   double unit_length() const;                          ///< Euclidean norm of a displacement for which Dynamics::norm is 1
-  std::vector<Net> neutral(const Net& x);  ///< returns an orthonormal basis of the neutral directions, the range of Q in (4.17). Collective
+  std::vector<State> neutral(const State& x);  ///< returns an orthonormal basis of the neutral directions, the range of Q in (4.17). Collective
   coupling::Dynamics& dynamics() { return dynamics_; }
   double step() const { return step_; }
-  std::string obstacle(const Net& x) const { return obstacle_ ? obstacle_(x) : std::string(); }  ///< see Obstacle
+  std::string obstacle(const State& x) const { return obstacle_ ? obstacle_(x) : std::string(); }  ///< see Obstacle
 
   /// Returns these equations with another step s of (4.17).
   SteadyEquations with_step(double step) const { return {dynamics_, free_, step, start_, obstacle_}; }
@@ -72,7 +74,7 @@ class SteadyEquations {
   coupling::Dynamics& dynamics_;
   std::vector<coupling::RigidMotion> free_;
   double step_;
-  Net start_;
+  State start_;
   Obstacle obstacle_;
 };
 
@@ -90,21 +92,21 @@ class FixedPointError {
 
   /// Stores the iterate x_k and its correction f_k, which must be finite. Returns the estimate (4.32) of the error x_k - x*, where x* is the fixed
   /// point. The cost is a least-squares problem with m columns, without evaluations of the fixed-point map.
-  Net operator()(const Net& x, const Net& f);
+  State operator()(const State& x, const State& f);
 
   /// Returns true if the latest estimate (4.32) uses earlier iterates; without earlier iterates the estimate is -f_k.
   bool known() const { return before_.size() > 1; }
 
  private:
   int most_;
-  std::deque<std::pair<Net, Net>> before_;  // pairs of an earlier iterate x_j and its correction f_j, latest last
+  std::deque<std::pair<State, State>> before_;  // pairs of an earlier iterate x_j and its correction f_j, latest last
 };
 
 /// Solves G(x) = 0 (4.17) by NOX, as the fixed-point equation x = x + s (1 - s J)^{-1} G(x) with the implicit step s and the frozen Jacobian J (4.3).
 /// The method is Anderson acceleration (`anderson`) or Newton's method (`newton-krylov`). If one iteration would change x by 0.2 R_C or more,
 /// implicit time steps shorter than s are made first. If the iteration does not converge, x is the best iterate. If there is an obstacle at the best
 /// iterate (SteadyEquations::obstacle), Anderson's method ends after `most_in_vain` iterations that find no better one. Collective.
-SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x,
+SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, State& x,
                          int most_in_vain = 20);
 
 }  // namespace tanktread::motion

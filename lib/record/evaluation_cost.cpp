@@ -30,7 +30,7 @@ Cost measured(const Scene& scene) {
   const auto start = std::chrono::steady_clock::now();
   const auto particles = make_particle_system(scene, ranks, phases);
   coupling::Dynamics& dynamics = particles->dynamics();
-  const Net x = particles->start();
+  const coupling::State x = particles->start();
   dynamics.set_time(0, 0);
   Cost cost{};
   cost.setup = ranks.seconds_since(start);

@@ -248,7 +248,7 @@ Results::Sampled Results::sample(const SurfaceSnapshot& snapshot, double time) {
   return sampled;
 }
 
-void Results::save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& snapshot) {
+void Results::save(output::Checkpoint checkpoint, const motion::TimeState& state, const RunTotals& totals, const Sampled& snapshot) {
   coupling::together(writes_, [&] {
     complete(checkpoint, state, totals, snapshot.time);
     unwritten_snapshots_.emplace_back(totals.step, output::snapshot_file(checkpoint, snapshot.mesh, snapshot.fields));
@@ -262,7 +262,7 @@ void Results::save(output::Checkpoint checkpoint, const motion::State& state, co
   last_saved_ = totals.step;
 }
 
-void Results::complete(output::Checkpoint& checkpoint, const motion::State& state, const RunTotals& totals, double picture_time) const {
+void Results::complete(output::Checkpoint& checkpoint, const motion::TimeState& state, const RunTotals& totals, double picture_time) const {
   output::store(state, checkpoint);
   store(totals, checkpoint);
   checkpoint.numbers["picture time"] = picture_time;

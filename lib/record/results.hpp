@@ -110,7 +110,7 @@ class Results {
 
   /// Saves a checkpoint of the current step, and `snapshot`, which belongs to the end of the step or to a time within it. `checkpoint`:
   /// data for a resumed run. `state` and `totals` are added to these data.
-  void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& snapshot);
+  void save(output::Checkpoint checkpoint, const motion::TimeState& state, const RunTotals& totals, const Sampled& snapshot);
 
   /// Writes the surface as Bezier-extraction text, `surface.iga`.
   void write_surface(const Net& surface);
@@ -128,7 +128,7 @@ class Results {
   void begin();
   void keep(const std::filesystem::path& file, const std::filesystem::path& name);
   void declare_series();
-  void complete(output::Checkpoint& checkpoint, const motion::State& state, const RunTotals& totals, double picture_time) const;
+  void complete(output::Checkpoint& checkpoint, const motion::TimeState& state, const RunTotals& totals, double picture_time) const;
   void set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen);
   Resumed read_run();
   void add_obstacle(const std::string& kind);

@@ -21,7 +21,7 @@ namespace tanktread {
 struct Member;
 
 /// A particle on its current mesh: spline space, resting, initial and unstressed shape, and material data. The current shape is not a part of it, but
-/// of motion::State. The Member of the particle owns its body; an isolated rigid body is owned by its run.
+/// of motion::TimeState. The Member of the particle owns its body; an isolated rigid body is owned by its run.
 ///
 /// make_body() sets all members; make_body_of_several() leaves `wall` null and the symmetry trivial. Later, only these change:
 ///   - If the mesh adapts, a new body replaces the old one. It is a copy with another `mesh`, `space` and `plain`, with the nets `rest`, `initial`

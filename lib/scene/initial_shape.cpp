@@ -79,7 +79,7 @@ std::vector<Part> parts_of(const Scene& scene, const output::Checkpoint& run) {
     if (!kind.copies.present) add(kind.name, kind);
     for (int copy = 1; kind.copies.present && add(kind.name + formatted(" %d", copy), kind);) ++copy;
   }
-  if (parts.empty()) parts.push_back({"", &scene.particles.front(), 0, run.arrays.at("x").rows()});  // a free rigid body
+  if (parts.empty()) parts.push_back({"", &scene.particles.front(), 0, output::stored_shapes(run).rows()});  // a free rigid body
   return parts;
 }
 
@@ -100,10 +100,13 @@ void reduce(RunBefore& run, const ParticleScene& particle_scene, const std::stri
                     (given ? ", but is " + deck::in_quotes(*given) : "") + ".");
   }
   check_surface(particle_scene, *part->kind, name);
-  std::map<std::string, Eigen::MatrixXd> arrays;
+  const Net shapes = output::stored_shapes(run);
+  if (part->first_row + part->n_rows > shapes.rows()) throw std::out_of_range("x");
+  std::map<std::string, Eigen::MatrixXd> arrays{{"x", shapes.middleRows(part->first_row, part->n_rows)}};
+  run.arrays.erase("x");
   for (auto& [array, values] : run.arrays) {
     const bool own = !part->name.empty() && array.starts_with(part->name + ": ");
-    const bool stacked = array == "x" || array.starts_with("mode ");
+    const bool stacked = array.starts_with("mode ");
     arrays[own ? array.substr(part->name.size() + 2) : array] = stacked ? values.middleRows(part->first_row, part->n_rows).eval() : std::move(values);
   }
   run.arrays = std::move(arrays);

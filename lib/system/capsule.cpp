@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "system/dynamics.hpp"
 #include "system/symmetry.hpp"
 
 namespace tanktread::coupling {
@@ -53,9 +54,7 @@ Net Capsule::response(Evaluation& at, const Net& work) {
   return change;
 }
 
-/// Returns the defect (3.14) of a velocity u, see VelocitySolver::defect.
 Net Capsule::defect(const Net& x, const Net& u) {
-  if (!defect_spares_system()) return velocity(x) - u;
   ++counts().evaluations;
   return x.allFinite() ? solver_.defect(x, u) : not_a_number(x);
 }
@@ -77,30 +76,6 @@ void Capsule::linearise(const Net& x) {
   const auto e = evaluate_on_demand(x, {}, 0);
   jacobian_.linearise(x, slides() ? e->virtual_work() : Net(), e->load_sums(), e->slip());
   if (!solver_.is_explicit() && has_frozen()) solver_.use_inverse([this](const Net& rhs) { return jacobian_.inverse_product(rhs); });
-}
-
-Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
-  const auto clock = phases_.time("implicit solve");
-  return jacobian_.solve(shift, jacobian_.velocity_product(r), tolerance, secants);
-}
-
-Net Capsule::correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
-  if (!defect_spares_system()) return Dynamics::correction(shift, defect, tolerance, secants);
-  const auto clock = phases_.time("implicit solve");
-  return jacobian_.solve(shift, shift * defect, tolerance, secants);
-}
-
-Net Capsule::jacobian_error(const Net& change, const Net& delta, double shift) {
-  const auto clock = phases_.time("implicit solve");
-  return (defect_spares_system() ? change : jacobian_.velocity_product(change)) + jacobian_.step_change(delta, shift, {}).rate / shift;
-}
-
-Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
-  if (!has_frozen()) return difference(x, v, delta);
-  if (slides()) evaluate(x);  // because the change of the mesh motion depends on the fluid velocity
-  const auto clock = phases_.time("stiffness");
-  linearise(x);
-  return symmetric(jacobian_.velocity_change(delta, {}).rate);
 }
 
 void Capsule::improve_start(Net& y, const Net& before, double shift) {

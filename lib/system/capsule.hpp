@@ -8,7 +8,6 @@
 #include "stokes/flow/ambient_flow.hpp"
 #include "system/capsule_jacobian.hpp"
 #include "system/capsule_parameters.hpp"
-#include "system/dynamics.hpp"
 #include "system/evaluation.hpp"
 #include "system/frozen/frozen_layers.hpp"
 #include "system/velocity_solver.hpp"
@@ -16,12 +15,13 @@
 namespace tanktread::coupling {
 
 /// Computes dx/dt = v(x) for the stacked control nets x of all particles. VelocitySolver solves for v, and CapsuleJacobian is the Jacobian for
-/// implicit steps.
+/// implicit steps. CoupledMotion integrates this motion together with the fields on the surfaces; its functions of the same names are described at
+/// Dynamics.
 ///
 /// Order of calls: set_time() sets the time. evaluate() solves for the loads and velocities of a shape and returns them as an Evaluation.
 /// evaluate_on_demand() returns an Evaluation that solves only when a quantity is read that needs it. Implicit schemes call freeze() every few steps,
-/// linearise() in each step, and then solve() or correction(). Schemes call restore_constraints() after a step.
-class Capsule : public Dynamics {
+/// linearise() in each step. Schemes call restore_constraints() after a step.
+class Capsule {
  public:
   /// `unstressed` and `resting`: control nets of the unstressed and of the resting surfaces, of shape (N, 3) on `space`. The motion conserves
   /// `kept_volume` of each particle if it is set, and otherwise the volume of the particle in `resting`.
@@ -37,27 +37,23 @@ class Capsule : public Dynamics {
   /// Otherwise a linear system is solved when a quantity is needed that cannot be computed from `velocity`.
   std::shared_ptr<Evaluation> evaluate_on_demand(const Net& x, const Net& velocity, double distance);
 
-  Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
-  std::string why_undefined() const override { return solver_.crossing().empty() ? Dynamics::why_undefined() : solver_.crossing(); }
-  void set_time(double time, double start) override;
-  double next_kink(double time) const override { return flow().next_kink(time); }
-  void freeze(const Net& x) override;
-  bool lattice_moves() const override { return parameters().cell && !solver_.walls().any(); }
-  double frozen_bytes() const override { return frozen_.bytes(); }
-  void linearise(const Net& x) override;
-  Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
-  Net defect(const Net& x, const Net& u) override;
-  bool defect_spares_system() const override;
-  Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
-  Net jacobian_error(const Net& change, const Net& delta, double shift) override;
-  Net derivative(const Net& x, const Net& v, const Net& delta) override;
-  Net mesh_motion(const Net& delta) override;
-  void restore_constraints(Net& x) override;
-  void improve_start(Net& y, const Net& before, double shift) override;
-  std::vector<Net> relabellings(const Net& x) override;
-  double distance(const Net& from, const Net& to) const override;
-  double norm(const Net& displacement) const override;
-  Net symmetric(Net field) const override { return solver_.symmetric(std::move(field)); }
+  Net velocity(const Net& x) { return evaluate(x)->velocity(); }
+  void set_time(double time, double start);
+
+  /// Returns the defect (3.14) of a velocity u at the shape x, if defect_spares_system(); see Dynamics::defect.
+  Net defect(const Net& x, const Net& u);
+  bool defect_spares_system() const;
+
+  void freeze(const Net& x);
+  double frozen_bytes() const { return frozen_.bytes(); }
+  bool lattice_moves() const { return parameters().cell && !solver_.walls().any(); }
+  void linearise(const Net& x);
+  Net mesh_motion(const Net& delta);
+  void restore_constraints(Net& x);
+  void improve_start(Net& y, const Net& before, double shift);
+  std::vector<Net> relabellings(const Net& x);
+  double distance(const Net& from, const Net& to) const;
+  double norm(const Net& displacement) const;  ///< largest root mean square displacement of the control points of a particle, divided by its R_C
 
   using Forces = VelocitySolver::Forces;
   void set_forces(Net Forces::* of, Net work);  ///< sets one kind of additional forces for all later calls
@@ -81,6 +77,7 @@ class Capsule : public Dynamics {
   }
 
   VelocitySolver& solver() { return solver_; }
+  Phases& phases() { return phases_; }
   CapsuleJacobian& jacobian() { return jacobian_; }
   bool has_frozen() const { return !frozen_.empty(); }
   bool slides() const { return solver_.slides(); }  ///< whether control points slide along an interface: their velocity is not the fluid velocity

@@ -147,7 +147,10 @@ Net CapsuleJacobian::inflation(const Net& c) {
   constexpr double rough = 0.1;  // relative residual
   if (latest_shift_ == 0 || interface_ || c.rows() != projection_.gradient.rows()) return c;
   if (std::ranges::none_of(parameters_.particles, resists_area)) return c;
-  const Net along = solve(latest_shift_, c, rough, {});
+  const double shift = latest_shift_;
+  const Apply apply = on_nets(c.rows(), [&](const Net& delta) { return step_change(delta, shift, {}).rate; });
+  const Apply precondition = area_ ? on_nets(c.rows(), [this](const Net& r) { return step_preconditioner(r); }) : Apply();
+  const Net along = parameters_.symmetry.completed(as_net(solve_step(shift, apply, precondition, flat(c), rough)));
   return along.allFinite() ? along : c;
 }
 
@@ -222,12 +225,6 @@ CapsuleJacobian::RateChange CapsuleJacobian::step_change(const Net& dx, double s
   return {dx - shift * change.rate, std::move(change.slip)};
 }
 
-Net CapsuleJacobian::solve(double shift, const Net& rhs, double tolerance, const Secants& secants) {
-  const auto apply = [&](const Net& delta) -> Net { return step_change(delta, shift, {}).rate - shift * secants(delta); };
-  const Apply precondition = area_ ? on_nets(rhs.rows(), [this](const Net& r) { return step_preconditioner(r); }) : Apply();
-  return parameters_.symmetry.completed(solve_step(shift, on_nets(rhs.rows(), apply), precondition, rhs, tolerance));
-}
-
 /// Returns the factor of the relative residual at high viscosity ratios. B weighs deformation by about lambda/2 but rigid rotation by 1, so that a
 /// residual of a few percent would be larger than the rotation of a hardly deforming particle. The iteration of a step then converges slowly or not
 /// at all: with lambda = 100, a capsule in shear took 144 steps instead of 12. Above lambda = 2e4, a smaller residual does not help, because the
@@ -240,15 +237,16 @@ double CapsuleJacobian::tolerance_factor() const {
   return ratio > least && ratio <= most ? least / ratio : 1;
 }
 
-Net CapsuleJacobian::solve_step(double shift, const Apply& product, const Apply& precondition, const Net& rhs, double tolerance) {
+Eigen::VectorXd CapsuleJacobian::solve_step(double shift, const Apply& product, const Apply& precondition, const Eigen::VectorXd& rhs,
+                                            double tolerance) {
   latest_shift_ = shift;
   if (area_) area_->factor(shift);
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(rhs.size());
   const LinearSystem system{one_block("displacement", rhs.size()), product, precondition};
-  const SolveReport report = step_solver_.solve(system, flat(rhs), solution, tolerance * tolerance_factor());
+  const SolveReport report = step_solver_.solve(system, rhs, solution, tolerance * tolerance_factor());
   ++counts_.solves;
   counts_.solver_iterations += report.iterations;
-  return as_net(solution);
+  return solution;
 }
 
 void CapsuleJacobian::improve_start(Net& y, const Net& before, double shift) {

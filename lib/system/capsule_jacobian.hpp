@@ -6,7 +6,6 @@
 
 #include "membrane/area_constraint.hpp"
 #include "system/frozen/frozen_layers.hpp"
-#include "system/solvers/secants.hpp"
 #include "system/velocity_solver.hpp"
 
 namespace tanktread::coupling {
@@ -46,16 +45,16 @@ class CapsuleJacobian {
   /// Applies an approximate inverse of the matrix of `solve`, for the shift of the latest call of solve_step().
   Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }
 
+  /// Returns true if step_preconditioner() is not the identity.
+  bool has_preconditioner() const { return area_.has_value(); }
+
   /// Solves the linear system of an implicit step with the shift gamma dt to the relative residual `tolerance`, and counts the solve. The tolerance
   /// is multiplied by 10/lambda if the largest viscosity ratio lambda of the deformable particles is between 10 and 2e4 and no control points slide.
-  /// `rhs` may have any number of rows.
-  Net solve_step(double shift, const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
-
-  /// Solves the system of an implicit step for the displacement delta, with the secant correction E (4.13) of J. If all control points move with the
-  /// fluid, the system is (B - shift (B J + E)) delta = rhs (4.3), which does not require the inverse of B. If control points slide along an
-  /// interface, it is (1 - shift (N B^-1 B J + T W + E)) delta = rhs. Here N dv + T W delta is the change of the mesh velocity (4.6) due to a change
-  /// dv of the fluid velocity and the displacement delta.
-  Net solve(double shift, const Net& rhs, double tolerance, const Secants& secants);
+  /// If all control points move with the fluid, the rows of the shape are (B - shift (B J + E)) delta = rhs (4.3) with the secant correction E
+  /// (4.13) of J, which do not require the inverse of B. If control points slide along an interface, they are
+  /// (1 - shift (N B^-1 B J + T W + E)) delta = rhs. Here N dv + T W delta is the change of the mesh velocity (4.6) due to a change dv of the fluid
+  /// velocity and the displacement delta.
+  Eigen::VectorXd solve_step(double shift, const Apply& product, const Apply& precondition, const Eigen::VectorXd& rhs, double tolerance);
 
   /// Returns the displacement along which a volume is restored. By default it is the direction c of (2.8). If the membrane nearly conserves area, it
   /// is the solution of an implicit step with the right-hand side c. The displacement c itself would change the area, and the resulting stress,
@@ -64,7 +63,6 @@ class CapsuleJacobian {
 
   /// Changes the initial guess y of a stage so that membranes that nearly conserve area have the same local area as in the shape `before` the stage.
   void improve_start(Net& y, const Net& before, double shift);
-
 
  private:
   std::vector<Mat3> gradients_at(const Net& x) const;

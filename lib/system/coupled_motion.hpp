@@ -1,18 +1,20 @@
 #pragma once
 // Motion of capsules and drops together with the fields on their surfaces, for all time integrators.
 
+#include <memory>
+#include <string>
 #include <vector>
-
-#include <Eigen/SparseCore>
 
 #include "membrane/field.hpp"
 #include "system/capsule.hpp"
+#include "system/dynamics.hpp"
 
 namespace tanktread::coupling {
 
-/// State y = (x, q_1, q_2, ...): the control net of all particles, followed by the coefficients of each field. Coefficients are stored contiguously
-/// in rows of three, and the last row is padded with zeros. The coefficients of a field are multiplied by R_C sqrt(control points/coefficients) of
-/// their particle, so that the Euclidean inner product of states gives similar weight to fields and shape and does not depend on the unit of length.
+/// Motion of all particles and of the fields q_1, q_2, ... on them. A state y = (x, q_1, q_2, ...) has one block "shape" per particle, whose
+/// rows are its control points, and then one block per field with its coefficients. The blocks of the shapes follow one another, so that the stacked
+/// control net x of all particles is one part of the state. The unit of a field's block is 1/(R_C sqrt(control points/coefficients)) of its
+/// particle, so that the Euclidean inner product of states gives similar weight to fields and shape and does not depend on the unit of length.
 ///
 ///   dx/dt = u(x, q),   dq/dt = rate(x, q, v - u),   with the load of each field added to the load of its particle                (4.33)
 ///
@@ -25,87 +27,83 @@ class CoupledMotion : public Dynamics {
   struct FieldOnParticle {
     std::size_t particle;
     membrane::Field* field;
-    double length = 0;  ///< length that replaces R_C in the factor of the field's coefficients (see CoupledMotion); 0: R_C
+    std::string name;   ///< name of the field's block; different for all fields of a particle
+    double length = 0;  ///< length that replaces R_C in the unit of the field's coefficients (see CoupledMotion); 0: R_C
   };
 
   /// `capsule` and the fields must outlive this object.
-  CoupledMotion(Capsule& capsule, std::vector<FieldOnParticle> fields);
+  explicit CoupledMotion(Capsule& capsule, std::vector<FieldOnParticle> fields = {});
 
-  Net start(const Net& shape) const;                         ///< state at the start of a run with this shape
-  Net shape(const Net& y) const { return y.topRows(n_); }    ///< control net
-  Net with_shape(Net y, const Net& shape) const;             ///< the state y with `shape` as its control net
-  Eigen::VectorXd coefficients(const Net& y, std::size_t k) const;
-  void set_coefficients(Net& y, std::size_t k, const Eigen::VectorXd& q) const;
+  Capsule& capsule() const { return capsule_; }
   const std::vector<FieldOnParticle>& fields() const { return fields_; }
-  Eigen::Index n_rows() const { return rows_; }  ///< number of rows of a state
-
-  /// Returns an orthonormal basis, one vector per column, of the coefficients of field k that have this parity under the symmetry. If the field
-  /// cannot map its coefficients to mirror images, the basis spans all coefficients.
-  Eigen::SparseMatrix<double> basis(std::size_t k, const surface::Symmetry& symmetry, const Vec3& parity) const;
   bool knows_images(const surface::Symmetry& symmetry) const;  ///< true if all fields can map their coefficients to mirror images
+  /// Returns a layout with the blocks of states, for vectors with this symmetry and parity (see Layout).
+  std::shared_ptr<const Layout> layout(const surface::Symmetry& symmetry, const Vec3& of_planes = Vec3::Ones()) const;
 
-  /// Returns the gradient, with respect to the state y, of the sum that field k conserves, for example the mass of a surfactant. The result has no
-  /// rows if the field conserves no sum.
-  Net conserved(std::size_t k) const;
+  State start(const Net& shape) const;     ///< state at the start of a run with this shape
+  State state_of(const Net& shape) const;  ///< state or rate with this net and zero coefficients
+  /// Return a view of the stacked control net in a state, or in a rate.
+  Eigen::Map<const Net> shape(const State& y) const { return {y.numbers().data(), capsule_.n_points(), 3}; }
+  Eigen::Map<Net> shape(State& y) const { return {y.numbers().data(), capsule_.n_points(), 3}; }
+  BlockId id(std::size_t k) const { return {layout_->blocks().size() - fields_.size() + k}; }  ///< block of field k
+  Eigen::VectorXd coefficients(const State& y, std::size_t k) const { return y.value(id(k)); }
+
+  /// Returns the gradient, with respect to the state y, of the sum that field k conserves, for example the mass of a surfactant. The result is absent
+  /// if the field conserves no sum.
+  State conserved(std::size_t k) const;
 
   /// Returns the change of the state y if control points slide by the small displacement `along` on surfaces that do not move.
-  Net slid(const Net& y, const Net& along);
+  State slid(const State& y, const Net& along);
 
-  /// Sets the fields to the state y. Unlike set_state(), does not add their loads to the loads of the capsule.
-  void set_fields(const Net& y);
+  /// Sets the fields to the state y. Unlike set_state(), does not add their loads to the loads of the capsule, which need not exist any more.
+  void set_fields(const State& y);
   /// Sets the fields to the state y and adds their loads to the loads of the capsule. Does not set the capsule's shape, which is an argument of the
   /// capsule's functions.
-  void set_state(const Net& y);
+  void set_state(const State& y);
 
-  Net velocity(const Net& y) override;
-  std::string why_undefined() const override { return capsule_.why_undefined(); }
+  State velocity(const State& y) override;
+  std::string why_undefined() const override;
   void set_time(double time, double start) override { capsule_.set_time(time, start); }
-  double next_kink(double time) const override { return capsule_.next_kink(time); }
-  void freeze(const Net& y) override;
+  double next_kink(double time) const override { return capsule_.flow().next_kink(time); }
+  void freeze(const State& y) override;
   bool lattice_moves() const override { return capsule_.lattice_moves(); }
   double frozen_bytes() const override { return capsule_.frozen_bytes(); }
-  void linearise(const Net& y) override;
-  Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
-  Net defect(const Net& y, const Net& u) override;
+  void linearise(const State& y) override;
+  State solve(double shift, const State& r, double tolerance, const Secants& secants) override;
+  State defect(const State& y, const State& u) override;
   bool defect_spares_system() const override { return capsule_.defect_spares_system(); }
-  Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
-  Net jacobian_error(const Net& change, const Net& delta, double shift) override;
-  Net derivative(const Net& y, const Net& v, const Net& delta) override;
-  Net mesh_motion(const Net& delta) override;
-  void restore_constraints(Net& y) override;
-  void improve_start(Net& y, const Net& before, double shift) override;
-  std::vector<Net> relabellings(const Net& y) override;
-  Net moved(const Net& y, const RigidMotion& motion) const override;
-  Net turned(const Net& y, const Mat3& rotation) const override { return with_shape(y, shape(y) * rotation.transpose()); }
-  Net symmetric(Net rate) const override;
-  double distance(const Net& from, const Net& to) const override { return capsule_.distance(shape(from), shape(to)); }
+  State correction(double shift, const State& defect, double tolerance, const Secants& secants) override;
+  State jacobian_error(const State& change, const State& delta, double shift) override;
+  State derivative(const State& y, const State& v, const State& delta) override;
+  State mesh_motion(const State& delta) override;
+  void restore_constraints(State& y) override;
+  void improve_start(State& y, const State& before, double shift) override;
+  std::vector<State> relabellings(const State& y) override;
+  State symmetric(State rate) const override;
+  double distance(const State& from, const State& to) const override { return capsule_.distance(shape(from), shape(to)); }
   /// Returns the largest of these values: Capsule::norm of the displacement of the shape and, for each field, the root mean square change of its
   /// coefficients.
-  double norm(const Net& displacement) const override;
+  double norm(const State& displacement) const override;
 
  private:
-  struct Block : FieldOnParticle {
-    Eigen::Index first, size;  // position and number of the coefficients within a state
-    double scale;
-    spline::Block rows;        // rows of the particle in the control net
-    Eigen::SparseMatrix<double> symmetric;  // basis of symmetric coefficients; empty if the scene has no symmetry
-  };
-  /// Changes of the values of all fields (Field::value_change), and of the virtual work of their loads.
+  /// Changes of the values of all fields (Field::value_change), and of the virtual work of their loads; the load has no rows without fields.
   struct FieldChange {
     std::vector<Eigen::VectorXd> values;
     Net load;
   };
-  FieldChange field_change(const Net& delta) const;
-  Eigen::VectorXd field_rate(std::size_t k, const Net& delta, const FieldChange& fields, const Net& slip) const;
-  Net velocity_product(const Net& delta);
-  Net step(const Net& delta, double shift);
-  Net system(double shift, const Net& rhs, double tolerance, const Secants& secants);
+  Net rows(std::size_t k, const Net& net) const;
+  Net shape_at(std::size_t k, const State& y) const { return y(BlockId{fields_[k].particle}); }  ///< rows of the particle of field k
+  FieldChange field_change(const State& delta) const;
+  Eigen::VectorXd field_rate(std::size_t k, const State& delta, const FieldChange& fields, const Net& slip) const;
+  State velocity_product(State delta);
+  State step(const State& delta, double shift);
+  State preconditioned(State delta, double shift) const;
+  State system(double shift, const State& rhs, double tolerance, const Secants& secants);
   Net slip_at(const Net& x);
 
   Capsule& capsule_;
   std::vector<FieldOnParticle> fields_;
-  std::vector<Block> blocks_;
-  Eigen::Index n_, rows_;  // n_: number of control points. rows_: number of rows of a state
+  std::shared_ptr<const Layout> layout_;
 };
 
 }  // namespace tanktread::coupling

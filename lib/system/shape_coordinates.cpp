@@ -1,6 +1,7 @@
 #include "system/shape_coordinates.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -12,11 +13,13 @@
 
 namespace tanktread::coupling {
 
-ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
-                                   const VelocityProjection* projection, const Vec3& parity)
-    : symmetry_(symmetry), of_planes_(parity), parity_(symmetry, parity), sites_(collocation_matrix(space)),
-      collocation_({}, parity == Vec3::Ones() ? symmetry : surface::Symmetry()),
-      projection_(projection) {
+ShapeCoordinates::ShapeCoordinates(CoupledMotion& motion, const State& state, const surface::Symmetry& symmetry, const Vec3& parity)
+    : motion_(motion), state_(state), parity_(symmetry, parity), sites_(collocation_matrix(motion.capsule().membrane().space())),
+      collocation_({}, parity == Vec3::Ones() ? symmetry : surface::Symmetry()), projection_(motion.capsule().projection()),
+      layout_(motion.layout(symmetry, parity)) {
+  const spline::Space& space = motion.capsule().membrane().space();
+  const std::vector<Particle>& particles = motion.capsule().particles();
+  const Net x = motion.shape(state);
   collocation_.factor(sites_);
   for (const int i : symmetry.fundamental()) {
     const auto contains = [i](const Particle& particle) { return particle.block.contains(i); };
@@ -43,6 +46,8 @@ ShapeCoordinates::ShapeCoordinates(const spline::Space& space, std::span<const P
     if (particle.rigid) add_rigid(particle.block, x);
   for (const Particle& particle : particles)
     if (particle.slides()) carry_whole(particle.block);
+  for (std::size_t k = 0; k < motion.fields().size(); ++k)
+    for (const auto& [number, orbit] : layout_->independent(motion.id(k))) fields_.emplace_back(number, std::sqrt(orbit));
 }
 
 void ShapeCoordinates::add_rigid(const spline::Block& block, const Net& x) {
@@ -67,20 +72,23 @@ void ShapeCoordinates::add_along(int site, const Vec3& normal) {
     if (directions.eigenvalues()[k] > 0.5) along_.push_back({site, directions.eigenvectors().col(k)});
 }
 
-void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
+void ShapeCoordinates::follow(Dynamics& dynamics, const State& x) {
   const auto n = static_cast<Eigen::Index>(along_.size());
   if (n == 0) return;
   dynamics.velocity(x);
   dynamics.linearise(x);
-  if (dynamics.mesh_motion(x).rows() == 0) return;
+  if (dynamics.mesh_motion(x).empty()) return;
+  const auto motion_along = [&](const Net& d) {
+    const State motion = dynamics.mesh_motion(motion_.state_of(d));
+    return coordinates_along(motion_.shape(motion));
+  };
   Eigen::MatrixXd slides(n, n), drawn(n, shape_size());
-  for (Eigen::Index k = 0; k < n; ++k) slides.col(k) = coordinates_along(dynamics.mesh_motion(along(Eigen::VectorXd::Unit(n, k))));
-  for (Eigen::Index k = 0; k < shape_size(); ++k)
-    drawn.col(k) = coordinates_along(dynamics.mesh_motion(of_shape(Eigen::VectorXd::Unit(shape_size(), k))));
+  for (Eigen::Index k = 0; k < n; ++k) slides.col(k) = motion_along(along(Eigen::VectorXd::Unit(n, k)));
+  for (Eigen::Index k = 0; k < shape_size(); ++k) drawn.col(k) = motion_along(of_shape(Eigen::VectorXd::Unit(shape_size(), k)));
   const double scale = slides.diagonal().cwiseAbs().mean();
-  for (const Net& field : dynamics.relabellings(x)) {  // removes mesh rotations, because they do not change the shape (4.17)
+  for (const State& field : dynamics.relabellings(x)) {  // removes mesh rotations, because they do not change the shape (4.17)
     if (!admits(field)) continue;
-    const Eigen::VectorXd turn = coordinates_along(field).normalized();
+    const Eigen::VectorXd turn = coordinates_along(motion_.shape(field)).normalized();
     slides -= turn * (turn.transpose() * slides + scale * turn.transpose());
     drawn -= turn * (turn.transpose() * drawn);
   }
@@ -111,26 +119,15 @@ void ShapeCoordinates::carry_whole(const spline::Block& block) {
   for (Translation& one : translations_) one.tangential = one.field - normal_displacement(one.coordinates);
 }
 
-void ShapeCoordinates::add_fields(CoupledMotion& motion, const Net& y) {
-  motion_ = &motion, state_ = y;
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::Index first = 0, n = 0;
-  for (std::size_t k = 0; k < motion.fields().size(); ++k) {
-    const Eigen::SparseMatrix<double> basis = motion.basis(k, symmetry_, of_planes_);
-    for (Eigen::Index j = 0; j < basis.cols(); ++j)
-      for (Eigen::SparseMatrix<double>::InnerIterator one(basis, j); one; ++one) entries.emplace_back(first + one.row(), n + j, one.value());
-    first += basis.rows(), n += basis.cols();
-  }
-  fields_.resize(3 * (motion.n_rows() - n_points()), n);
-  fields_.setFromTriplets(entries.begin(), entries.end());
-}
-
-Net ShapeCoordinates::displacement(const Eigen::VectorXd& y) const {
+State ShapeCoordinates::displacement(const Eigen::VectorXd& y) const {
   const Net d = of_shape(y.head(shape_size()));
-  if (!motion_) return d;
-  Net change = motion_->slid(state_, d - normal_displacement(y));
-  change.topRows(n_points()) = d;
-  Eigen::Map<Eigen::VectorXd>(change.data() + 3 * n_points(), fields_.rows()) += fields_ * y.tail(fields_.cols());
+  if (fields_.empty()) return motion_.state_of(d);
+  State change = motion_.slid(state_, d - normal_displacement(y)), of_fields(layout_);
+  motion_.shape(change) = d;
+  Eigen::Index k = shape_size();
+  for (const auto& [number, factor] : fields_) of_fields.numbers()[number] = y[k++] / factor;
+  layout_->complete(of_fields);
+  change += of_fields;
   return change;
 }
 
@@ -171,28 +168,29 @@ Net ShapeCoordinates::along(const Eigen::VectorXd& t) const {
 }
 
 Eigen::VectorXd ShapeCoordinates::coordinates_along(const Net& field) const {
-  const Net at_sites = sites_ * field.topRows(n_points());
+  const Net at_sites = sites_ * field;
   Eigen::VectorXd t(static_cast<Eigen::Index>(along_.size()));
   for (std::size_t k = 0; k < along_.size(); ++k) t[static_cast<Eigen::Index>(k)] = at_sites.row(along_[k].site).dot(along_[k].direction);
   return t;
 }
 
-bool ShapeCoordinates::admits(const Net& field) const {
+bool ShapeCoordinates::admits(const State& change) const {
   constexpr double nearly = 1e-3;
-  const Net own = field.topRows(n_points());
+  const Net own = motion_.shape(change);
   Net completed = own;
   parity_.complete(completed);
   return (completed - own).norm() <= nearly * own.norm();
 }
 
-Eigen::VectorXd ShapeCoordinates::coordinates(const Net& field) const {
-  const Net own = field.topRows(n_points());
+Eigen::VectorXd ShapeCoordinates::coordinates(const State& change) const {
+  const Net own = motion_.shape(change);
   Eigen::VectorXd y(size());
   y.head(shape_size()) = coordinates_of_shape(own);
-  if (!motion_) return y;
-  Net remainder = -motion_->slid(state_, own - normal_displacement(y));
-  remainder.topRows(field.rows()) += field;
-  y.tail(fields_.cols()) = fields_.transpose() * Eigen::Map<const Eigen::VectorXd>(remainder.data() + own.size(), fields_.rows());
+  if (fields_.empty()) return y;
+  State remainder = change - motion_.slid(state_, own - normal_displacement(y));
+  layout_->project(remainder);
+  Eigen::Index k = shape_size();
+  for (const auto& [number, factor] : fields_) y[k++] = factor * remainder.numbers()[number];
   return y;
 }
 

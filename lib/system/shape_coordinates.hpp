@@ -1,7 +1,8 @@
 #pragma once
 // Representation of small changes of shape by a vector of coordinates.
 
-#include <span>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -41,28 +42,24 @@ namespace tanktread::coupling {
 /// symmetry forces to zero there. These coordinates represent only symmetric displacements or, if `parity` is given, only displacements of this
 /// parity (surface/symmetry.hpp). If `parity` is not (1, 1, 1), all other parts of the system must be constructed without the symmetry.
 ///
-/// Fields on the surfaces (CoupledMotion): after `add_fields` has been called, y also contains coordinates y_q of the fields. y_q is the change dq of
-/// the field coefficients q, minus the change of q due to the tangential part of d:
+/// Fields on the surfaces: y also contains coordinates y_q of the fields. y_q is the change dq of the field coefficients q, minus the change of q due
+/// to the tangential part of d:
 ///
 ///   y_q = dq - q'(d - R^{-1} (n_i y_i)),   q'(t) the change of q if control points only slide along the surface by t      (4.34)
 class ShapeCoordinates {
  public:
-  ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
-                   const VelocityProjection* projection = nullptr, const Vec3& parity = Vec3::Ones());
+  /// Coordinates of changes of the state x of `motion`. `motion` and `symmetry` must outlive this object.
+  ShapeCoordinates(CoupledMotion& motion, const State& x, const surface::Symmetry& symmetry, const Vec3& parity = Vec3::Ones());
 
   /// Determines how relaxing meshes follow displacements of x (4.26): they slide along the surface until the linearised mesh motion of `dynamics`
   /// vanishes. Collective.
-  void follow(Dynamics& dynamics, const Net& x);
+  void follow(Dynamics& dynamics, const State& x);
 
-  /// Adds the coordinates of the fields on the surfaces (4.34). These coordinates represent changes relative to the state y. `motion` must outlive
-  /// this object.
-  void add_fields(CoupledMotion& motion, const Net& y);
-
-  Eigen::Index size() const { return shape_size() + fields_.cols(); }
-  Eigen::Index n_points() const { return sites_.rows(); }
-  Net displacement(const Eigen::VectorXd& y) const;     ///< change of the state (control points and fields) with the coordinates y
-  Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates y of a change of the state (control points and fields)
-  bool admits(const Net& field) const;                  ///< true if `field` has the symmetry and parity that y represents, up to 1e-3
+  CoupledMotion& motion() const { return motion_; }
+  Eigen::Index size() const { return shape_size() + static_cast<Eigen::Index>(fields_.size()); }
+  State displacement(const Eigen::VectorXd& y) const;      ///< change of the state with the coordinates y
+  Eigen::VectorXd coordinates(const State& change) const;  ///< coordinates y of a change of the state
+  bool admits(const State& change) const;                  ///< true if the shape changes with the symmetry and parity that y represents, up to 1e-3
 
  private:
   struct Coordinate {
@@ -85,21 +82,20 @@ class ShapeCoordinates {
   Eigen::VectorXd coordinates_along(const Net& field) const;
   void add_along(int site, const Vec3& normal);
 
+  CoupledMotion& motion_;
+  State state_;                         // the coordinates of fields are changes relative to this state
   std::vector<Coordinate> all_;
   std::vector<Net> rigid_;         // orthonormal rigid motions of bodies; in y, their coordinates follow the coordinates `all_`
   std::vector<Coordinate> along_;  // tangential coordinates t of drops
   Eigen::MatrixXd following_;      // maps coordinates y to the tangential coordinates t of relaxing meshes (4.26); empty if no mesh relaxes
   std::vector<Translation> translations_;  // translations of drops
-  const surface::Symmetry& symmetry_;
-  Vec3 of_planes_;
   surface::Parity parity_;
   Eigen::SparseMatrix<double> sites_;  // collocation matrix R
   membrane::SymmetricSolver collocation_;
   const VelocityProjection* projection_;
   Net normals_;  // unit normals of drops at the sites of `projection_`
-  CoupledMotion* motion_ = nullptr;     // set if the state has fields
-  Net state_;                           // state passed to add_fields(); the coordinates of fields are changes relative to this state
-  Eigen::SparseMatrix<double> fields_;  // columns: orthonormal basis of the field coefficients that symmetry and parity allow
+  std::shared_ptr<const Layout> layout_;                // layout of states of this symmetry and parity
+  std::vector<std::pair<Eigen::Index, double>> fields_;  // independent coefficients of the fields in a state, and the factors of their coordinates
 };
 
 }  // namespace tanktread::coupling

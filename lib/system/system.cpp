@@ -74,16 +74,8 @@ BlockVector System::precondition(const BlockVector& r) const {
 }
 
 SolveReport System::solve(const Krylov& krylov, const BlockVector& right, BlockVector& x, double tolerance) const {
-  const auto on_numbers = [this](auto map) -> Apply {
-    return [this, map](const double* in, double* out) {
-      BlockVector v(unknowns_);
-      const Eigen::Index n = v.numbers().size();
-      v.numbers() = Eigen::Map<const Eigen::VectorXd>(in, n);
-      Eigen::Map<Eigen::VectorXd>(out, n) = map(v).numbers();
-    };
-  };
-  const LinearSystem system{unknowns_->blocks(), on_numbers([this](const BlockVector& v) { return residual(v, Given::omitted); }),
-                            on_numbers([this](const BlockVector& r) { return precondition(r); })};
+  const LinearSystem system{unknowns_->blocks(), on_blocks(unknowns_, [this](const BlockVector& v) { return residual(v, Given::omitted); }),
+                            on_blocks(unknowns_, [this](const BlockVector& r) { return precondition(r); })};
   Eigen::VectorXd found = x.numbers();
   const SolveReport report = krylov.solve(system, right.numbers(), found, tolerance);
   x.numbers() = found;

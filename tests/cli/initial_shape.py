@@ -205,7 +205,7 @@ def another_mesh_is_rejected_in_one_sentence():
 def a_run_that_lacks_data_is_rejected_in_one_sentence():
     import h5py
 
-    for adapts, missing in ("false", "arrays/x"), ("false", "texts/deck"), ("true", "arrays/mesh edges"), ("true", "arrays/initial"):
+    for adapts, missing in ("false", "arrays/x shape 1"), ("false", "texts/deck"), ("true", "arrays/mesh edges"), ("true", "arrays/initial"):
         run(deck(FIRST % ("0.01", adapts)), "--output", "first", "--overwrite", "--quiet")
         for snapshot in pathlib.Path("first").glob("snapshot_*.hdf"):
             with h5py.File(snapshot, "r+") as file:

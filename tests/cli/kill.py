@@ -43,7 +43,7 @@ def _snapshots_are_whole(results):
     results = pathlib.Path(results)
     for path in results.glob("snapshot_*.hdf"):
         with h5py.File(path, "r") as file:
-            check(file["checkpoint/arrays/x"].shape[1] == 3 and file["VTKHDF/Points"].shape[1] == 3, path)
+            check(file["checkpoint/arrays/x shape 1"].shape[1] == 3 and file["VTKHDF/Points"].shape[1] == 3, path)
     if (results / "run.hdf.series").exists():
         for entry in json.loads((results / "run.hdf.series").read_text())["files"]:
             check((results / entry["name"]).exists(), f"{entry['name']} is listed and missing")

@@ -21,7 +21,7 @@ surface::Quality mesh_at(const std::string& motion, double time) {
     run.to(time);
   } catch (const RunFailure&) {
   }
-  return surface::quality(map, run.state.x, indices(map.n_elements()));
+  return surface::quality(map, run.x(), indices(map.n_elements()));
 }
 
 TEST(MeshOfADrop, ConvectedWithTheFluidIsDistortedAndOtherMeshesAreNot) {

@@ -31,7 +31,7 @@ double length(const Evolution& run) { return run.deformation().lengths.maxCoeff(
 double smallest_curvature(const Evolution& run) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const auto& sites : run.body().space.collocation)
-    smallest = std::min(smallest, surface::mean_curvature(run.body().space, run.state.x, sites.front()));
+    smallest = std::min(smallest, surface::mean_curvature(run.body().space, run.x(), sites.front()));
   return smallest;
 }
 

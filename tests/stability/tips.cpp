@@ -27,8 +27,8 @@ Tip tip(int n, double ca) {
   run.to(4);
   double curvature = std::numeric_limits<double>::infinity();
   for (const auto& sites : run.body().space.collocation)
-    curvature = std::min(curvature, surface::mean_curvature(run.body().space, run.state.x, sites.front()));
-  return {tension_summary(run.capsule->membrane(), run.state.x).smallest, curvature};
+    curvature = std::min(curvature, surface::mean_curvature(run.body().space, run.x(), sites.front()));
+  return {tension_summary(run.capsule->membrane(), run.x()).smallest, curvature};
 }
 
 TEST(Tips, OnACoarseMeshAreCompressedAlthoughTheMembraneIsNot) {
@@ -51,13 +51,13 @@ Steady steady(int n, const std::vector<std::string>& settings) {
   Evolution run(all);
   run.to(8);
   const spline::Space& space = run.body().space;
-  const auto reach = [&](const auto& sites) { return surface::value(space, run.state.x, sites.front())[0]; };
+  const auto reach = [&](const auto& sites) { return surface::value(space, run.x(), sites.front())[0]; };
   const spline::Site site = std::ranges::max_element(space.collocation, {}, reach)->front();
   const auto area = [&](const Net& net) {
     return surface::jacobian(surface::jet(surface::ElementPoints(space, net, site.element).patch(), site.s, site.t));
   };
-  double traction = surface::value(space, run.capsule->evaluate(run.state.x)->load(), site).norm();
-  if (run.capsule->solver().membranes().measure() == stokes::Measure::reference) traction *= area(run.body().unstressed) / area(run.state.x);
+  double traction = surface::value(space, run.capsule->evaluate(run.x())->load(), site).norm();
+  if (run.capsule->solver().membranes().measure() == stokes::Measure::reference) traction *= area(run.body().unstressed) / area(run.x());
   return {traction, run.deformation().taylor_inertia};
 }
 

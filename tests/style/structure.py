@@ -155,11 +155,11 @@ def cycles(source, files):
 
 
 def unforwarded(source):
-    """Yields each virtual function of Dynamics that one of its wrappers does not override."""
+    """Yields each virtual function of Dynamics that its wrapper does not override."""
     functions = re.findall(r"virtual [\w:<>&*, ]*?\b(\w+)\(", masked((source / "lib/system/dynamics.hpp").read_text()))
-    for wrapper in ("lib/system/coupled_motion.hpp", "lib/motion/guarded.hpp"):
-        overridden = set(re.findall(r"(\w+)\([^;{}]*\)(?: const)? override", masked((source / wrapper).read_text())))
-        yield from (f"{wrapper}: does not forward Dynamics::{name}" for name in functions if name not in overridden)
+    wrapper = "lib/motion/guarded.hpp"
+    overridden = set(re.findall(r"(\w+)\([^;{}]*\)(?: const)? override", masked((source / wrapper).read_text())))
+    yield from (f"{wrapper}: does not forward Dynamics::{name}" for name in functions if name not in overridden)
 
 
 def main():

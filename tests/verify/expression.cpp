@@ -11,7 +11,7 @@ Net after_three_steps(std::vector<std::string> law) {
   law.insert(law.end(), {"Flow/type=simple shear", "Surface/elements per side=3", "Time/scheme=tr-bdf2", "Time/fixed step=0.1"});
   Evolution run(law);
   for (int k = 0; k < 3; ++k) run.step(1);
-  return run.state.x;
+  return run.x();
 }
 
 TEST(Expression, GivesTheMotionOfTheBuiltInLaw) {

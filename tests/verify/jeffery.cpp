@@ -22,7 +22,7 @@ struct Tumbling {
   Phases phases;
   std::unique_ptr<ParticleSystem> body;
   std::unique_ptr<motion::Integrator> scheme;
-  motion::State state;
+  motion::TimeState state;
 
   explicit Tumbling(const std::vector<std::string>& settings = {}) {
     deck::Document deck = deck::read({SOURCE_DIRECTORY "/inputs/jeffery.yaml"}, settings);

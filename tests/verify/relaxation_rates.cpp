@@ -47,13 +47,14 @@ struct Sphere {
           settings.insert(settings.end(), {"Flow/type=quiescent", "Surface/elements per side=" + std::to_string(n), "Quadrature/tolerance=1e-7"});
           return settings;
         }()) {
-    const Net& x = scene.body().rest;
-    coupling::ShapeCoordinates shapes(scene.body().space, scene.capsule->particles(), scene.body().symmetry, x, scene.capsule->projection());
-    shapes.follow(*scene.capsule, x);
+    coupling::CoupledMotion& motion = *scene.motion;
+    const coupling::State x = motion.start(scene.body().rest);
+    coupling::ShapeCoordinates shapes(motion, x, scene.body().symmetry);
+    shapes.follow(motion, x);
     motion::SpectrumOptions options;
     options.number = static_cast<int>(shapes.size());
-    const Net flux = scene.capsule->geometry().volume_gradient(x);
-    modes = motion::spectrum({*scene.capsule, shapes, x, {{flux, motion::ModeKind::volume}}}, options, {});
+    const coupling::State flux = motion.state_of(scene.capsule->geometry().volume_gradient(scene.body().rest));
+    modes = motion::spectrum({motion, shapes, x, {{flux, motion::ModeKind::volume}}}, options, {});
   }
 
   /// Returns, among the modes with rates within 5 % of `near`, the rate of the mode closest to a displacement by the second harmonic, Y r and grad Y.
@@ -72,7 +73,7 @@ struct Sphere {
     double best = std::numeric_limits<double>::quiet_NaN(), least = 0.5;
     for (const motion::Mode& mode : modes) {
       if (std::abs(mode.rate.real() / near - 1) > 0.05) continue;
-      const Eigen::Map<const Eigen::VectorXd> y(mode.real.data(), mode.real.size());
+      const Eigen::VectorXd y = mode.real.numbers();
       const double rest = (y - fields * qr.solve(y)).norm() / y.norm();
       if (rest < least) least = rest, best = mode.rate.real();
     }
@@ -149,14 +150,15 @@ TEST(RelaxationRates, OfRigidMotionsAndOfTheVolumeAreZeroAndNamed) {
 
 TEST(RelaxationRates, ByKrylovSchurAreThoseOfTheWholeJacobian) {
   Evolution run({"Flow/type=quiescent", "Membrane/law=surface tension", "Membrane/surface tension=1", "Surface/elements per side=4"});
-  const Net& x = run.body().rest;
-  const coupling::ShapeCoordinates shapes(run.body().space, run.capsule->particles(), run.body().symmetry, x);
+  const coupling::State x = run.motion->start(run.body().rest);
+  const coupling::ShapeCoordinates shapes(*run.motion, x, run.body().symmetry);
   motion::SpectrumOptions options;
   options.number = 6, options.shift = 1;
-  const std::vector<motion::Conserved> kept{{run.capsule->geometry().volume_gradient(x), motion::ModeKind::volume}};
-  const auto all = motion::spectrum({*run.capsule, shapes, x, kept}, options, {"GMRES"});
+  const coupling::State flux = run.motion->state_of(run.capsule->geometry().volume_gradient(run.body().rest));
+  const std::vector<motion::Conserved> kept{{flux, motion::ModeKind::volume}};
+  const auto all = motion::spectrum({*run.motion, shapes, x, kept}, options, {"GMRES"});
   options.method = "krylov";
-  const auto some = motion::spectrum({*run.capsule, shapes, x, kept}, options, {"GMRES"});
+  const auto some = motion::spectrum({*run.motion, shapes, x, kept}, options, {"GMRES"});
   ASSERT_EQ(some.size(), 6u);
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(std::abs(some[k].rate - all[k].rate), 0, 1e-5) << k;
 }

@@ -43,7 +43,7 @@ struct Laden {
         }()),
         surfactant(scene.body().space, scene.body().rest, *scene.scene.particles.front().surfactant, scene.scene.first().modulus(),
                    diffusivity),
-        motion(*scene.capsule, {{0, &surfactant}}) {}
+        motion(*scene.capsule, {{0, &surfactant, "surfactant"}}) {}
 
   const spline::Space& space() const { return scene.body().space; }
   const Net& rest() const { return scene.body().rest; }
@@ -73,30 +73,29 @@ struct Laden {
   }
 
   /// Returns the state y of the sphere with the displacement f Y n and the concentration 1 + g Y.
-  Net displaced(double f, double g) const {
+  coupling::State displaced(double f, double g) const {
     membrane::MassMatrix mass(space());
     const Eigen::SparseMatrix<double> m0 = mass.update(rest());
     const Eigen::MatrixX4d fields = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>>(m0).solve(moments());
     const Eigen::VectorXd one = Eigen::VectorXd::Ones(space().n_points);
-    Net y = motion.start(rest());
     const Net x = rest() + f * fields.leftCols<3>();
-    y.topRows(x.rows()) = x;
+    coupling::State y = motion.state_of(x);
     const Eigen::VectorXd content = (mass.update(x) * (one + g * fields.col(3))).cwiseQuotient(m0 * one);
-    motion.set_coefficients(y, 0, content);
+    y.set(motion.id(0), content);
     return y;
   }
 
   /// Returns d(f, g)/dt at the state y.
-  Eigen::Vector2d rates(const Net& y) {
+  Eigen::Vector2d rates(const coupling::State& y) {
     const double e = 1e-4;
-    const Net slope = motion.velocity(y);
+    const coupling::State slope = motion.velocity(y);
     motion.set_state(y + e * slope);
     const Eigen::VectorXd after = surfactant.concentration();
     motion.set_state(y - e * slope);
     const Eigen::VectorXd c = (after - surfactant.concentration()) / (2 * e);
     const Eigen::MatrixX4d weights = moments();
     const double square = 4 * M_PI / 5;
-    return {weights.leftCols<3>().cwiseProduct(slope.topRows(space().n_points)).sum() / square, weights.col(3).dot(c) / square};
+    return {weights.leftCols<3>().cwiseProduct(motion.shape(slope)).sum() / square, weights.col(3).dot(c) / square};
   }
 
   Eigen::Matrix2d response() {
@@ -132,7 +131,7 @@ TEST(Surfactant, TheFreeEnergyOfADropAtRestDecreases) {
   Laden drop({"Flow/type=quiescent", "Membrane/surface tension=1", "Interface/surfactant/elasticity number=0.4", "Particle/shape=spheroid",
               "Particle/semi-axes=[0.8, 0.8, 1.6]", "Surface/elements per side=4"},
              0.02);
-  motion::State state;
+  motion::TimeState state;
   state.x = drop.motion.start(drop.rest());
   const auto scheme = motion::integrator(drop.scene.scene.time);
   motion::begin(drop.motion, state);
@@ -155,7 +154,7 @@ double slope(double ca, double diffusivity, const std::vector<std::string>& equa
                                        "Membrane/surface tension=" + std::to_string(1 / ca), "Time/tolerance=" + std::to_string(2e-4 * ca)};
   settings.insert(settings.end(), equation.begin(), equation.end());
   Laden drop(settings, diffusivity / ca);
-  motion::State state;
+  motion::TimeState state;
   state.x = drop.motion.start(drop.rest());
   const auto scheme = motion::integrator(drop.scene.scene.time);
   motion::begin(drop.motion, state);

@@ -33,7 +33,7 @@ void expect_exact(RigidSphere& sphere, const Exact& is, const Tolerance& within)
   EXPECT_LT(error(sphere.towed().drag, is.towed), within.drag);
   EXPECT_LT(error(-held.drag / 2, is.held), within.drag);
   EXPECT_LT(error(held.pressure_drop, is.held_drop), within.drag);
-  const Net place = coupling::placed(Vec3::Zero());
+  const coupling::State place = coupling::placed(Vec3::Zero());
   EXPECT_LT(error(sphere.body->motion(place).velocity[0], is.speed), within.speed);
   EXPECT_LT(error(sphere.body->pressure_drop(place), is.free_drop), within.drop);
 }
@@ -54,7 +54,7 @@ TEST(RigidSphereInATubeLong, IsTenTimesCloserOnAFinerWall) {
 }
 
 TEST(RigidSphereInATube, DoesNotDependOnTheLengthOfTheTube) {
-  const Net place = coupling::placed(Vec3::Zero());
+  const coupling::State place = coupling::placed(Vec3::Zero());
   for (const double a : {0.5, 0.8}) {
     const Sphere sphere = tanktread::sphere(a, Vec3::Zero(), 6);
     // the longer tube has no fewer elements around the sphere
@@ -67,7 +67,7 @@ TEST(RigidSphereInATube, DoesNotDependOnTheLengthOfTheTube) {
 TEST(RigidSphereInATube, OffTheAxisMovesAsOnOtherMeshes) {
   // Reference: 40 x 40 graded wall points, and spherical harmonics on the sphere, which is 0.2 off the axis with a gap of only 0.2.
   RigidSphere s(sphere(0.6, Vec3(0, 0.2, 0), 8), circular_duct());
-  const Net place = coupling::placed(Vec3(3, 0.2, 0));  // the axial position does not matter
+  const coupling::State place = coupling::placed(Vec3(3, 0.2, 0));  // the axial position does not matter
   const coupling::RigidMotion motion = s.body->motion(place);
   EXPECT_LT(error(motion.velocity[0], 1.459211), 2e-5);
   EXPECT_LT(error(motion.angular_velocity[2], 0.34762), 2e-4);

@@ -121,62 +121,75 @@ fs::path newest_file(const fs::path& path) try {
 
 namespace {
 
-std::string numbered(const char* name, std::size_t k) { return name + std::to_string(k); }
-
-/// Adds control nets to a checkpoint under the names `<name>0`, `<name>1`, ...
-void store(const std::vector<Net>& nets, const char* name, Checkpoint& checkpoint) {
-  for (std::size_t k = 0; k < nets.size(); ++k) checkpoint.arrays[numbered(name, k)] = nets[k];
-}
-
-/// Returns the control nets that are in a checkpoint under the names `<name>0`, `<name>1`, ...
-std::vector<Net> stored(const char* name, const Checkpoint& checkpoint) {
-  std::vector<Net> nets;
-  for (std::size_t k = 0; checkpoint.arrays.contains(numbered(name, k)); ++k) nets.emplace_back(checkpoint.arrays.at(numbered(name, k)));
-  return nets;
+/// Returns the name of the array with a block of a vector. Surfaces are numbered from 1.
+std::string array_name(const std::string& vector, const coupling::Block& block) {
+  return vector + " " + block.name + (block.on < 0 ? "" : " " + std::to_string(block.on + 1));
 }
 
 }  // namespace
 
-void store(const motion::State& state, Checkpoint& checkpoint) {
+void require_fit(bool fits) {
+  if (!fits) throw UserError("the newest checkpoint does not fit its scene, because another version of tanktread wrote it: run the deck again");
+}
+
+void store(motion::TimeState state, Checkpoint& checkpoint) {
   checkpoint.numbers["time"] = state.time;
   checkpoint.numbers["proposed_step"] = state.step;
   checkpoint.numbers["slope_error"] = state.slope_error;
   checkpoint.numbers["frozen_time"] = state.frozen_time;
-  checkpoint.arrays["x"] = state.x;
-  checkpoint.arrays["frozen"] = state.frozen;
+  checkpoint.numbers["slopes"] = static_cast<double>(state.history.size());
+  checkpoint.numbers["secants"] = static_cast<double>(state.secants.pairs().size());
   checkpoint.arrays["memory"] = Eigen::Map<const Eigen::VectorXd>(state.memory.data(), static_cast<Eigen::Index>(state.memory.size()));
-  store(state.history, "slope_", checkpoint);
-  store(state.secants.pairs(), "secant_", checkpoint);
   Eigen::VectorXd times(state.places.size());
-  for (std::size_t k = 0; k < state.places.size(); ++k) {
-    checkpoint.arrays[numbered("place_", k)] = state.places[k].x;
-    times[static_cast<Eigen::Index>(k)] = state.places[k].time;
-  }
+  for (std::size_t k = 0; k < state.places.size(); ++k) times[static_cast<Eigen::Index>(k)] = state.places[k].time;
   checkpoint.arrays["place times"] = times;
-  checkpoint.arrays["direction"] = state.direction;
+  motion::each_vector(state, [&](const std::string& name, const coupling::State& vector) {
+    for (std::size_t k = 0; !vector.empty() && k < vector.layout()->blocks().size(); ++k)
+      checkpoint.arrays[array_name(name, vector.layout()->blocks()[k])] = vector(coupling::BlockId{k});
+  });
 }
 
-motion::State stored_state(const Checkpoint& checkpoint) {
-  motion::State state;
-  state.time = checkpoint.numbers.at("time");
-  state.step = checkpoint.numbers.at("proposed_step");
-  state.slope_error = checkpoint.numbers.at("slope_error");
-  state.x = checkpoint.arrays.at("x");
-  state.frozen = checkpoint.arrays.at("frozen");
-  const auto frozen_time = checkpoint.numbers.find("frozen_time");  // checkpoints of earlier versions have no such number
-  state.frozen_time = frozen_time == checkpoint.numbers.end() ? state.time : frozen_time->second;
-  const Eigen::MatrixXd& memory = checkpoint.arrays.at("memory");
+motion::TimeState stored_state(const Checkpoint& checkpoint) {
+  motion::TimeState state;
+  const auto number = [&](const char* name) { return checkpoint.numbers.at(name); };
+  state.time = number("time");
+  state.step = number("proposed_step");
+  state.slope_error = number("slope_error");
+  state.frozen_time = number("frozen_time");
+  state.history.resize(static_cast<std::size_t>(number("slopes")));
+  state.secants = coupling::Secants(std::vector<coupling::State>(static_cast<std::size_t>(number("secants"))));
+  const Eigen::MatrixXd &memory = checkpoint.arrays.at("memory"), &times = checkpoint.arrays.at("place times");
   state.memory.assign(memory.data(), memory.data() + memory.size());
-  state.history = stored("slope_", checkpoint);
-  const Eigen::MatrixXd& times = checkpoint.arrays.at("place times");
-  for (Eigen::Index k = 0; k < times.size(); ++k)
-    state.places.push_back({times(k), checkpoint.arrays.at(numbered("place_", static_cast<std::size_t>(k)))});
-  state.direction = checkpoint.arrays.at("direction");
-  state.secants = coupling::Secants(stored("secant_", checkpoint));
+  for (Eigen::Index k = 0; k < times.size(); ++k) state.places.push_back({times(k), {}});
   return state;
 }
 
-bool equal_on_all_ranks(const motion::State& state) {
+void read_vectors(const Checkpoint& checkpoint, const std::shared_ptr<const coupling::Layout>& layout, motion::TimeState& state) {
+  motion::each_vector(state, [&](const std::string& name, coupling::State& vector) {
+    const std::span<const coupling::Block> blocks = layout->blocks();
+    if ((name == "frozen" || name == "direction") && !checkpoint.arrays.contains(array_name(name, blocks.front()))) return;
+    vector = coupling::State(layout);
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+      const auto rows = checkpoint.arrays.find(array_name(name, blocks[k]));
+      require_fit(rows != checkpoint.arrays.end() && rows->second.rows() == blocks[k].rows && rows->second.cols() == blocks[k].components);
+      vector(coupling::BlockId{k}) = rows->second;
+    }
+  });
+}
+
+Net stored_shapes(const Checkpoint& checkpoint) {
+  Net all;
+  for (int k = 0;; ++k) {
+    const auto shape = checkpoint.arrays.find(array_name("x", {"shape", k}));
+    if (shape == checkpoint.arrays.end()) break;
+    all.conservativeResize(all.rows() + shape->second.rows(), 3);
+    all.bottomRows(shape->second.rows()) = shape->second;
+  }
+  if (const auto x = checkpoint.arrays.find("x"); all.rows() == 0 && x != checkpoint.arrays.end()) return x->second;
+  return all;
+}
+
+bool equal_on_all_ranks(const motion::TimeState& state) {
   Checkpoint checkpoint;
   store(state, checkpoint);
   const std::string mine = checksum(checkpoint);

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,13 +73,23 @@ std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
 /// Returns the newest undamaged snapshot file of the directory `path`. Returns `path` if it is no directory or if this file cannot be found.
 std::filesystem::path newest_file(const std::filesystem::path& path);
 
-/// Adds the complete state of a time integration to the checkpoint.
-void store(const motion::State& state, Checkpoint& checkpoint);
+/// Throws UserError, which says that another version of the program wrote the checkpoint, if `fits` is false.
+void require_fit(bool fits);
 
-/// Returns the state that store() added to the checkpoint, bitwise the same. Throws std::out_of_range if a part of the state is missing.
-motion::State stored_state(const Checkpoint& checkpoint);
+/// Adds the complete state of a time integration to the checkpoint.
+void store(motion::TimeState state, Checkpoint& checkpoint);
+
+/// Returns the state that store() added to the checkpoint, bitwise the same, but without its vectors, which read_vectors() reads. Throws
+/// std::out_of_range if a part is missing.
+motion::TimeState stored_state(const Checkpoint& checkpoint);
+
+/// Reads the vectors of a state that stored_state() has returned. Throws UserError if a block is missing or has another size.
+void read_vectors(const Checkpoint& checkpoint, const std::shared_ptr<const coupling::Layout>& layout, motion::TimeState& state);
+
+/// Returns the stacked control nets of all particles, also from checkpoints of earlier versions; no rows if the checkpoint has none.
+Net stored_shapes(const Checkpoint& checkpoint);
 
 /// Returns true if all ranks hold bitwise the same state. Collective.
-bool equal_on_all_ranks(const motion::State& state);
+bool equal_on_all_ranks(const motion::TimeState& state);
 
 }  // namespace tanktread::output

@@ -22,41 +22,20 @@ namespace tanktread {
 
 namespace {
 
-/// Particle whose mesh is adapted, together with the state of all particles.
+/// Particle whose mesh is adapted.
 struct Subject {
   const ParticleScene& particle_scene;
   const Body& body;
-  const spline::Block& block;
-  const motion::State& state;
-  Net x;  ///< rows of this particle
+  const Net &x, &slope;  ///< shape and its velocity; `slope` has no rows if it is unknown
   std::span<const double> films;
 };
 
-/// Returns the result with the body `target`, for which all nets of the particle and of the state are transferred to the space of `target`. `move`
-/// transfers one net of this particle.
-template <class Move>
-Adapted transferred(const Subject& of, std::unique_ptr<Body> target, const Move& move) {
-  Adapted result{std::move(target), of.state};
-  result.body->rest = move(of.body.rest);
-  result.body->initial = move(of.body.initial);
-  result.body->unstressed = move(of.body.unstressed);
-  const auto exchange = [&](Net& all) {
-    if (all.size() == 0) return;
-    const Net own = move(of.block.rows(all));
-    const Eigen::Index before = of.block.first_point, after = all.rows() - before - of.block.n_points;
-    Net changed(before + own.rows() + after, 3);
-    changed << all.topRows(before), own, all.bottomRows(after);
-    all = std::move(changed);
-  };
-  exchange(result.state.x);
-  for (Net& slope : result.state.history) exchange(slope);
-  for (motion::PastPosition& place : result.state.places) exchange(place.x);
-  exchange(result.state.direction);
-  std::vector<Net> pairs = of.state.secants.pairs();
-  for (Net& net : pairs) exchange(net);
-  result.state.secants = coupling::Secants(std::move(pairs));
-  exchange(result.state.frozen);
-  return result;
+/// Returns the result with the body `target`, whose nets are transferred to its space by `move`.
+Adapted transferred(const Subject& of, std::unique_ptr<Body> target, std::function<Net(const Net&)> move) {
+  target->rest = move(of.body.rest);
+  target->initial = move(of.body.initial);
+  target->unstressed = move(of.body.unstressed);
+  return {std::move(target), std::move(move)};
 }
 
 /// Records in the result the displacement `moved` of the surfaces by the mesh change, divided by the radius R_C.
@@ -83,7 +62,7 @@ Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   auto target = on_mesh(of, std::move(mesh));
   const auto transfer = spline::transfer(of.body.nested(), target->nested());
   const double residual = std::max(transfer(of.body.unstressed).residual, transfer(of.x).residual);
-  Adapted result = transferred(of, std::move(target), [&](const Net& field) { return transfer(field).net; });
+  Adapted result = transferred(of, std::move(target), [transfer](const Net& field) { return transfer(field).net; });
   record_change(result, residual, of.body.radius);
   return result;
 }
@@ -134,7 +113,7 @@ std::vector<double> least_of_mesh(const Body& body, std::span<const double> valu
 }
 
 Findings findings(const Subject& particle, const surface::FieldAt& traction, const surface::FieldsAt& fields_at) {
-  const auto& [particle_scene, body, block, state, x, films] = particle;
+  const auto& [particle_scene, body, x, slope, films] = particle;
   const motion::AdaptationOptions& options = particle_scene.adaptation;
   const std::vector<double> widths = least_of_mesh(body, films);
   const auto of = [&](auto indicator) {
@@ -158,7 +137,6 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction, con
                                   fields_at));
   surface::MetricFields fields;
   if (options.reference_traction_variation) fields.traction = traction;
-  const Net slope = state.history.empty() ? Net() : Net(block.rows(state.history.front()));  // must outlive `fields`, which stores a reference to it
   if (options.reference_velocity_variation && slope.rows() > 0) fields.velocity = surface::field_of_net(body.nested(), slope);
   return of(surface::element_metrics(body.mesh, body.nested(), x, fields));
 }
@@ -177,7 +155,7 @@ void leave_poles(const ParticleScene& particle_scene, const Body& body, std::vec
 /// Refines all marked elements. If the mesh would exceed the allowed number of points, tries again with the tolerances and limits of the section
 /// Adaptation multiplied by 2, 4, … up to 64.
 Adapted refined(const Subject& of, const Findings& found) {
-  const auto& [particle_scene, body, block, state, x, films] = of;
+  const auto& [particle_scene, body, x, slope, films] = of;
   const int room = particle_scene.adaptation.largest_number_of_points - body.space.n_points;
   const size_t before = spline::anchors(body.mesh).size();
   Adapted result;
@@ -202,7 +180,7 @@ Adapted refined(const Subject& of, const Findings& found) {
 /// Merges elements. If the surfaces on some of the merged elements would move by more than the tolerance, leaves these elements out and merges only
 /// the remaining ones.
 Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
-  const auto& [particle_scene, body, block, state, x, films] = of;
+  const auto& [particle_scene, body, x, slope, films] = of;
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
     auto target = on_mesh(of, spline::coarsen(body.mesh, merges, rules(body)));
     if (target->space.n_points >= body.space.n_points) return {};
@@ -214,7 +192,7 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
     });
     const double change = *std::max_element(defect.begin(), defect.end());
     if (change <= particle_scene.adaptation.coarsening_tolerance) {
-      Adapted result = transferred(of, std::move(target), [&](const Net& field) { return projection(field).net; });
+      Adapted result = transferred(of, std::move(target), [projection](const Net& field) { return projection(field).net; });
       result.finer = false;
       record_change(result, change, body.radius);
       return result;
@@ -229,9 +207,9 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
 
 }  // namespace
 
-Adapted adapted(const ParticleScene& particle_scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
-                bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields) {
-  const Subject particle{particle_scene, body, block, state, block.rows(state.x), films};
+Adapted adapted(const ParticleScene& particle_scene, const Body& body, const Net& x, const Net& slope, const Net& load, bool per_unstressed_area,
+                std::span<const double> films, const surface::FieldsAt& fields) {
+  const Subject particle{particle_scene, body, x, slope, films};
   const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.nested(), body.unstressed, particle.x, load)
                                                         : surface::field_of_net(body.nested(), load);
   const Findings found = findings(particle, traction, fields);
@@ -258,9 +236,7 @@ std::vector<Warning> refine_isolated_body(const ParticleScene& particle_scene, B
     only[0].block = {.n_points = only[0].body->space.n_points, .n_elements = static_cast<int>(only[0].body->space.elements.size())};
     std::vector<double> widths;
     if (particle_scene.has_films_around_one()) widths = films(only, 0, x, {}, only[0].body->wall.get());
-    motion::State state;
-    state.x = only[0].body->rest;
-    Adapted change = adapted(particle_scene, *only[0].body, only[0].block, state, load, false, widths);
+    Adapted change = adapted(particle_scene, *only[0].body, only[0].body->rest, {}, load, false, widths);
     body = std::move(*only[0].body);
     remarks = adaptation_remarks(only[0], change, 0);
     if (!change.body || !change.finer) break;

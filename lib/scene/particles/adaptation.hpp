@@ -14,11 +14,10 @@
 
 namespace tanktread {
 
-/// Result of the adaptation of one particle's mesh: the body of this particle on the new mesh, and the state of all particles after the change of
-/// this mesh.
+/// Result of the adaptation of one particle's mesh.
 struct Adapted {
-  std::unique_ptr<Body> body;  ///< null if the mesh does not change
-  motion::State state;
+  std::unique_ptr<Body> body;            ///< body on the new mesh; null if the mesh does not change
+  std::function<Net(const Net&)> move;   ///< transfers a net of the particle to the new mesh
   bool finer = true;    ///< true if the mesh was refined, false if it was coarsened
   /// largest distance, divided by R_C, by which the transfer to the new mesh has displaced a point of the current or the unstressed surface
   double change = 0;
@@ -27,13 +26,12 @@ struct Adapted {
 };
 
 /// Refines the elements that the indicator marks. If no element is refined, merges elements that the indicator allows to be longer. Transfers the
-/// control nets of the body and of the state to the new mesh: the current, unstressed, resting and initial surface, the slopes and secants of the
-/// time scheme, and the net of the frozen operator. `block`: rows of this particle; the rows of other particles do not change. `load`: control values
-/// of this particle's load at state.x, per unstressed area if `per_unstressed_area` is true, otherwise per current area. `films`: width of the fluid
-/// film at each element of the space body.nested(); empty if films do not cause refinement. `fields`: values of the fields on the surface, scaled to
-/// order 1. The results of all ranks are equal.
-Adapted adapted(const ParticleScene& particle_scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
-                bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields = {});
+/// control nets of the body to the new mesh: the unstressed, resting and initial surface. `x`: current shape of the particle. `slope`: its velocity;
+/// no rows if it is unknown. `load`: control values of the load at x, per unstressed area if `per_unstressed_area` is true, otherwise per current
+/// area. `films`: width of the fluid film at each element of the space body.nested(); empty if films do not cause refinement. `fields`: values of
+/// the fields on the surface, scaled to order 1. The results of all ranks are equal.
+Adapted adapted(const ParticleScene& particle_scene, const Body& body, const Net& x, const Net& slope, const Net& load, bool per_unstressed_area,
+                std::span<const double> films, const surface::FieldsAt& fields = {});
 
 /// Returns the warnings about an adaptation at this time: one for each limit of the section Adaptation that prevented a refinement, and one if a
 /// refinement has moved the surface of a deforming particle.

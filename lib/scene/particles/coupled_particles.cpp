@@ -51,48 +51,54 @@ class CoupledParticles : public ParticleSystem {
     }
   }
 
-  coupling::Dynamics& dynamics() override { return fields_->dynamics(); }
+  coupling::Dynamics& dynamics() override { return fields_->motion(); }
   const coupling::Capsule* capsule() const override { return capsule_.get(); }
-  coupling::CoupledMotion* fields() override { return fields_->motion(); }
+  coupling::CoupledMotion* coupled_motion() override { return &fields_->motion(); }
   const Body& body() const override { return stacked_ ? *stacked_ : *members_.front().body; }
-  Net start() const override { return fields_->start(body().initial); }
+  coupling::State start() const override { return fields_->motion().start(body().initial); }
   const surface::BezierMap& bezier() const override { return capsule_->geometry().bezier(); }
 
+  Net surface(const coupling::State& x) const override {
+    const coupling::BlockId last{members_.size() - 1};
+    return as_net(x.numbers().head(x.layout()->first(last) + x(last).size()));
+  }
+
   bool resume(Resumed& resumed) override {
-    const bool another_mesh = restore_mesh(resumed.checkpoint, resumed.state.x);
-    require_fit(resumed.totals.phase_angle.size() == members_.size());
+    const bool another_mesh = restore_mesh(resumed.checkpoint, output::stored_shapes(resumed.checkpoint));
+    output::require_fit(resumed.totals.phase_angle.size() == members_.size());
+    output::read_vectors(resumed.checkpoint, start().layout(), resumed.state);
     motion::refreeze(dynamics(), resumed.state, resumed.state.time);
     for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle[p];
     set_contacts(resumed.totals.contacts);
     return another_mesh;
   }
 
-  void move_to(const output::Checkpoint& mesh, const Net& x) override {
-    restore_mesh(mesh, x);
+  void move_to(const output::Checkpoint& mesh, const coupling::State& x) override {
+    restore_mesh(mesh, surface(x));
     capsule_->counts() = {};
   }
 
   void store(output::Checkpoint& checkpoint) const override { tanktread::store(members_, checkpoint); }
-
-  bool enforce_gaps(motion::State& state, double step) override {
+  bool enforce_gaps(motion::TimeState& state, double step) override {
     if (!scene_.contact.limiter) return true;
     const auto clock = phases_.time("contact");
     capsule_->set_time(state.time, state.time - step);
     const double least = scene_.least_radius();
     Limiter limiter(members_, *capsule_, ranks_, scene_.contact.limit * least, scene_.flow.viscosity * scene_.rate() * least * least,
                     scene_.rate(), [&] { fields_->set_state(state.x); });
-    motion::State own = fields_->of_shape(state);
+    const Net start = surface(state.x);
     const stokes::AmbientFlow& flow = capsule_->flow();
     const Mat3 deformed =
         flow.deformation(state.time) * flow.deformation(state.time - step).inverse();  // deformation of the lattice in the step (2.51)
     coupling::Contacts contacts = contacts_;
     for (coupling::Contact& one : contacts.all) one.beyond = deformed * one.beyond;
-    const bool first = contacts_.impulse == 0, holds = limiter.hold(own, step, contacts);
+    Net x = start;
+    const bool first = contacts_.impulse == 0, holds = limiter.hold(x, !state.frozen.empty(), step, contacts);
     if (holds) contacts_ = std::move(contacts);
     else apply_contacts();
-    if (holds && own.x != fields_->shape(state.x)) {
-      state.x = fields_->with_shape(state.x, own.x);
-      state.history = {fields_->empty() ? own.history.front() : dynamics().velocity(state.x)};
+    if (holds && x != start) {
+      fields_->motion().shape(state.x) = x;
+      state.history = {dynamics().velocity(state.x)};
       state.places.clear();
     }
     if (first && contacts_.impulse > 0)
@@ -103,53 +109,60 @@ class CoupledParticles : public ParticleSystem {
   }
 
   coupling::Contacts contacts() const override { return contacts_; }
-
   void set_contacts(const coupling::Contacts& contacts) override { contacts_ = contacts, apply_contacts(); }
 
   /// Moves the centroid back to its initial position if `Particle/drift` is `held`. Then refines or coarsens the meshes for which an adaptation is
   /// due at this step.
-  bool adapt(motion::State& state, RunTotals& totals) override {
+  bool adapt(motion::TimeState& state, RunTotals& totals) override {
     replaced_.clear();
-    if (holds_centre_) {
-      motion::State own = fields_->of_shape(state);
-      hold_centre(capsule_->flow(), capsule_->geometry(), members_.front().scene.particle.shape.center, own);
-      fields_->put_back(own, state);
-    }
+    if (holds_centre_) hold_centre(capsule_->flow(), capsule_->geometry(), members_.front().scene.particle.shape.center, state);
     const auto due = [&](const Member& member) { return member.scene.adaptation.enabled && totals.step % member.scene.adaptation.interval == 0; };
     if (std::ranges::none_of(members_, due)) return false;
     const auto clock = phases_.time("adaptation");
     fields_->set_state(state.x);
-    motion::State own = fields_->of_shape(state);
-    rigid_before_ = capsule_->rigid_at(own.x);
+    Net x = surface(state.x);
+    rigid_before_ = capsule_->rigid_at(x);
     const auto needs_load = [&](const Member& member) { return due(member) && member.scene.adaptation.limits_load(); };
-    const Net load = std::ranges::any_of(members_, needs_load) ? capsule_->evaluate_on_demand(own.x, {}, 0)->load() : Net(Net::Zero(own.x.rows(), 3));
+    const Net load = std::ranges::any_of(members_, needs_load) ? capsule_->evaluate_on_demand(x, {}, 0)->load() : Net(Net::Zero(x.rows(), 3));
     std::vector<Net> loads;
     for (const Member& member : members_) loads.push_back(member.own(load));
-    const double origin = capsule_->tube() ? capsule_->tube()->frame_origin(own.x) : 0;  // before any mesh changes
+    const double origin = capsule_->tube() ? capsule_->tube()->frame_origin(x) : 0;  // before any mesh changes
+    std::vector<std::function<Net(const Net&)>> moves(members_.size());  // transfer of a net of each particle; empty if its mesh stays
     for (std::size_t p = 0; p < members_.size(); ++p)
-      if (due(members_[p])) adapt_mesh(p, loads[p], origin, own, totals);
+      if (due(members_[p])) moves[p] = adapt_mesh(p, loads[p], origin, state, x, totals);
     if (replaced_.empty()) return false;
     const std::unique_ptr<SurfaceFields> fields = std::move(fields_);  // outlives its capsule, see SurfaceFields::transferred
-    rebuild(own.x);
-    capsule_->restore_constraints(own.x);
-    if (!own.x.allFinite()) throw RunFailure("the constraints cannot be restored on the new mesh");
+    rebuild(x);
+    capsule_->restore_constraints(x);
+    if (!x.allFinite()) throw RunFailure("the constraints cannot be restored on the new mesh");
     apply_contacts();
     std::vector<const Body*> bodies(members_.size(), nullptr);
     for (const auto& [p, body] : replaced_) bodies[p] = body.get();
-    state = fields_->transferred(*fields, state, std::move(own), bodies);
+    if (!fields_->empty()) state.history.clear(), state.direction = {}, state.secants = {};  // rates are not transferred
+    coupling::State now = fields_->transferred(*fields, std::exchange(state.x, {}), x, bodies);
+    motion::each_vector(state, [&](const std::string&, coupling::State& y) {
+      if (y.empty()) return;
+      Net shape(n_points(), 3);
+      for (std::size_t p = 0; p < members_.size(); ++p) {
+        const Net before = y(coupling::BlockId{p});
+        members_[p].block.rows(shape) = moves[p] ? moves[p](before) : before;
+      }
+      y = fields_->transferred(*fields, y, shape, bodies);
+    });
+    state.x = std::move(now);
     motion::refreeze(dynamics(), state, state.time);
     return true;
   }
 
-  void undo_adapt(const Net& x) override {
+  void undo_adapt(const coupling::State& x) override {
     if (replaced_.empty()) return;
     for (auto& [p, body] : replaced_) members_[p].body = std::move(body);
     replaced_.clear();
-    rebuild(x.topRows(n_points()));
+    rebuild(surface(x));
   }
 
-  std::string slackness(const Net& state) const override {
-    const Net x = fields_->shape(state);
+  std::string slackness(const coupling::State& state) const override {
+    const Net x = surface(state);
     std::string found;
     double worst = 0.01;  // a smaller part of the membrane does not count, nor does a tension above -0.01 G_s
     for (const Member& member : members_) {
@@ -187,17 +200,17 @@ class CoupledParticles : public ParticleSystem {
 
   stokes::Evaluations kernel_evaluations() const override { return kernel_evaluations_ + capsule_->kernel_evaluations(); }
 
-  Columns next_row(const motion::State& whole_state, const ProgressRow& progress) override {
-    const motion::State state = fields_->of_shape(whole_state);
-    const auto here = evaluated_for_walls(whole_state.x, state);
+  Columns next_row(const motion::TimeState& state, const ProgressRow& progress) override {
+    const Net x = surface(state.x);
+    const auto here = evaluated_for_walls(state);
     const Net v = here->fluid_velocity();
     RunRow row{.progress = progress};
     row.progress.time = state.time, row.progress.counts = capsule_->counts();
-    ParticleRows rows(members_, *capsule_, *fields_, *here, state, whole_state.x, ranks_);
-    const std::vector<RecordedParticle> recorded = recorded_particles(members_, state.x, v);
+    ParticleRows rows(members_, *capsule_, *fields_, *here, state, ranks_);
+    const std::vector<RecordedParticle> recorded = recorded_particles(members_, x, v);
     const Columns of_particles = rows.columns(row.progress.step.step, recorded);
     row.together = rows.together();
-    for (const coupling::Contact& contact : contacts_.all) row.together.stresslet += stresslet_between(contact, state.x);
+    for (const coupling::Contact& contact : contacts_.all) row.together.stresslet += stresslet_between(contact, x);
     set_surroundings(scene_, members_, body(), *capsule_, *here, ranks_, row);
     if (scene_.output.power_balance) row.powers = powers(state);
     row.contacts = contacts_;
@@ -209,13 +222,11 @@ class CoupledParticles : public ParticleSystem {
     return columns;
   }
 
-  SurfaceSnapshot snapshot(const motion::State& whole_state) override {
-    const auto of_shape = std::make_shared<const motion::State>(fields_->of_shape(whole_state));
-    const Net& x = of_shape->x;
-    const std::vector<Net>& history = of_shape->history;
-    const auto here = fields_->evaluate(whole_state.x, history.empty() ? Net() : history.front(), 0);
-    const Net load = here->load(), velocity = capsule_->slides() || !history.empty() ? here->fluid_velocity() : Net();
-    return {x, [this, of_shape, &x, load, velocity](const output::Nodes& nodes) {
+  SurfaceSnapshot snapshot(const motion::TimeState& state) override {
+    const bool moves = !state.history.empty();
+    const auto here = fields_->evaluate(state.x, moves ? state.history.front() : coupling::State(), 0);
+    const Net x = surface(state.x), load = here->load(), velocity = capsule_->slides() || moves ? here->fluid_velocity() : Net();
+    return {x, [this, x, load, velocity](const output::Nodes& nodes) {
               std::vector<output::Field> fields = snapshot_fields(members_, body(), nodes, x, load, velocity);
               fields_->add_to_snapshot(nodes, x, fields);
               if (capsule_->cell()) fields.push_back({"into cell", into_cell(members_, *capsule_->cell(), nodes, x)});
@@ -229,45 +240,40 @@ class CoupledParticles : public ParticleSystem {
     return std::accumulate(members_.begin(), members_.end(), 0, [](int n, const Member& member) { return n + member.body->space.n_points; });
   }
 
-  /// Evaluates the velocities at the state x, whose shape is `state`. Solves the linear system for the velocity again in two cases: if the velocity
+  /// Evaluates the velocities at the state. Solves the linear system for the velocity again in two cases: if the velocity
   /// of the step is not accurate enough for tractions on walls, and if deformable particles and rigid bodies occur together, because the loads of
   /// the deformable particles then follow from this solution.
-  std::shared_ptr<coupling::Evaluation> evaluated_for_walls(const Net& x, const motion::State& state) {
-    std::shared_ptr<coupling::Evaluation> here = fields_->evaluate(x, state.history.front(), scene_.time.tolerance);
+  std::shared_ptr<coupling::Evaluation> evaluated_for_walls(const motion::TimeState& state) {
+    std::shared_ptr<coupling::Evaluation> here = fields_->evaluate(state.x, state.history.front(), scene_.time.tolerance);
     const auto rigid = [](const Member& member) { return member.scene.particle.rigid(); };
     const bool mixed = std::ranges::any_of(members_, rigid) && !std::ranges::all_of(members_, rigid);
     if (mixed || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
     return here;
   }
 
-  static void require_fit(bool fits) {
-    if (!fits) throw UserError("the newest checkpoint does not fit its scene, because another version of tanktread wrote it: run the deck again");
-  }
-
   /// Reads the meshes and volumes of the members from the checkpoint. If the meshes or the symmetry of the shape differ from the current ones,
   /// rebuilds the system.
-  /// Returns true if a mesh was read. `y`: state x of shape and surface fields on these meshes.
-  bool restore_mesh(const output::Checkpoint& checkpoint, const Net& y) {
+  /// Returns true if a mesh was read. `x`: shapes on these meshes.
+  bool restore_mesh(const output::Checkpoint& checkpoint, const Net& x) {
     bool another_mesh = false;
     try {
       another_mesh = restore(checkpoint, members_);
     } catch (const std::out_of_range&) {  // a number or an array is missing
-      require_fit(false);
+      output::require_fit(false);
     }
-    require_fit(y.rows() >= n_points());
-    const Net x = y.topRows(n_points());
+    output::require_fit(x.rows() == n_points());
     const bool another_symmetry = !stacked_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
     if (another_mesh || another_symmetry) rebuild(x);
     for (std::size_t p = 0; p < members_.size(); ++p) capsule_->solver().volumes().keep(members_[p].body->volume, p);
-    require_fit(y.rows() == start().rows());
     return another_mesh;
   }
 
-  coupling::Powers powers(const motion::State& state) {
+  coupling::Powers powers(const motion::TimeState& state) {
     const auto clock = phases_.time("power balance");
     if (!power_) power_.emplace(*capsule_, ranks_);
-    coupling::Powers powers = (*power_)(state.x, state.history.front());
-    if (!fields_->empty()) powers.forces += fields_->power(capsule_->evaluate_on_demand(state.x, state.history.front(), 0)->fluid_velocity());
+    const Net x = surface(state.x), slope = surface(state.history.front());
+    coupling::Powers powers = (*power_)(x, slope);
+    if (!fields_->empty()) powers.forces += fields_->power(capsule_->evaluate_on_demand(x, slope, 0)->fluid_velocity());
     return powers;
   }
 
@@ -304,29 +310,34 @@ class CoupledParticles : public ParticleSystem {
   /// Returns the largest error of the slope (the velocity of the control points) that the tolerance allows.
   double accuracy() const { return scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate()); }
 
-  /// Adapts the mesh of particle p if the indicator requires it. `origin`: Tube::frame_origin() of the tube; 0 without a tube.
-  void adapt_mesh(std::size_t p, const Net& load, double origin, motion::State& state, RunTotals& totals) {
+  /// Adapts the mesh of particle p if the indicator requires it. Returns the transfer of nets of the particle to the new mesh; empty if the mesh
+  /// stays. `origin`: Tube::frame_origin() of the tube; 0 without a tube. x: shapes of all particles on their current meshes.
+  std::function<Net(const Net&)> adapt_mesh(std::size_t p, const Net& load, double origin, const motion::TimeState& state, Net& x,
+                                            RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
     if (const coupling::Tube* tube = capsule_->tube()) {
-      Net in_frame = state.x;
+      Net in_frame = x;
       in_frame.col(0).array() -= origin;
       widths = films(members_, p, in_frame, tube->cell(), &tube->wall());
     } else if (scene_.has_gaps() || scene_.has_films_around_one()) {
-      widths = films(members_, p, state.x, capsule_->cell());
+      widths = films(members_, p, x, capsule_->cell());
     }
-    Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths,
-                             fields_->values_at(p));
+    const Net own = member.own(x), slope = state.history.empty() ? Net() : Net(state.history.front()(coupling::BlockId{p}));
+    const bool per_unstressed_area = load_measure(member.scene) == stokes::Measure::reference;
+    Adapted change = adapted(member.scene, *member.body, own, slope, load, per_unstressed_area, widths, fields_->values_at(p));
     std::ranges::move(adaptation_remarks(member, change, state.time), std::back_inserter(remarks_));
-    if (!change.body) return;
+    if (!change.body) return {};
     const int more = change.body->space.n_points - member.block.n_points;
     carry_contacts(p, change.body->nested());
     replaced_.emplace_back(p, std::exchange(member.body, std::move(change.body)));
-    state = std::move(change.state);
+    const Eigen::Index before = member.block.first_point, after = x.rows() - before - own.rows();
+    x = (Net(x.rows() + more, 3) << x.topRows(before), change.move(own), x.bottomRows(after)).finished();
     member.block.n_points += more;
-    if (rigid_before_ && rigid_before_->is_rigid(p)) fit_again(p, state.x);
+    if (rigid_before_ && rigid_before_->is_rigid(p)) fit_again(p, x);
     for (std::size_t after = p + 1; after < members_.size(); ++after) members_[after].block.first_point += more;
     (change.finer ? totals.refinements : totals.coarsenings) += 1;
+    return std::move(change.move);
   }
 
   /// Sets the contact sites of particle p on its new mesh, at the same parametric points.

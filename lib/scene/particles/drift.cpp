@@ -15,14 +15,14 @@ bool holds_centre(const ParticleScene& particle_scene) {
   return largest_growth_rate(flow.gradient(center)) > 1e-4 * flow.rate();  // 0 for simple shear; up to 1e-5 if a rotated gradient is rounded
 }
 
-void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state) {
+void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::TimeState& state) {
+  constexpr coupling::BlockId shape{0};
   const Mat3 gradient = flow.gradient(place);
-  const Vec3 off = geometry.measures(state.x).centroid - place, slope_off = gradient * off;
-  state.x.rowwise() -= off.transpose();
-  for (Net& slope : state.history) slope.rowwise() -= slope_off.transpose();
-  for (motion::PastPosition& earlier : state.places) {
-    earlier.x.rowwise() -= (exponential(gradient * (earlier.time - state.time)) * off).transpose();
-  }
+  const Vec3 off = geometry.measures(state.x(shape)).centroid - place, slope_off = gradient * off;
+  state.x(shape).rowwise() -= off.transpose();
+  for (coupling::State& slope : state.history) slope(shape).rowwise() -= slope_off.transpose();
+  for (motion::PastPosition& earlier : state.places)
+    earlier.x(shape).rowwise() -= (exponential(gradient * (earlier.time - state.time)) * off).transpose();
 }
 
 }  // namespace tanktread

@@ -18,6 +18,6 @@ bool holds_centre(const ParticleScene& particle_scene);
 /// Displaces the shape of the state by the vector c that moves the centroid to `place`, and changes the slopes and earlier positions of the time
 /// scheme accordingly. In an affine flow with gradient L, v(x + c) = v(x) + L c for any shape x. If x(t) is a motion, x(t) + c(t) with dc/dt = L c is
 /// therefore also a motion. So slopes change by L c, and the position at the time s before the current time is displaced by exp(-L s) c.
-void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state);
+void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::TimeState& state);
 
 }  // namespace tanktread

@@ -23,8 +23,10 @@ class Free : public ParticleSystem {
 
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
-  Net start() const override { return coupling::placed(free_->centre()); }
+  coupling::State start() const override { return coupling::placed(free_->centre()); }
+  Net surface(const coupling::State& x) const override { return free_->surface(x); }
   bool resume(Resumed& resumed) override {
+    output::read_vectors(resumed.checkpoint, start().layout(), resumed.state);
     phase_angle_ = resumed.totals.phase_angle.at(0);
     if (const auto start = resumed.checkpoint.arrays.find("start unknowns"); start != resumed.checkpoint.arrays.end())
       free_->start_from(start->second);
@@ -35,7 +37,7 @@ class Free : public ParticleSystem {
     checkpoint.arrays[stored_rest] = body_.rest;
     if (const Eigen::VectorXd start = free_->unknowns(); start.size() > 0) checkpoint.arrays["start unknowns"] = start;
   }
-  bool adapt(motion::State&, RunTotals&) override { return false; }
+  bool adapt(motion::TimeState&, RunTotals&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
   stokes::Evaluations kernel_evaluations() const override { return tractions_.kernel_evaluations(); }
 
@@ -61,8 +63,8 @@ class Free : public ParticleSystem {
   std::vector<PhaseAngle> phase_angle() const override { return {phase_angle_}; }
   std::vector<Warning> remarks() override { return std::exchange(remarks_, {}); }
 
-  Columns next_row(const motion::State& state, const ProgressRow& progress) override {
-    const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
+  Columns next_row(const motion::TimeState& state, const ProgressRow& progress) override {
+    const Eigen::Quaterniond turn = coupling::orientation_of(state.x);
     RunRow row;
     RigidRow now = rigid_row(particle_scene_, body_, free_->flow(), geometry_, free_->surface(state.x), free_->motion(state.x), turn,
                              free_->stresslet(state.x), ranks_);
@@ -82,7 +84,7 @@ class Free : public ParticleSystem {
     return columns;
   }
 
-  SurfaceSnapshot snapshot(const motion::State& state) override {
+  SurfaceSnapshot snapshot(const motion::TimeState& state) override {
     const Net x = free_->surface(state.x), f = free_->force_density(state.x),
               v = coupling::rigid_velocity(x, free_->motion(state.x), coupling::centre_of(state.x));
     return {x, [f, v](const output::Nodes& nodes) {
@@ -116,7 +118,7 @@ class Free : public ParticleSystem {
 
   /// Advances the phase of the rigid body by `step`. Sets in the row the phase, and the tank-treading velocity and frequency in the plane of the flow
   /// (Body::plane). The frequency (6.6) is the angular velocity about the normal of this plane.
-  void advance_phase(const Net& place, double step, RigidRow& now) {
+  void advance_phase(const coupling::State& place, double step, RigidRow& now) {
     const FlowPlane& plane = body_.plane;
     const Net x = free_->surface(place), v = coupling::rigid_velocity(x, {now.velocity, now.angular_velocity}, now.centre);
     const Vec3 centre = plane.components(now.measures.centroid), moves = plane.components(now.velocity);

@@ -24,8 +24,8 @@ Vec3 place(const std::vector<Member>& members, const Net& x, const coupling::Con
 
 }  // namespace
 
-bool Limiter::hold(motion::State& state, double step, coupling::Contacts& contacts) {
-  const Net start = state.x;
+bool Limiter::hold(Net& shapes, bool stiff, double step, coupling::Contacts& contacts) {
+  const Net start = shapes;
   step_ = step, held_.clear(), base_.reset();
   load_ = coupling::work(capsule_.particles(), contacts, start.rows());
   for (const coupling::Contact& one : contacts.all) {
@@ -36,18 +36,16 @@ bool Limiter::hold(motion::State& state, double step, coupling::Contacts& contac
   bool holds = find(x);
   if (!held_.empty()) set_loads_();
   for (int round = 0; holds && error() > tolerance; ++round) {
-    holds = round < most_rounds && respond(state) && (x = moved(start)).allFinite() && find(x);
+    holds = round < most_rounds && respond(start, stiff) && (x = moved(start)).allFinite() && find(x);
   }
   if (!holds || (held_.empty() && contacts.all.empty())) {
     capsule_.set_forces(&coupling::Capsule::Forces::contacts, load_);
     return holds;
   }
   contacts = with_forces(x, contacts.impulse);
-  state.x = x;
+  shapes = x;
   capsule_.set_forces(&coupling::Capsule::Forces::contacts, coupling::work(capsule_.particles(), contacts, x.rows()));
-  state.history = {capsule_.velocity(x)};
-  state.places.clear();
-  return state.history.front().allFinite();
+  return capsule_.velocity(x).allFinite();
 }
 
 Limiter::Held Limiter::held(const Approach& found, double target) const {
@@ -105,9 +103,7 @@ double Limiter::error() const {
 
 /// Computes the displacement that a unit contact force causes in the step, for each contact whose displacement is not known yet. Returns false if the
 /// evaluation fails.
-bool Limiter::respond(const motion::State& state) {
-  const Net& start = state.x;
-  const bool stiff = state.frozen.size() > 0;
+bool Limiter::respond(const Net& start, bool stiff) {
   for (Held& one : held_) {
     if (one.response.size() > 0) continue;
     if (!base_) {
@@ -119,7 +115,11 @@ bool Limiter::respond(const motion::State& state) {
     coupling::add_work(capsule_.particles(), one.contact, unit_, one.work);
     const Net rate = capsule_.response(*base_, one.work);
     if (!rate.allFinite()) return false;
-    one.response = step_ * (stiff ? capsule_.solve(step_, rate, 1e-6, {}) : rate);
+    one.response = step_ * rate;
+    if (stiff) {
+      const coupling::State response = shapes_.solve(step_, shapes_.state_of(rate), 1e-6, {});
+      one.response = step_ * shapes_.shape(response);
+    }
   }
   return true;
 }

@@ -32,9 +32,9 @@ class Limiter {
       : members_(members), capsule_(capsule), ranks_(ranks), limit_(limit), unit_(unit), rate_(rate), set_loads_(std::move(set_loads)) {}
 
   /// Moves the particles at the end of a step so that no gap is below the limit. Returns false if a gap is below half of the limit, if no forces
-  /// restore the limit, or if an evaluation fails. The caller must then discard `state` and `contacts`, set the previous contact forces in the system
-  /// again, and repeat the step with a smaller size. Collective.
-  bool hold(motion::State& state, double step, coupling::Contacts& contacts);
+  /// restore the limit, or if an evaluation fails. The caller must then discard the shapes `x` and `contacts`, set the previous contact forces in the
+  /// system again, and repeat the step with a smaller size. `stiff`: true after an implicit step. Collective.
+  bool hold(Net& x, bool stiff, double step, coupling::Contacts& contacts);
 
  private:
   /// A contact and its force, as a multiple of `unit`, before and after hold(). `work`: load vector (virtual work per control point) of a contact
@@ -51,12 +51,13 @@ class Limiter {
   Held* known_near(const coupling::Contact& contact, const Net& x);
   double target(const Approach& found) const;
   double error() const;
-  bool respond(const motion::State& state);
+  bool respond(const Net& start, bool stiff);
   Net moved(const Net& start);
   coupling::Contacts with_forces(const Net& x, double impulse) const;
 
   const std::vector<Member>& members_;
   coupling::Capsule& capsule_;
+  coupling::CoupledMotion shapes_{capsule_};  // motion of the shapes without the fields on them
   const coupling::Ranks& ranks_;
   double limit_, unit_, rate_;
   std::function<void()> set_loads_;

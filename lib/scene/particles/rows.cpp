@@ -11,30 +11,31 @@
 namespace tanktread {
 
 ParticleRows::ParticleRows(std::vector<Member>& members, const coupling::Capsule& capsule, const SurfaceFields& fields, coupling::Evaluation& here,
-                           const motion::State& state, const Net& y, coupling::Ranks& ranks)
+                           const motion::TimeState& state, coupling::Ranks& ranks)
     : members_(members), capsule_(capsule), fields_(fields), here_(here), state_(state), ranks_(ranks), columns_(members.size()) {
-  const coupling::RigidParticles bodies = capsule.rigid_at(state.x);
+  const coupling::RigidParticles bodies = capsule.rigid_at(fields.motion().shape(state.x));
   for (std::size_t p = 0; p < members.size(); ++p) {
     if (members[p].scene.particle.rigid())
       rows_.push_back(std::make_unique<RigidRow>(rigid(p, bodies)));
     else
-      rows_.push_back(std::make_unique<DeformingRow>(deforming(p, y)));
+      rows_.push_back(std::make_unique<DeformingRow>(deforming(p)));
   }
   add_treading(here.fluid_velocity());
 }
 
 /// Returns the data of the deforming particle p, without the velocity and the tank-treading, which add_treading() sets. Adds the columns of the
 /// particle's surface fields to `columns_`.
-DeformingRow ParticleRows::deforming(std::size_t p, const Net& y) {
+DeformingRow ParticleRows::deforming(std::size_t p) {
   const Member& member = members_[p];
-  const Net x = member.own(state_.x), slope = member.own(state_.history.front());
+  const coupling::BlockId shape{p};
+  const Net x = state_.x(shape), slope = state_.history.front()(shape);
   DeformingRow now = deforming_row(member.scene, *member.body, *member.geometry, *member.membrane, x, slope, ranks_);
   now.volume_error = capsule_.volume_error(now.measures.volume, p);
   now.stresslet = here_.stresslet(p);
   now.energy += here_.load_energy(p);
   if (member.scene.viscous_membrane()) now.dissipation = here_.membrane_dissipation(p);
   now.intrinsic_viscosity = intrinsic_viscosity(capsule_.flow(), member.scene.flow.viscosity, now);
-  fields_.add_to_row(p, y, now, columns_[p]);
+  fields_.add_to_row(p, state_.x, now, columns_[p]);
   return now;
 }
 
@@ -56,7 +57,8 @@ void ParticleRows::add_treading(const Net& v) {
       const Member& member = members_[k];
       if (member.scene.particle.rigid()) continue;
       ParticleRow& now = *rows_[k];
-      tanktread::add_treading(member.scene, *member.body, *member.geometry, member.own(state_.x), member.own(v), now);
+      tanktread::add_treading(member.scene, *member.body, *member.geometry, state_.x(coupling::BlockId{static_cast<std::size_t>(k)}), member.own(v),
+                              now);
       to.row(k) << now.velocity.transpose(), now.treading.velocity, now.treading.frequency;
     }
   });
@@ -74,7 +76,7 @@ void ParticleRows::advance_phases(double step) {
     ParticleRow& now = *rows_[p];
     std::optional<double> angle;
     if (!capsule_.particles()[p].slides())
-      angle = angle_in(body.plane, surface::value(body.nested(), member.own(state_.x), member.followed) - now.centre);
+      angle = angle_in(body.plane, surface::value(body.nested(), state_.x(coupling::BlockId{p}), member.followed) - now.centre);
     member.phase_angle.advance(step, now.treading.frequency, angle);
     now.phase = member.phase_angle.degrees;
   }

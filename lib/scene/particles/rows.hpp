@@ -11,10 +11,9 @@ namespace tanktread {
 /// Measurements on all particles of a coupled system at one state. Calls are collective.
 class ParticleRows {
  public:
-  /// `here`: evaluation of the shape. `state`: state of the shape only, with the velocity of the control points as the first of its `history`. `y`:
-  /// state x of shape and surface fields. References must outlive this object.
+  /// `here`: evaluation of the shape of `state`, which has its rate as the first of its `history`. References must outlive this object.
   ParticleRows(std::vector<Member>& members, const coupling::Capsule& capsule, const SurfaceFields& fields, coupling::Evaluation& here,
-               const motion::State& state, const Net& y, coupling::Ranks& ranks);
+               const motion::TimeState& state, coupling::Ranks& ranks);
 
   /// Returns the columns of all particles. Advances Member::phase_angle of each deforming particle by `step`, the step that led to the state; to be
   /// called once per state. `recorded`: particles for user-defined series; empty if there are none.
@@ -24,7 +23,7 @@ class ParticleRows {
 
  private:
   void advance_phases(double step);
-  DeformingRow deforming(std::size_t p, const Net& y);
+  DeformingRow deforming(std::size_t p);
   RigidRow rigid(std::size_t p, const coupling::RigidParticles& bodies);
   void add_treading(const Net& v);
 
@@ -32,7 +31,7 @@ class ParticleRows {
   const coupling::Capsule& capsule_;
   const SurfaceFields& fields_;
   coupling::Evaluation& here_;
-  const motion::State& state_;
+  const motion::TimeState& state_;
   coupling::Ranks& ranks_;
   std::vector<std::unique_ptr<ParticleRow>> rows_;
   std::vector<Columns> columns_;  // columns of the surface fields of each particle

@@ -170,17 +170,17 @@ double steady_step(const Scene& scene) {
   return step;
 }
 
-std::vector<motion::Conserved> conserved_quantities(const coupling::Capsule& capsule, const coupling::CoupledMotion* fields, const Net& x) {
-  const Net of_all = capsule.geometry().volume_gradient(x);
+std::vector<motion::Conserved> conserved_quantities(const coupling::CoupledMotion& motion, const coupling::State& x) {
+  const Net of_all = motion.capsule().geometry().volume_gradient(motion.shape(x));
   std::vector<motion::Conserved> kept;
-  for (const coupling::Particle& particle : capsule.particles()) {
+  for (const coupling::Particle& particle : motion.capsule().particles()) {
     if (particle.rigid) continue;
     Net gradient = Net::Zero(of_all.rows(), 3);
     particle.block.rows(gradient) = particle.block.rows(of_all);
-    kept.push_back({std::move(gradient), motion::ModeKind::volume});
+    kept.push_back({motion.state_of(gradient), motion::ModeKind::volume});
   }
-  for (std::size_t k = 0; fields && k < fields->fields().size(); ++k)
-    if (Net gradient = fields->conserved(k); gradient.rows() > 0) kept.push_back({std::move(gradient), motion::ModeKind::mass});
+  for (std::size_t k = 0; k < motion.fields().size(); ++k)
+    if (coupling::State gradient = motion.conserved(k); !gradient.empty()) kept.push_back({std::move(gradient), motion::ModeKind::mass});
   return kept;
 }
 

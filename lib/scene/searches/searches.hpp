@@ -33,9 +33,9 @@ void reject_searches(const ParticleScene& particle_scene, Rejections& to);
 /// relaxation time if no membrane opposes the motion.
 double steady_step(const Scene& scene);
 
-/// Returns the gradients, at the shape x, of the quantities that the motion conserves: the volume of each deformable particle, and the total of each
-/// field that is conserved (mass of surfactant). `fields`: motion of the fields on the surfaces; null if there are none.
-std::vector<motion::Conserved> conserved_quantities(const coupling::Capsule& capsule, const coupling::CoupledMotion* fields, const Net& x);
+/// Returns the gradients, at the state x, of the quantities that the motion conserves: the volume of each deformable particle, and the total of each
+/// field that is conserved (mass of surfactant).
+std::vector<motion::Conserved> conserved_quantities(const coupling::CoupledMotion& motion, const coupling::State& x);
 
 /// Values of the parameters Continuation/parameter and Continuation/second parameter; the second is 0 if there is none.
 using Parameters = std::array<double, 2>;

@@ -13,7 +13,7 @@ namespace {
 
 /// Returns the system in which the modes of the shape x of `system` are computed: `system`, or a system without symmetry if the modes may have
 /// another parity than the shape, because the velocities of all points are then needed.
-std::shared_ptr<SteadySystem> system_of_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const Net& x) {
+std::shared_ptr<SteadySystem> system_of_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const coupling::State& x) {
   if (!system->scene.spectrum.parity && system->knows_images()) return system;
   check_parity(*system);
   Scene whole = system->scene;
@@ -44,14 +44,13 @@ void check_parity(const SteadySystem& system) {
     throw UserError("Spectrum/parity needs a symmetric scene, and this one has no symmetry: remove the key.");
 }
 
-std::vector<motion::Mode> shape_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const Net& x, motion::ReturnMap* returns,
-                                      const Warn& warn) {
+std::vector<motion::Mode> shape_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const coupling::State& x,
+                                      motion::ReturnMap* returns, const Warn& warn) {
   const std::shared_ptr<SteadySystem> all = system_of_modes(pool, system, x);
   motion::SpectrumOptions options = all->scene.spectrum;
   const surface::Symmetry& symmetry = (options.parity ? system : all)->particles->body().symmetry;
   coupling::ShapeCoordinates shapes = all->coordinates(x, symmetry, options.parity.value_or(Vec3::Ones()));
-  const coupling::Capsule& capsule = *all->particles->capsule();
-  std::vector<motion::Conserved> kept = conserved_quantities(capsule, all->particles->fields(), x.topRows(capsule.n_points()));
+  std::vector<motion::Conserved> kept = conserved_quantities(*all->particles->coupled_motion(), x);
   const motion::SmallChanges changes{*all->motion, shapes, x, kept};
   if (const int n = static_cast<int>(shapes.size()); options.number > n)
     warn({"modes", formatted("Spectrum/number is %d, but the shape has only %d unknowns and modes", options.number, n)});

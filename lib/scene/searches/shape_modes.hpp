@@ -22,7 +22,7 @@ void check_parity(const SteadySystem& system);
 /// periodic motion through x, and the rates are Floquet exponents; modes that errors of time steps hide are left out. `pool` builds a system without
 /// symmetry if the modes may have another parity than the shape. Afterwards, x is the latest shape that `system` has evaluated. Throws UserError if
 /// Spectrum/parity does not suit the scene. Collective.
-std::vector<motion::Mode> shape_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const Net& x, motion::ReturnMap* returns,
-                                      const Warn& warn);
+std::vector<motion::Mode> shape_modes(SystemPool& pool, const std::shared_ptr<SteadySystem>& system, const coupling::State& x,
+                                      motion::ReturnMap* returns, const Warn& warn);
 
 }  // namespace tanktread

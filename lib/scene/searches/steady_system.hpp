@@ -23,12 +23,12 @@ struct SteadySystem {
   }
 
   /// Sets up the motion and the equations of steady shapes on the current mesh of the particle. `x`: shape on this mesh from which the search starts.
-  void begin(const Net& x) {
+  void begin(const coupling::State& x) {
     motion.emplace(particles->dynamics());
     motion->set_time(0, 0);
     const Body& body = particles->body();
     equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particles->capsule()->particles()), steady_step(scene), x,
-                      [this](const Net& y) { return particles->slackness(y); });
+                      [this](const coupling::State& y) { return particles->slackness(y); });
   }
 
   /// Returns the mesh, for move_to().
@@ -39,22 +39,18 @@ struct SteadySystem {
   }
 
   /// Changes to the mesh of another system, and then calls begin(). Collective.
-  void move_to(const output::Checkpoint& mesh, const Net& x) {
+  void move_to(const output::Checkpoint& mesh, const coupling::State& x) {
     particles->move_to(mesh, x);
     begin(x);
   }
 
   /// Returns false if the symmetry of the shape cannot be applied to all surface fields, because their symmetric images are not known.
-  bool knows_images() const { return !particles->fields() || particles->fields()->knows_images(particles->body().symmetry); }
+  bool knows_images() const { return particles->coupled_motion()->knows_images(particles->body().symmetry); }
 
   /// Returns the coordinates of changes of the state x. `symmetry`: symmetry of the shape, which must outlive the result. `parity`: parity of the
   /// changes under reflections of x1, x2, x3.
-  coupling::ShapeCoordinates coordinates(const Net& x, const surface::Symmetry& symmetry, const Vec3& parity = Vec3::Ones()) {
-    const coupling::Capsule& capsule = *particles->capsule();
-    const Net shape = x.topRows(capsule.n_points());
-    coupling::ShapeCoordinates all(particles->body().space, capsule.particles(), symmetry, shape, capsule.projection(), parity);
-    if (particles->fields()) all.add_fields(*particles->fields(), x);
-    return all;
+  coupling::ShapeCoordinates coordinates(const coupling::State& x, const surface::Symmetry& symmetry, const Vec3& parity = Vec3::Ones()) {
+    return {*particles->coupled_motion(), x, symmetry, parity};
   }
 
   /// Returns the state `after` without the motion of control points along interfaces since the state `before`. If both are the same shape, the result
@@ -63,7 +59,7 @@ struct SteadySystem {
   ///   before + D y(after - before),   with y and its displacement D y of (4.15) and (4.34) at the mean of both states
   ///
   /// because a point that slides along a circle moves at right angles to the normal at the middle of its way. Collective.
-  Net without_sliding(const Net& before, const Net& after) {
+  coupling::State without_sliding(const coupling::State& before, const coupling::State& after) {
     if (std::ranges::none_of(particles->capsule()->particles(), &coupling::Particle::slides)) return after;
     const surface::Symmetry none;
     const coupling::ShapeCoordinates shapes = coordinates(0.5 * (before + after), knows_images() ? particles->body().symmetry : none);

@@ -44,7 +44,7 @@ class SystemPool {
   /// Returns the system for these values of the parameters. A new system starts from the initial shape of the deck or, once the mesh has adapted,
   /// from x. If the deck does not allow the values, throws RunFailure instead of UserError, so that the points of the branch computed so far are
   /// kept. Collective.
-  std::shared_ptr<SteadySystem> at(const Parameters& parameters, const Net& x) try {
+  std::shared_ptr<SteadySystem> at(const Parameters& parameters, const coupling::State& x) try {
     const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<SteadySystem>>::first);
     if (known != systems_.end()) {
       std::rotate(systems_.begin(), known, known + 1);
@@ -72,7 +72,7 @@ class SystemPool {
   }
 
   /// Returns a new system with another scene, on the mesh of the system `like` and with the shape x. Collective.
-  std::shared_ptr<SteadySystem> variant(const SteadySystem& like, Scene scene, const Net& x) {
+  std::shared_ptr<SteadySystem> variant(const SteadySystem& like, Scene scene, const coupling::State& x) {
     std::shared_ptr<SteadySystem> made = make_system(std::move(scene));
     made->move_to(like.mesh(), x);
     return made;

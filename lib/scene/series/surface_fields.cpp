@@ -33,76 +33,41 @@ SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsu
     for (const auto& part : particle_scene.fields)
       all_.push_back({p, part.make({body.space, body.unstressed, body.rest, body.radius, body.modulus}), nullptr, &part});
   }
-  if (all_.empty()) return;
   std::vector<coupling::CoupledMotion::FieldOnParticle> on;
-  for (const One& one : all_) on.push_back({one.particle, one.field.get(), members[one.particle].scene.field_length});
+  for (const One& one : all_) {
+    const std::string name = one.surfactant ? "surfactant" : one.part ? "fields " + one.part->name : "Maxwell strain";
+    on.push_back({one.particle, one.field.get(), name, members[one.particle].scene.field_length});
+  }
   motion_.emplace(capsule, std::move(on));
 }
 
-static_assert(sizeof(motion::State) == 4 * sizeof(double) + 3 * sizeof(Net) + sizeof(std::vector<Net>) + sizeof(std::vector<motion::PastPosition>) +
-                                           sizeof(std::vector<double>) + sizeof(coupling::Secants),
-              "a new member of State must be treated in of_shape(), put_back() and transferred() below, in transferred() of "
-              "scene/particles/adaptation.cpp, and in the other functions that the comment at State lists; then correct this sum");
-
-motion::State SurfaceFields::of_shape(const motion::State& state) const {
-  if (!motion_) return state;
-  motion::State shapes;
-  shapes.time = state.time, shapes.step = state.step, shapes.slope_error = state.slope_error;
-  shapes.x = shape(state.x), shapes.frozen = shape(state.frozen), shapes.frozen_time = state.frozen_time;
-  for (const Net& slope : state.history) shapes.history.push_back(shape(slope));
-  for (const motion::PastPosition& place : state.places) shapes.places.push_back({place.time, shape(place.x)});
-  return shapes;
-}
-
-void SurfaceFields::put_back(const motion::State& own, motion::State& state) const {
-  if (!motion_) {
-    state = own;
-    return;
-  }
-  state.x = with_shape(state.x, own.x);
-  for (std::size_t k = 0; k < state.history.size(); ++k) state.history[k] = with_shape(state.history[k], own.history[k]);
-  for (std::size_t k = 0; k < state.places.size(); ++k) state.places[k].x = with_shape(state.places[k].x, own.places[k].x);
-}
-
-motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies) {
-  if (!motion_) return own;
-  const auto transfer = [&](const Net& y, const Net& shape) { return y.size() > 0 ? transferred_net(before, y, shape, bodies) : Net(); };
-  motion::State state;
-  state.time = old.time, state.step = old.step, state.slope_error = old.slope_error, state.memory = old.memory;
-  state.x = transfer(old.x, own.x), state.frozen = transfer(old.frozen, own.frozen), state.frozen_time = old.frozen_time;
-  for (std::size_t k = 0; k < old.places.size(); ++k) state.places.push_back({old.places[k].time, transfer(old.places[k].x, own.places[k].x)});
-  return state;
-}
-
-/// Transfers the control net y of a state to the current meshes. `shape`: shape on the current meshes. `before`: the fields on the previous meshes.
-/// The rows of y below the shape are the coefficients of the fields; they are transferred from the previous meshes.
-Net SurfaceFields::transferred_net(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
+coupling::State SurfaceFields::transferred(SurfaceFields& before, const coupling::State& y, const Net& shape,
+                                           std::span<const Body* const> bodies) {
   before.motion_->set_fields(y);
-  Net now = motion_->start(shape);
+  coupling::State now = motion_->start(shape);
   for (std::size_t k = 0; k < all_.size(); ++k) {
     const std::size_t p = all_[k].particle;
     const Body* const old = bodies[p];
     if (!old) {
-      motion_->set_coefficients(now, k, before.motion_->coefficients(y, k));
+      now.set(motion_->id(k), before.motion_->coefficients(y, k));
       continue;
     }
     const spline::Space &from = old->nested(), &to = members_[p].body->nested();
     const spline::Locator locator(from);
     const auto site = [&](const spline::Site& here) { return locator(spline::place(to, here)); };
-    motion_->set_coefficients(now, k, all_[k].field->transferred(*before.all_[k].field, members_[p].own(shape), site));
+    now.set(motion_->id(k), all_[k].field->transferred(*before.all_[k].field, members_[p].own(shape), site));
   }
   return now;
 }
 
-void SurfaceFields::set_state(const Net& y, double distance) {
-  if (!motion_) return;
-  if (distance > 0 && capsule_.evaluated_about(shape(y), distance)) motion_->set_fields(y);
+void SurfaceFields::set_state(const coupling::State& y, double distance) {
+  if (distance > 0 && capsule_.evaluated_about(motion_->shape(y), distance)) motion_->set_fields(y);
   else motion_->set_state(y);
 }
 
-std::shared_ptr<coupling::Evaluation> SurfaceFields::evaluate(const Net& y, const Net& velocity, double distance) {
+std::shared_ptr<coupling::Evaluation> SurfaceFields::evaluate(const coupling::State& y, const coupling::State& rate, double distance) {
   set_state(y, distance);
-  return capsule_.evaluate_on_demand(shape(y), velocity, distance);
+  return capsule_.evaluate_on_demand(motion_->shape(y), rate.empty() ? Net() : Net(motion().shape(rate)), distance);
 }
 
 void SurfactantRow::add_columns(Columns& to) const {
@@ -131,10 +96,11 @@ surface::FieldsAt SurfaceFields::values_at(std::size_t p) const {
   };
 }
 
-void SurfaceFields::add_to_row(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
+void SurfaceFields::add_to_row(std::size_t p, const coupling::State& y, DeformingRow& now, Columns& to) const {
   const Member& member = members_[p];
+  const Net x = y(coupling::BlockId{p});
   for (std::size_t k = 0; k < member.scene.loads.size(); ++k)
-    member.scene.loads[k].add_columns(member.loads.registered[k]->values(member.own(shape(y))), to);
+    member.scene.loads[k].add_columns(member.loads.registered[k]->values(x), to);
   for (std::size_t k = 0; k < all_.size(); ++k) {
     const One& one = all_[k];
     if (one.particle != p) continue;
@@ -143,7 +109,7 @@ void SurfaceFields::add_to_row(std::size_t p, const Net& y, DeformingRow& now, C
     if (one.part) one.part->add_columns(one.field->values(), to);
     if (!one.surfactant) continue;
     const auto [smallest, largest] = one.surfactant->extremes();
-    now.tension.smallest = member.scene.surfactant->tension(largest) + global_tension(member.scene, *member.body, member.own(shape(y)));
+    now.tension.smallest = member.scene.surfactant->tension(largest) + global_tension(member.scene, *member.body, x);
     const double mass = one.surfactant->mass(motion_->coefficients(y, k)) / member.surfactant_mass;
     SurfactantRow{mass, smallest, largest}.add_columns(to);
   }

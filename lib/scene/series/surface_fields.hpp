@@ -29,36 +29,27 @@ struct SurfactantRow {
 /// scene `first`. All states of a branch of steady shapes thus use the same lengths, even if a parameter of the branch changes R_C.
 Scene with_field_lengths_of(const Scene& first, Scene scene);
 
-/// Fields on the current meshes of all members (particles). If there is no field, states consist only of the control nets of the shapes, and this
-/// object stores no data.
+/// Fields on the current meshes of all members (particles), and the motion of the surfaces together with these fields.
 class SurfaceFields {
  public:
   /// The objects `members` and `capsule` must outlive this object.
   SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule);
 
-  bool empty() const { return all_.empty(); }
-  coupling::CoupledMotion* motion() { return motion_ ? &*motion_ : nullptr; }
-  coupling::Dynamics& dynamics() { return motion_ ? static_cast<coupling::Dynamics&>(*motion_) : capsule_; }
-  Net start(const Net& shape) const { return motion_ ? motion_->start(shape) : shape; }
-  Net shape(const Net& y) const { return motion_ && y.rows() > 0 ? motion_->shape(y) : y; }
-  Net with_shape(const Net& y, const Net& shape) const { return motion_ && y.rows() > 0 ? motion_->with_shape(y, shape) : shape; }
+  bool empty() const { return all_.empty(); }  ///< true if there are no fields
+  coupling::CoupledMotion& motion() { return *motion_; }
+  const coupling::CoupledMotion& motion() const { return *motion_; }
 
-  /// Returns time, slopes and shapes of a state without the coefficients of fields; the state itself if there are no fields.
-  motion::State of_shape(const motion::State& state) const;
-  /// Copies the shapes and slopes of `own`, which of_shape() returned and the caller modified, back into the state.
-  void put_back(const motion::State& own, motion::State& state) const;
-
-  /// Returns the state `old` transferred to the current meshes. `own`: the shapes of `old`, which are already on the current meshes. `before`: the
-  /// fields on the previous meshes, whose capsule may be deleted already. `bodies`: for each particle, its body with the previous mesh; null if the
-  /// mesh is unchanged. If there are fields, the result has no slopes and no secants.
-  motion::State transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies);
+  /// Returns the state y transferred to the current meshes. `shape`: shapes of y, which are already on the current meshes. `before`: the fields on
+  /// the previous meshes, whose capsule may be deleted already. `bodies`: for each particle, its body with the previous mesh; null if the mesh is
+  /// unchanged.
+  coupling::State transferred(SurfaceFields& before, const coupling::State& y, const Net& shape, std::span<const Body* const> bodies);
 
   /// Passes the state y to the fields. Also passes it to the capsule, unless `distance` > 0 and the capsule was last evaluated at a state within
   /// `distance` of y.
-  void set_state(const Net& y, double distance = 0);
+  void set_state(const coupling::State& y, double distance = 0);
 
-  /// Calls set_state(y, distance). Returns the evaluation of the shape in y, see Capsule::evaluate_on_demand.
-  std::shared_ptr<coupling::Evaluation> evaluate(const Net& y, const Net& velocity, double distance);
+  /// Calls set_state(y, distance). Returns the evaluation of the shape in y, see Capsule::evaluate_on_demand. `rate`: rate of y; absent if unknown.
+  std::shared_ptr<coupling::Evaluation> evaluate(const coupling::State& y, const coupling::State& rate, double distance);
 
   /// Returns a function that evaluates all fields of particle p, scaled to order 1, at a parametric point in the state set last. The function is
   /// empty if there are no fields.
@@ -66,7 +57,7 @@ class SurfaceFields {
 
   /// Adds the contributions of the fields of particle p to the particle's row `now`, and the columns of its fields and registered loads to `to`. `y`
   /// must be the state that was set last by set_state().
-  void add_to_row(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
+  void add_to_row(std::size_t p, const coupling::State& y, DeformingRow& now, Columns& to) const;
   /// Returns the mass of the surfactant of particle p at the start of a run; 0 without surfactant.
   double initial_mass(std::size_t p) const;
   /// Returns the power of the loads of all fields if the surface material moves at the velocity v.
@@ -83,13 +74,12 @@ class SurfaceFields {
     const membrane::FieldParts::Chosen* part = nullptr;  // user-defined part (see deck::Parts) that created this field; null for a built-in field
   };
 
-  Net transferred_net(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);
   void add_registered(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const;
 
   const std::vector<Member>& members_;
   coupling::Capsule& capsule_;
   std::vector<One> all_;
-  std::optional<coupling::CoupledMotion> motion_;
+  std::optional<coupling::CoupledMotion> motion_;  // always set
 };
 
 /// Returns load, traction, displacement, velocity, tensions and mean curvature at the nodes, and the particle number if there are several particles.

@@ -1,8 +1,10 @@
 #pragma once
 // Vectors of the unknowns of all blocks of a layout.
 
+#include <functional>
 #include <memory>
 #include <type_traits>
+#include <utility>
 
 #include <Eigen/Core>
 
@@ -61,7 +63,7 @@ class BlockVector {
   }
   double norm() const { return numbers().norm(); }
   bool allFinite() const { return numbers().allFinite(); }
-  bool operator==(const BlockVector& other) const { return layout_ == other.layout_ && numbers() == other.numbers(); }
+  bool operator==(const BlockVector& other) const { return numbers().size() == other.numbers().size() && numbers() == other.numbers(); }
 
   struct Storage;  ///< the Tpetra vector, see tpetra_of() in system/blocks/tpetra.hpp
   Storage* storage() { return storage_.get(); }
@@ -75,10 +77,23 @@ class BlockVector {
   double* numbers_ = nullptr;  // first number of the Tpetra vector
 };
 
+/// Unknowns that have a rate, and their rates (Dynamics).
+using State = BlockVector;
+
 /// Return a vector as a linear combination, and a linear combination itself.
 inline Combination<BlockVector::ConstNumbers> combination(const BlockVector& vector) { return {vector.layout(), vector.numbers()}; }
 template <class Numbers>
 const Combination<Numbers>& combination(const Combination<Numbers>& sum) { return sum; }
+
+/// Returns `map`, a linear map of vectors of this layout, as a map of their numbers.
+inline std::function<void(const double*, double*)> on_blocks(std::shared_ptr<const Layout> layout,
+                                                             std::function<BlockVector(const BlockVector&)> map) {
+  return [layout = std::move(layout), map = std::move(map)](const double* in, double* out) {
+    BlockVector x(layout);
+    x.numbers() = BlockVector::ConstNumbers(in, layout->size());
+    BlockVector::Numbers(out, layout->size()) = map(x).numbers();
+  };
+}
 
 template <class Sum>
 concept Combinable = requires(const Sum& sum) { combination(sum); };

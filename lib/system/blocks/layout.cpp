@@ -1,5 +1,6 @@
 #include "system/blocks/layout.hpp"
 
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 
@@ -69,6 +70,18 @@ Layout::Orbits Layout::orbits(const Block& block, const surface::Symmetry& symme
   for (const int row : symmetry.fundamental()) add_orbit(row);  // preferred, so that a block of points has the fundamental rows of the symmetry
   for (int row = 0; row < block.rows; ++row) add_orbit(row);
   return orbits;
+}
+
+std::vector<std::pair<Eigen::Index, int>> Layout::independent(BlockId id) const {
+  const auto& [source, factors] = orbits_[id.at];
+  const Block& block = blocks_[id.at];
+  std::vector<std::pair<Eigen::Index, int>> numbers;
+  for (Eigen::Index row = 0; row < block.rows; ++row)
+    for (Eigen::Index c = 0; c < block.components; ++c)
+      if (source.empty() || (source[static_cast<std::size_t>(row)] == row && factors(row, c) != 0))
+        numbers.emplace_back(first(id) + row * block.components + c,
+                             source.empty() ? 1 : static_cast<int>(std::ranges::count(source, static_cast<int>(row))));
+  return numbers;
 }
 
 void Layout::complete(BlockVector& vector) const {

@@ -64,6 +64,9 @@ class Layout {
   Eigen::Index first(BlockId id) const { return first_[id.at]; }  ///< index of the first number of the block among all numbers
   Eigen::Index size() const { return first_.back(); }             ///< number of all numbers
 
+  /// Returns the numbers of a block from which complete() sets the block: their indices among all numbers, and the numbers of rows of their orbits.
+  std::vector<std::pair<Eigen::Index, int>> independent(BlockId id) const;
+
   /// Sets all rows from one row per symmetry orbit, the fundamental row. A component becomes zero in a row that a reflection maps onto itself while
   /// it changes the sign of the component.
   void complete(BlockVector& vector) const;

@@ -114,7 +114,7 @@ std::pair<int, std::string> worst_of_all(int mine, const std::string& reason) {
   return {worst, worst > 0 ? error_of_any(reason) : std::string()};
 }
 
-bool finite(const Net& net) { return of_first(net.allFinite()); }
+bool finite(const Eigen::Ref<const Eigen::VectorXd>& numbers) { return of_first(numbers.allFinite()); }
 
 bool any_stop_requested(bool requested) { return largest(requested) > 0; }
 

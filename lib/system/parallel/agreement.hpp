@@ -33,8 +33,8 @@ void together(bool acts, const std::function<void()>& act);
 /// Returns the largest `mine` of all ranks. If this value is not 0, also returns one of the reasons that ranks gave. Collective; see `largest`.
 std::pair<int, std::string> worst_of_all(int mine, const std::string& reason);
 
-/// Returns whether a net that all ranks hold is finite, as determined by the first rank. Collective.
-bool finite(const Net& net);
+/// Returns whether numbers that all ranks hold are finite, as determined by the first rank. Collective.
+bool finite(const Eigen::Ref<const Eigen::VectorXd>& numbers);
 
 /// Returns whether any rank has received a stop signal, so that all ranks stop together. Collective.
 bool any_stop_requested(bool requested);

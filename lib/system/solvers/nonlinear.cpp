@@ -97,18 +97,25 @@ Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solvers(c
   return factory;
 }
 
-/// Returns the unit in which positions and residuals are passed to NOX: 2^-20 times the length of a displacement of norm 1, rounded to a power of 2.
+/// Returns the unit in which states and residuals are passed to NOX: 2^-20 times the length of a displacement of norm 1, rounded to a power of 2.
 /// The unit is small, so that the numbers are large. With a larger unit, differences of residuals near the solution could be below 1e-16. NOX treats
 /// such differences as singular.
-double unit_of(const FixedPoint::Norm& norm, Eigen::Index rows) {
+double unit_of(const FixedPoint::Norm& norm, const State& x) {
   constexpr double small = 0x1p-20;
-  const double size = norm(Vec3::UnitY().transpose().replicate(rows, 1));
+  State displacement(x.layout());
+  for (std::size_t k = 0; k < x.layout()->blocks().size(); ++k)
+    if (x.layout()->blocks()[k].parity == Parity::polar) displacement(BlockId{k}).col(1).setOnes();
+  const double size = norm(displacement);
   return size > 0 && std::isfinite(size) ? small * std::exp2(-std::round(std::log2(size))) : small;
 }
 
-Net net(const Eigen::VectorXd& numbers, double unit) { return unit * as_net(numbers); }
+State state(const std::shared_ptr<const Layout>& layout, const Eigen::VectorXd& numbers, double unit) {
+  State x(layout);
+  x.numbers() = unit * numbers;
+  return x;
+}
 
-Eigen::VectorXd numbers(const Net& net, double unit) { return flat(net) / unit; }
+Eigen::VectorXd numbers(const State& x, double unit) { return x.numbers() / unit; }
 
 /// Residual F(x) = g(x) - x. Products F' d are computed by finite differences, with steps that exceed the noise of adaptive quadrature.
 class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
@@ -116,8 +123,8 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   using InArgs = Thyra::ModelEvaluatorBase::InArgs<double>;
   using OutArgs = Thyra::ModelEvaluatorBase::OutArgs<double>;
 
-  Model(const FixedPoint::Map& g, const FixedPoint::Norm& norm, double unit, const Net& start, const std::string& preconditioner)
-      : g_(g), norm_(norm), unit_(unit), space_(vector_space(start.size())), chosen_(preconditioner) {
+  Model(const FixedPoint::Map& g, const FixedPoint::Norm& norm, double unit, const State& start, const std::string& preconditioner)
+      : g_(g), norm_(norm), unit_(unit), layout_(start.layout()), space_(vector_space(layout_->size())), chosen_(preconditioner) {
     if (chosen_.join(LinearSystem()).precondition) preconditioner_ = Teuchos::rcp(new ThyraOperator(space_));
   }
 
@@ -147,8 +154,8 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   }
 
   void evalModelImpl(const InArgs& in, const OutArgs& out) const override {
-    const Net x = net(numbers_of(*in.get_x()), unit_);
-    if (!same(x, x_)) {
+    const State x = state(layout_, numbers_of(*in.get_x()), unit_);
+    if (!(x == x_)) {
       f_ = g_(x) - x;
       x_ = x;
     }
@@ -156,9 +163,9 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
     if (!out.get_f().is_null()) Thyra::assign(out.get_f().ptr(), *vector_of(space_, numbers(f_, unit_)));
     if (out.get_W_op().is_null()) return;
     chosen_.refresh();
-    newton_ = {one_block("places", x.size()), on_nets(x.rows(), [this, x, f = f_](const Net& direction) -> Net {
+    newton_ = {layout_->blocks(), on_blocks(layout_, [this, x, f = f_](const State& direction) -> State {
       const double size = norm_(direction), e = size > 0 ? 1e-4 / size : 1;
-      const Net y = x + e * direction;
+      const State y = x + e * direction;
       return (g_(y) - y - f) / e;
     }), {}};
     const LinearSystem joined = chosen_.join(newton_);
@@ -169,24 +176,26 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   const FixedPoint::Map& g_;
   const FixedPoint::Norm& norm_;
   double unit_;
+  std::shared_ptr<const Layout> layout_;
   Teuchos::RCP<const Space> space_;
   mutable ChosenPreconditioner chosen_;
   Teuchos::RCP<ThyraOperator> preconditioner_;
   mutable LinearSystem newton_;
-  mutable Net x_, f_;  // x_: argument of the latest evaluation. f_: residual F(x_)
+  mutable State x_, f_;  // x_: argument of the latest evaluation. f_: residual F(x_)
 };
 
-Net net(const NOX::Abstract::Vector& vector, double unit) {
-  return net(numbers_of(dynamic_cast<const NOX::Thyra::Vector&>(vector).getThyraVector()), unit);
+State state(const std::shared_ptr<const Layout>& layout, const NOX::Abstract::Vector& vector, double unit) {
+  return state(layout, numbers_of(dynamic_cast<const NOX::Thyra::Vector&>(vector).getThyraVector()), unit);
 }
 
 /// Convergence test: stops at the tolerance in the given norm, or after `most` iterations.
 class Test : public NOX::StatusTest::Generic {
  public:
-  Test(const FixedPoint::Norm& norm, double unit, double tolerance, int most) : norm_(norm), unit_(unit), tolerance_(tolerance), most_(most) {}
+  Test(const FixedPoint::Norm& norm, const std::shared_ptr<const Layout>& layout, double unit, double tolerance, int most)
+      : norm_(norm), layout_(layout), unit_(unit), tolerance_(tolerance), most_(most) {}
   NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const NOX::Abstract::Group& group = solver.getSolutionGroup();
-    const double residual = group.isF() ? norm_(net(group.getF(), unit_)) : std::numeric_limits<double>::quiet_NaN();
+    const double residual = group.isF() ? norm_(state(layout_, group.getF(), unit_)) : std::numeric_limits<double>::quiet_NaN();
     if (residual <= tolerance_) return status_ = NOX::StatusTest::Converged;
     return status_ = !std::isfinite(residual) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
   }
@@ -195,6 +204,7 @@ class Test : public NOX::StatusTest::Generic {
 
  private:
   const FixedPoint::Norm& norm_;
+  std::shared_ptr<const Layout> layout_;
   double unit_, tolerance_;
   int most_;
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
@@ -265,10 +275,10 @@ FixedPoint::~FixedPoint() = default;
 
 std::string FixedPoint::unread() const { return impl_->last ? unread_path(impl_->given, *impl_->last) : std::string(); }
 
-NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& residual_norm) const {
+NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double tolerance, int most, State& x, const Norm& residual_norm) const {
   using Teuchos::RCP;
   using Weights = Thyra::VectorBase<double>;
-  const double unit = unit_of(norm, x.rows());
+  const double unit = unit_of(norm, x);
   const auto model = Teuchos::rcp(new Model(g, norm, unit, x, impl_->preconditioner));
   const auto start = vector_of(model->get_x_space(), numbers(x, unit));
   const RCP<Thyra::LinearOpBase<double>> derivative = model->create_W_op();
@@ -283,13 +293,14 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
                                          unweighted, unweighted, RCP<Weights>(), scaled, updated));
   const auto list = impl_->last = Teuchos::rcp(new Teuchos::ParameterList(impl_->list));
   auto& anderson = list->sublist("Anderson Parameters");
-  if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
+  const auto size = static_cast<int>(x.numbers().size());
+  if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), size));
   RCP<NOX::Solver::Generic> solver;
   const auto failed = [&] { return NonlinearReport{solver.is_null() ? 0 : solver->getNumIterations(), false}; };
   try {
-    solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(residual_norm ? residual_norm : norm, unit, tolerance, most)), list);
+    solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(residual_norm ? residual_norm : norm, x.layout(), unit, tolerance, most)), list);
     const bool converged = solver->solve() == NOX::StatusTest::Converged;
-    x = net(solver->getSolutionGroup().getX(), unit);
+    x = state(x.layout(), solver->getSolutionGroup().getX(), unit);
     return {solver->getNumIterations(), converged};
   } catch (const char*) {  // thrown by NOX if the function or a direction cannot be evaluated
     return failed();

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "base/types.hpp"
 #include "deck/forward.hpp"
+#include "system/blocks/block_vector.hpp"
 #include "system/solvers/options.hpp"
 
 namespace tanktread::coupling {
@@ -19,11 +19,11 @@ struct NonlinearReport {
 };
 
 /// Solves a fixed-point problem x = g(x) by NOX. Every rank performs the same arithmetic on the complete short vector, so that iteration counts
-/// cannot differ between ranks. g may be distributed internally and must return the same net on every rank.
+/// cannot differ between ranks. g may be distributed internally and must return the same state on every rank.
 class FixedPoint {
  public:
-  using Map = std::function<Net(const Net&)>;
-  using Norm = std::function<double(const Net&)>;
+  using Map = std::function<State(const State&)>;
+  using Norm = std::function<double(const State&)>;
   /// Returns the number of iterates that Anderson's method should combine in searches for a steady shape with `size` unknowns. With 4 iterates, the
   /// method does not converge near a fold or for travelling waves; with 20, it does not converge on fine meshes. 40 iterates are linearly dependent
   /// on coarse meshes.
@@ -38,7 +38,7 @@ class FixedPoint {
   /// Iterates from x until residual_norm(g(x) - x) <= tolerance or until `most` iterations have been made. `norm`: norm that scales the unknowns and
   /// the steps of finite differences. `residual_norm`: norm of the convergence test; `norm` if not given. A value of g that is not finite ends the
   /// iteration. Throws UserError if NOX rejects its parameter list. Collective.
-  NonlinearReport solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& residual_norm = {}) const;
+  NonlinearReport solve(const Map& g, const Norm& norm, double tolerance, int most, State& x, const Norm& residual_norm = {}) const;
 
   /// Returns the path of a parameter of the given list that the last solve did not use; empty if all were used.
   std::string unread() const;

@@ -11,9 +11,9 @@ constexpr double regularisation = 1e-2;  // regularisation of the normal equatio
 
 }  // namespace
 
-Secants::Secants(std::vector<Net> pairs) : pairs_(std::move(pairs)) { factor(); }
+Secants::Secants(std::vector<State> pairs) : pairs_(std::move(pairs)) { factor(); }
 
-void Secants::add(const Net& correction, const Net& jacobian_error, int most) {
+void Secants::add(const State& correction, const State& jacobian_error, int most) {
   const double size = correction.norm();
   if (most == 0 || size == 0 || !jacobian_error.allFinite()) return;
   pairs_.push_back(correction / size);
@@ -31,10 +31,10 @@ void Secants::factor() {
   gram_.compute(gram);
 }
 
-Net Secants::operator()(const Net& w) const {
+State Secants::operator()(const State& w) const {
   Eigen::VectorXd c(static_cast<Eigen::Index>(pairs_.size() / 2));
   for (Eigen::Index i = 0; i < c.size(); ++i) c[i] = dot(correction(i), w);
-  Net sum = Net::Zero(w.rows(), 3);
+  State sum(w.layout());
   if (c.size() == 0) return sum;
   c = gram_.solve(c).eval();
   for (Eigen::Index i = 0; i < c.size(); ++i) sum += c[i] * pairs_[static_cast<std::size_t>(2 * i + 1)];

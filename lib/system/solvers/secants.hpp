@@ -5,7 +5,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "base/types.hpp"
+#include "system/blocks/block_vector.hpp"
 
 namespace tanktread::coupling {
 
@@ -19,22 +19,22 @@ namespace tanktread::coupling {
 class Secants {
  public:
   /// `pairs`: each correction d_i, followed by its error e_i, in the order d_1, e_1, d_2, e_2, ..., oldest first.
-  explicit Secants(std::vector<Net> pairs);
+  explicit Secants(std::vector<State> pairs);
   Secants() = default;
 
   /// Adds the correction d_i = `correction` with its error e_i = `jacobian_error`. Only the last `most` pairs (d_i, e_i) are kept.
-  void add(const Net& correction, const Net& jacobian_error, int most);
+  void add(const State& correction, const State& jacobian_error, int most);
 
   /// Returns E w.
-  Net operator()(const Net& w) const;
+  State operator()(const State& w) const;
 
-  const std::vector<Net>& pairs() const { return pairs_; }
+  const std::vector<State>& pairs() const { return pairs_; }
 
  private:
   void factor();
-  const Net& correction(Eigen::Index i) const { return pairs_[static_cast<std::size_t>(2 * i)]; }
+  const State& correction(Eigen::Index i) const { return pairs_[static_cast<std::size_t>(2 * i)]; }
 
-  std::vector<Net> pairs_;
+  std::vector<State> pairs_;
   Eigen::LDLT<Eigen::MatrixXd> gram_{Eigen::MatrixXd(0, 0)};
 };
 

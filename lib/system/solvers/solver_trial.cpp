@@ -117,8 +117,9 @@ void try_direct(const membrane::DirectSolverOptions& options) {
 void try_nonlinear(const std::string& method, const List& list) {
   const auto solve = [&](const List& some, std::string& unread) {
     const FixedPoint solver(method, std::make_shared<List>(some));
-    Net x = Net::Ones(n / 3, 3);
-    const auto report = solver.solve([](const Net& y) { return Net(0.5 * y); }, [](const Net& y) { return y.norm(); }, 1e-8, 1000, x);
+    State x(std::make_shared<Layout>(std::vector<Block>{{.name = "unknowns", .rows = n / 3}}));
+    x.numbers().setOnes();
+    const auto report = solver.solve([](const State& y) -> State { return 0.5 * y; }, [](const State& y) { return y.norm(); }, 1e-8, 1000, x);
     unread = solver.unread();
     return report.converged;
   };

@@ -11,19 +11,20 @@
 
 #include "base/errors.hpp"
 #include "base/stop.hpp"
-#include "explicit_motion.hpp"
 #include "motion/integrator.hpp"
 #include "system/parallel/agreement.hpp"
 #include "system/parallel/ranks.hpp"
+#include "tests/states.hpp"
 
 namespace tanktread::motion {
 namespace {
 
 /// Model x' = -x, whose velocity throws if `fails` does.
-class Decay : public ExplicitMotion {
+class Decay : public PointMotion {
  public:
   std::function<void(const Net& x)> fails = [](const Net&) {};
   double size = 1;  // factor of the norm
+  using PointMotion::velocity, PointMotion::norm;
   Net velocity(const Net& x) override {
     fails(x);
     return -x;
@@ -32,11 +33,11 @@ class Decay : public ExplicitMotion {
   double norm(const Net& d) const override { return size * d.norm(); }
 };
 
-State start(double step) {
-  State state;
+TimeState start(double step) {
+  TimeState state;
   state.step = step;
-  state.x = Net::Constant(1, 3, 1.);
-  state.history = {-state.x};
+  state.x = state_of(Net::Constant(1, 3, 1.));
+  state.history = {-1 * state.x};
   return state;
 }
 
@@ -50,10 +51,10 @@ TEST(GuardedDynamics, AFailedEvaluationShortensTheStepInEveryScheme) {
       if (x(0, 0) < 0.7) throw std::logic_error("no basis");
     };
     GuardedDynamics motion(decay);
-    State state = start(2);  // an unlimited step would end far below 0.7
+    TimeState state = start(2);  // an unlimited step would end far below 0.7
     const StepReport report = integrator(options)->advance(motion, state, 4);
     EXPECT_GT(report.rejected, 0) << scheme;
-    EXPECT_GT(state.x(0, 0), 0.7) << scheme;
+    EXPECT_GT(net(state.x)(0, 0), 0.7) << scheme;
     EXPECT_TRUE(state.history.front().allFinite()) << scheme;
     EXPECT_EQ(motion.failure(), "no basis");
   }
@@ -62,10 +63,10 @@ TEST(GuardedDynamics, AFailedEvaluationShortensTheStepInEveryScheme) {
 TEST(GuardedDynamics, AFirstTrialWithoutAVelocityStillGivesAnInitialStep) {
   Decay decay;
   GuardedDynamics motion(decay);
-  State state = start(0);
+  TimeState state = start(0);
   const double step = first_step(motion, state, TimeOptions());
   decay.fails = [&](const Net& x) {
-    if (x(0, 0) < state.x(0, 0)) throw std::logic_error("no basis");
+    if (x(0, 0) < net(state.x)(0, 0)) throw std::logic_error("no basis");
   };
   EXPECT_GT(first_step(motion, state, TimeOptions()), 0.1 * step);
 }
@@ -77,7 +78,7 @@ TEST(GuardedDynamics, AFailureOnOneRankIsAFailureOnAllRanks) {
     if (ranks.rank() == ranks.size() - 1) throw RunFailure("not converged");
   };
   GuardedDynamics motion(decay);
-  EXPECT_TRUE(motion.velocity(Net::Ones(2, 3)).array().isNaN().all());
+  EXPECT_TRUE(net(motion.velocity(state_of(Net::Ones(2, 3)))).array().isNaN().all());
   EXPECT_EQ(motion.failure(), "not converged");
 }
 
@@ -88,7 +89,7 @@ TEST(GuardedDynamics, LackOfMemoryDoesNotShortenTheStep) {
     if (ranks.rank() == ranks.size() - 1) throw std::bad_alloc();
   };
   GuardedDynamics motion(decay);
-  EXPECT_THROW(motion.velocity(Net::Ones(2, 3)), RunFailure);
+  EXPECT_THROW(motion.velocity(state_of(Net::Ones(2, 3))), RunFailure);
   EXPECT_EQ(motion.failure(), "there is not enough memory");
 }
 
@@ -99,9 +100,9 @@ TEST(GuardedDynamics, AllRanksStopIfOneReceivesASignal) {
   decay.fails = [&](const Net&) { ++evaluations; };
   GuardedDynamics motion(decay);
   set_stop_request([&] { return ranks.rank() == ranks.size() - 1; });
-  EXPECT_THROW(motion.velocity(Net::Ones(2, 3)), Stopped);
+  EXPECT_THROW(motion.velocity(state_of(Net::Ones(2, 3))), Stopped);
   EXPECT_EQ(evaluations, 0);
-  EXPECT_TRUE(motion.velocity(Net::Ones(2, 3)).allFinite());  // the request has been answered
+  EXPECT_TRUE(motion.velocity(state_of(Net::Ones(2, 3))).allFinite());  // the request has been answered
   set_stop_request({});
 }
 
@@ -114,12 +115,12 @@ TEST(GuardedDynamics, TheFirstRankDecidesAboutSteps) {
     Decay decay;
     decay.size = 1 + ranks.rank();
     GuardedDynamics motion(decay);
-    State state = start(0.5);
+    TimeState state = start(0.5);
     const auto integrate = integrator(options);
     for (int k = 0; k < 4; ++k) integrate->advance(motion, state, 4);
     EXPECT_EQ(state.time, coupling::of_first(state.time)) << scheme;
     EXPECT_EQ(state.step, coupling::of_first(state.step)) << scheme;
-    EXPECT_EQ(motion.distance(Net::Zero(1, 3), Net::Ones(1, 3)), std::sqrt(3.)) << scheme;
+    EXPECT_EQ(motion.distance(state_of(Net::Zero(1, 3)), state_of(Net::Ones(1, 3))), std::sqrt(3.)) << scheme;
   }
 }
 

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
-#include "explicit_motion.hpp"
 #include "motion/periodic.hpp"
+#include "tests/states.hpp"
 
 namespace tanktread::motion {
 namespace {
@@ -17,7 +17,7 @@ constexpr double inward = 0.15, damping = 0.1, frequency = 1.3;
 
 /// Model of one control point that approaches the unit circle in x1 x3 and goes around it: with r and y = x2, r' = inward r (1 - r^2), y' = -damping
 /// y. Over a period T the multipliers are exp(-2 inward T) and exp(-damping T).
-class Cycle : public ExplicitMotion {
+class Cycle : public PointMotion {
  public:
   Net velocity(const Net& x) override {
     const double a = inward * (1 - x(0, 0) * x(0, 0) - x(0, 2) * x(0, 2));
@@ -43,16 +43,15 @@ TEST_P(Periodic, ACycleIsFoundWithItsPeriodAndItsMultipliers) {
   const TimeOptions time = explicit_steps();
   PeriodicOptions options;
   options.period = 1.1 * period, options.turn = turn, options.tolerance = 1e-8, options.difference = 1e-3;
-  Net x(1, 3);
-  x << 0.5, 0.4, 0.1;
+  State x = state_of(Net(Eigen::RowVector3d(0.5, 0.4, 0.1)));
   x = after_periods(motion, time, nullptr, options, x);
   ReturnMap map(motion, time, nullptr, options, x);
-  const PeriodicReport report = find_periodic(map, nullptr, [](const Net&, const Net& p) { return p; }, x);
+  const PeriodicReport report = find_periodic(map, nullptr, [](const State&, const State& p) { return p; }, x);
   ASSERT_TRUE(report.converged);
-  EXPECT_NEAR(std::hypot(x(0, 0), x(0, 2)), 1, 1e-7);
-  EXPECT_NEAR(x(0, 1), 0, 1e-7);
+  EXPECT_NEAR(std::hypot(x.numbers()[0], x.numbers()[2]), 1, 1e-7);
+  EXPECT_NEAR(x.numbers()[1], 0, 1e-7);
   EXPECT_NEAR(map.period(), period, 1e-6);
-  const auto derivative = [&](const Eigen::VectorXd& d) { return Eigen::VectorXd(map.derivative(x, d.transpose()).transpose()); };
+  const auto derivative = [&](const Eigen::VectorXd& d) { return Eigen::VectorXd(map.derivative(x, state_of(d.transpose())).numbers()); };
   const std::vector<coupling::Eigenpair> found = multipliers(derivative, 3, 2);
   ASSERT_EQ(found.size(), 2U);
   const double slow = std::exp(-damping * period), fast = std::exp(-2 * inward * period);
@@ -64,7 +63,7 @@ TEST_P(Periodic, ACycleIsFoundWithItsPeriodAndItsMultipliers) {
 INSTANTIATE_TEST_SUITE_P(Turns, Periodic, testing::Values(0., 180.));
 
 TEST(Periodic, AMotionThatStartsAtRestNeedsNoFinalTime) {
-  class Driven : public ExplicitMotion {
+  class Driven : public PointMotion {
    public:
     void set_time(double time, double) override { time_ = time; }
     Net velocity(const Net&) override { return Net::Constant(1, 3, std::sin(time_)); }
@@ -77,8 +76,8 @@ TEST(Periodic, AMotionThatStartsAtRestNeedsNoFinalTime) {
   time.final_time = std::numeric_limits<double>::quiet_NaN();  // decks of searches have no final time
   PeriodicOptions options;
   options.driven = true, options.period = 2 * std::numbers::pi;
-  const Net x = Net::Constant(1, 3, 0.5);
-  EXPECT_LT((after_periods(motion, time, nullptr, options, x) - x).norm(), 1e-7);
+  const State x = state_of(Net::Constant(1, 3, 0.5));
+  EXPECT_LT(State(after_periods(motion, time, nullptr, options, x) - x).norm(), 1e-7);
 }
 
 TEST(Periodic, AMotionThatIsNotPeriodicIsReported) {
@@ -86,8 +85,7 @@ TEST(Periodic, AMotionThatIsNotPeriodicIsReported) {
   const TimeOptions time = explicit_steps();
   PeriodicOptions options;
   options.period = 0.4 / frequency;  // the search covers up to a tenth of a revolution
-  Net x(1, 3);
-  x << 1, 0, 0;
+  const State x = state_of(Net(Eigen::RowVector3d(1, 0, 0)));
   ReturnMap map(motion, time, nullptr, options, x);
   EXPECT_THROW(map(x), RunFailure);
 }

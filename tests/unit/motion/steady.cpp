@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
-#include "explicit_motion.hpp"
 #include "motion/steady.hpp"
+#include "tests/states.hpp"
 
 namespace tanktread::motion {
 namespace {
@@ -16,8 +16,9 @@ constexpr double slow = 0.02;  ///< a mode of this rate decays by 1 % in an impl
 
 /// Model of points that move to the origin: the first at the rate `slow`, the others at rates between 1 and 2, faster at larger distance. The frozen
 /// Jacobian is 0.
-class Slow : public ExplicitMotion {
+class Slow : public PointMotion {
  public:
+  using PointMotion::velocity, PointMotion::norm;
   Net velocity(const Net& x) override {
     Net v(x.rows(), 3);
     for (int i = 0; i < x.rows(); ++i) {
@@ -29,35 +30,33 @@ class Slow : public ExplicitMotion {
   double norm(const Net& d) const override { return d.norm() / std::sqrt(static_cast<double>(d.rows())); }
 };
 
-Net start() {
+State start() {
   Net x(40, 3);
   for (int i = 0; i < x.size(); ++i) x.data()[i] = 0.01 * std::cos(i);
-  return x;
+  return state_of(x);
 }
 
 // The map is affine, and all directions have been sampled: the estimate is exact up to round-off divided by 1 - rho = 0.01.
 TEST(FixedPointError, IsExactForAnAffineMap) {
-  Net x(2, 3);
-  x << 1, 2, 3, -1, 0.5, 2;
-  Net rates(2, 3);
-  rates << 0.01, 0.01, 0.5, 0.5, 0.01, 0.9;
+  State x = state_of((Net(2, 3) << 1, 2, 3, -1, 0.5, 2).finished());
+  const Net rates = (Net(2, 3) << 0.01, 0.01, 0.5, 0.5, 0.01, 0.9).finished();
   FixedPointError error(10);
-  Net found;
+  State found;
   for (int k = 0; k < 4; ++k) {  // three different rates need three secants
-    const Net f = -rates.cwiseProduct(x);
+    const State f = state_of(-rates.cwiseProduct(net(x)));
     found = error(x, f);
     if (k < 3) x += f;
   }
-  EXPECT_NEAR((found - x).norm() / x.norm(), 0, 1e-10);
+  EXPECT_NEAR(State(found - x).norm() / x.norm(), 0, 1e-10);
 }
 
 // The correction is a hundredth of the error. The estimate is tested to a factor of 2, because the map is not affine.
 TEST(FixedPointError, DetectsTheErrorOfASlowMode) {
   Slow motion;
   FixedPointError error(10);
-  Net x = start();
+  State x = start();
   for (int k = 0; k < 60; ++k) {
-    const Net f = 0.5 * motion.velocity(x), found = error(x, f);
+    const State f = 0.5 * motion.velocity(x), found = error(x, f);
     if (k >= 10) {
       EXPECT_GT(motion.norm(found), 0.5 * motion.norm(x)) << k;
       EXPECT_LT(motion.norm(found), 2 * motion.norm(x)) << k;
@@ -76,7 +75,7 @@ TEST_P(Steady, EndsWhenTheErrorIsBelowTheTolerance) {
     SteadyEquations equations(motion, {}, 0.5, start());
     SteadyOptions options;
     options.method = GetParam(), options.tolerance = tolerance;
-    Net x = start();
+    State x = start();
     const SteadyReport report = find_steady(equations, options, {}, x);
     ASSERT_TRUE(report.converged) << tolerance;
     EXPECT_LE(report.rest, tolerance);
@@ -87,8 +86,8 @@ TEST_P(Steady, EndsWhenTheErrorIsBelowTheTolerance) {
 // Only the slow mode is present at the start: its correction is a tenth of the tolerance, its error ten times the tolerance.
 TEST_P(Steady, DoesNotTrustTheFirstCorrection) {
   Slow motion;
-  Net x = Net::Zero(40, 3);
-  x(0, 0) = 1e-4 * std::sqrt(40.0);
+  State x = state_of(Net::Zero(40, 3));
+  x.numbers()[0] = 1e-4 * std::sqrt(40.0);
   SteadyEquations equations(motion, {}, 0.5, x);
   SteadyOptions options;
   options.method = GetParam(), options.tolerance = 1e-5;
@@ -97,8 +96,9 @@ TEST_P(Steady, DoesNotTrustTheFirstCorrection) {
 }
 
 /// A model of a crumpled surface: it has no steady shape, and all velocities are large, but so is the Jacobian, so that corrections are small.
-class Crumpled : public ExplicitMotion {
+class Crumpled : public PointMotion {
  public:
+  using PointMotion::velocity, PointMotion::norm;
   Net velocity(const Net& x) override { return 1e6 * (1 + (-1e9 * x).array().exp()).matrix(); }
   Net solve(double, const Net& r, double, const coupling::Secants&) override { return 1e-15 * r; }
   double norm(const Net& d) const override { return d.norm() / std::sqrt(static_cast<double>(d.rows())); }
@@ -106,7 +106,7 @@ class Crumpled : public ExplicitMotion {
 
 TEST_P(Steady, DoesNotAcceptAMovingShapeAsSteady) {
   Crumpled motion;
-  Net x = Net::Zero(40, 3);
+  State x = state_of(Net::Zero(40, 3));
   SteadyEquations equations(motion, {}, 0.5, x);
   SteadyOptions options;
   options.method = GetParam(), options.tolerance = 1e-5;
@@ -116,8 +116,9 @@ TEST_P(Steady, DoesNotAcceptAMovingShapeAsSteady) {
 }
 
 /// A model whose velocity has the same size everywhere and other directions in each evaluation, so that no iterate is better than another.
-class Restless : public ExplicitMotion {
+class Restless : public PointMotion {
  public:
+  using PointMotion::velocity, PointMotion::norm;
   Net velocity(const Net& x) override {
     ++velocities;
     Net v = Net::Zero(x.rows(), 3);
@@ -132,8 +133,8 @@ TEST_P(Steady, EndsEarlyAtAKnownObstacle) {
   int velocities = 0;  // without obstacle
   for (const char* obstacle : {"", "the membrane is slack"}) {
     Restless motion;
-    Net x = Net::Zero(40, 3);
-    SteadyEquations equations(motion, {}, 0.5, x, [&](const Net&) { return obstacle; });
+    State x = state_of(Net::Zero(40, 3));
+    SteadyEquations equations(motion, {}, 0.5, x, [&](const State&) { return obstacle; });
     SteadyOptions options;
     options.method = GetParam();
     if (options.method == "newton-krylov") options.iterations = 3;  // each takes many products
@@ -149,9 +150,10 @@ TEST_P(Steady, EndsEarlyAtAKnownObstacle) {
 /// `assemblies` counts the assemblies of the Jacobian's operators.
 class Unknown : public Slow {
  public:
+  using Slow::velocity;
   Net velocity(const Net& x) override { return coupling::not_a_number(x); }
-  std::vector<Net> relabellings(const Net&) override { throw RunFailure("there is no velocity"); }
-  void freeze(const Net&) override { ++assemblies; }
+  std::vector<State> relabellings(const State&) override { throw RunFailure("there is no velocity"); }
+  void freeze(const State&) override { ++assemblies; }
   int assemblies = 0;
 };
 
@@ -160,7 +162,7 @@ TEST_P(Steady, RejectsAShapeWhoseVelocityCannotBeEvaluated) {
   SteadyEquations equations(motion, {}, 0.5, start());
   SteadyOptions options;
   options.method = GetParam();
-  Net x = start();
+  State x = start();
   EXPECT_FALSE(find_steady(equations, options, {}, x).converged);
   EXPECT_EQ(motion.assemblies, 1);  // the shape did not change after the first assembly
 }

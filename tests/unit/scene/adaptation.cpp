@@ -19,12 +19,10 @@ TEST(Adaptation, AllShapesOfAParticleAreOnItsNewMesh) {
   scene.check();
   std::vector<Member> refined = make_members(scene), resumed = make_members(scene);
   const Body& body = *refined.front().body;
-  motion::State state;
-  state.x = body.initial;
-  Adapted change = adapted(scene.first(), body, spline::whole(body.space), state, Net::Zero(body.space.n_points, 3), false, {});
+  Adapted change = adapted(scene.first(), body, body.initial, {}, Net::Zero(body.space.n_points, 3), false, {});
   ASSERT_TRUE(change.body);
   ASSERT_GT(change.body->space.n_points, body.space.n_points);
-  EXPECT_EQ(change.body->initial, change.state.x);
+  EXPECT_EQ(change.body->initial, change.move(body.initial));
   refined.front().body = std::move(change.body);
   output::Checkpoint checkpoint;
   store(refined, checkpoint);

@@ -7,6 +7,7 @@
 #include "base/small_matrices.hpp"
 #include "spline/extraction.hpp"
 #include "surface/shapes.hpp"
+#include "tests/states.hpp"
 
 namespace tanktread {
 namespace {
@@ -65,13 +66,13 @@ TEST(Drift, MovingTheCentroidBackUpdatesTheSlopes) {
   shape.shape = "ellipsoid";
   shape.semi_axes = Vec3(1.5, 1, 0.8);
   const surface::Geometry geometry(space);
-  motion::State state;
-  state.x = surface::resting_shape(space, mesh, shape).rowwise() + Vec3(0.3, -0.2, 0.1).transpose();
+  motion::TimeState state;
+  state.x = state_of(surface::resting_shape(space, mesh, shape).rowwise() + Vec3(0.3, -0.2, 0.1).transpose());
   const Mat3 l = flow.gradient(Vec3::Zero());
-  state.history = {state.x * l.transpose()};
+  state.history = {state_of(net(state.x) * l.transpose())};
   hold_centre(flow, geometry, Vec3::Zero(), state);
-  EXPECT_LT(geometry.measures(state.x).centroid.norm(), 1e-14);
-  EXPECT_LT((state.history[0] - state.x * l.transpose()).norm(), 1e-13);
+  EXPECT_LT(geometry.measures(net(state.x)).centroid.norm(), 1e-14);
+  EXPECT_LT((net(state.history[0]) - net(state.x) * l.transpose()).norm(), 1e-13);
 }
 
 // Points that only move with the flow were at exp(-L s) x a time s earlier, for any current position x.
@@ -82,16 +83,16 @@ TEST(Drift, MovingTheCentroidBackUpdatesEarlierPositions) {
   const surface::Geometry geometry(space);
   const Vec3 center(0.3, -0.2, 0.1);
   const Mat3 l = flow.gradient(center);
-  motion::State state;
+  motion::TimeState state;
   state.time = 2;
-  state.x = surface::resting_shape(space, mesh, {}).rowwise() + center.transpose();
-  const auto at = [&](double time) { return Net(state.x * exponential(l * (time - state.time)).transpose()); };
-  for (const double time : {1.9, 1.7, 1.6}) state.places.push_back({time, at(time)});
-  const Net direction = state.direction = Net::Random(state.x.rows(), 3);
+  state.x = state_of(surface::resting_shape(space, mesh, {}).rowwise() + center.transpose());
+  const auto at = [&](double time) { return Net(net(state.x) * exponential(l * (time - state.time)).transpose()); };
+  for (const double time : {1.9, 1.7, 1.6}) state.places.push_back({time, state_of(at(time))});
+  const coupling::State direction = state.direction = state_of(Net::Random(space.n_points, 3));
   hold_centre(flow, geometry, Vec3::Zero(), state);
-  EXPECT_LT(geometry.measures(state.x).centroid.norm(), 1e-14);
-  for (const motion::PastPosition& place : state.places) EXPECT_LT((place.x - at(place.time)).norm(), 1e-13) << place.time;
-  EXPECT_EQ(state.direction, direction);
+  EXPECT_LT(geometry.measures(net(state.x)).centroid.norm(), 1e-14);
+  for (const motion::PastPosition& place : state.places) EXPECT_LT((net(place.x) - at(place.time)).norm(), 1e-13) << place.time;
+  EXPECT_TRUE(state.direction == direction);
 }
 
 }  // namespace

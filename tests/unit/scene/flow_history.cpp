@@ -29,7 +29,7 @@ std::vector<std::string> with(std::vector<std::string> settings, const std::vect
 Net shape_at(double time, const std::vector<std::string>& settings) {
   Evolution run(settings);
   run.to(time);
-  return run.state.x;
+  return run.x();
 }
 
 TEST(FlowHistory, SchemesKeepTheirOrdersUnderASine) {
@@ -99,7 +99,7 @@ TEST(FlowHistory, ASpheroidsAngleFollowsFromTheStrainSoFar) {
     scene.check();
     const std::unique_ptr<ParticleSystem> body = make_particle_system(scene, ranks, phases);
     const auto scheme = motion::integrator(scene.time);
-    motion::State state;
+    motion::TimeState state;
     state.x = body->start();
     motion::begin(body->dynamics(), state);
     state.step = motion::first_step(body->dynamics(), state, scene.time);

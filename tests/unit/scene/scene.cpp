@@ -305,10 +305,10 @@ TEST(Evaluations, OfAParticleThatCrossesAnotherPartNameBoth) {
     coupling::Ranks ranks;
     Phases phases;
     const auto particles = make_particle_system(all, ranks, phases);
-    const Net start = particles->start();
+    const coupling::State start = particles->start();
     particles->dynamics().set_time(0, 0);
     EXPECT_TRUE(particles->dynamics().velocity(start).allFinite());
-    EXPECT_FALSE(particles->dynamics().velocity(start.rowwise() + shift.transpose()).allFinite());
+    EXPECT_FALSE(particles->dynamics().velocity(start + moved(start, {shift})).allFinite());
     const std::string why = particles->dynamics().why_undefined();
     particles->dynamics().velocity(start);
     return why.substr(0, why.find(" near ["));

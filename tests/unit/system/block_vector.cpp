@@ -1,5 +1,6 @@
 // Tests of vectors of blocks: addresses, units, algebra and symmetry.
 
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <stdexcept>
@@ -8,6 +9,7 @@
 
 #include "system/blocks/block_vector.hpp"
 #include "system/blocks/tpetra.hpp"
+#include "system/dynamics.hpp"
 
 namespace tanktread::coupling {
 namespace block_vector_test {
@@ -165,6 +167,37 @@ TEST(Layout, ProjectsOnSymmetricVectors) {
   for (const std::size_t k : {0u, 1u, 2u, 3u})  // every vector is the sum of a symmetric and an antisymmetric vector
     EXPECT_LT((symmetric(BlockId{k}) + antisymmetric(BlockId{k}) - x(BlockId{k})).norm(), 1e-15);
   EXPECT_NEAR(symmetric.numbers().head(23).dot(antisymmetric.numbers().head(23)), 0, 1e-15);
+}
+
+TEST(Layout, SymmetricVectorsFollowFromTheirIndependentNumbers) {
+  const Mirrored mirrored;
+  const BlockVector values = random(mirrored.layout, 1);
+  BlockVector x(mirrored.layout);
+  std::vector<std::size_t> counts;
+  for (std::size_t k = 0; k < mirrored.layout->blocks().size(); ++k) {
+    const auto numbers = mirrored.layout->independent({k});
+    counts.push_back(numbers.size());
+    for (const auto& [number, orbit] : numbers) x.numbers()[number] = values.numbers()[number];
+  }
+  EXPECT_EQ(counts, (std::vector<std::size_t>{5, 4, 2, 1, 2}));  // the third point has two components of a vector and one of an axial vector
+  mirrored.layout->complete(x);
+  BlockVector again = x;
+  mirrored.layout->project(again);
+  EXPECT_LT(BlockVector(again - x).norm(), 1e-15);
+  double square = 0;
+  for (std::size_t k = 0; k < counts.size(); ++k)
+    for (const auto& [number, orbit] : mirrored.layout->independent({k})) square += orbit * std::pow(x.numbers()[number], 2);
+  EXPECT_NEAR(square, dot(x, x), 1e-14);
+}
+
+TEST(BlockVector, RigidMotionsMoveVectorsOnly) {
+  BlockVector x = random(two_particles(), 1);
+  const Mat3 turn = Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const BlockVector rate = moved(x, {Vec3(1, 2, 3), Vec3(0.1, 0, 0.2)}), there = turned(x, turn);
+  EXPECT_EQ(Net(rate(BlockId{1})), rigid_velocity(x(BlockId{1}), {Vec3(1, 2, 3), Vec3(0.1, 0, 0.2)}, Vec3::Zero()));
+  EXPECT_EQ(rate(BlockId{2}).norm(), 0);
+  EXPECT_LT((there(BlockId{0}) * turn - x(BlockId{0})).norm(), 1e-14);
+  EXPECT_EQ(there(BlockId{3}), x(BlockId{3}));
 }
 
 }  // namespace block_vector_test

@@ -7,6 +7,7 @@
 
 #include "deck/section.hpp"
 #include "system/targets/collocation.hpp"
+#include "tests/states.hpp"
 #include "tests/unit/system/sphere_in_flow.hpp"
 
 namespace tanktread::coupling {
@@ -230,7 +231,7 @@ TEST(InterfaceMotion, TheJacobianIncludesTheRigidMotionOfTheMesh) {
     drop.parameters.particles.front().interface_motion = motion;
     Capsule capsule = drop.capsule();
     capsule.freeze(drop.sphere);
-    const Net change = capsule.derivative(drop.sphere, Net::Zero(moved.rows(), 3), moved);
+    const Net change = derivative_along(capsule, drop.sphere, Net::Zero(moved.rows(), 3), moved);
     // The normals do not turn, but round-off in their difference is divided by a step of about 1e-6.
     EXPECT_LT((change - moved * drop.flow.gradient->transpose()).norm(), 1e-7 * change.norm()) << deck::word(mesh_motions, motion);
   }
@@ -253,11 +254,11 @@ TEST(InterfaceMotion, TheJacobianIncludesTheRotationOfNormalsAndTheMotionOfTheSh
     capsule.freeze(x);
     constexpr double aside = 1e-4;
     const Net change = (capsule.velocity(x + aside * delta) - capsule.velocity(x - aside * delta)) / (2 * aside);
-    const Net v = capsule.velocity(x), known = capsule.derivative(x, v, delta);
+    const Net v = capsule.velocity(x), known = derivative_along(capsule, x, v, delta);
     EXPECT_LT((known - change).norm(), 1e-5 * change.norm()) << deck::word(mesh_motions, motion);  // error of the finite differences
     Capsule resumed = drop.capsule();  // has not evaluated the velocity yet
     resumed.freeze(x);
-    EXPECT_LT((resumed.derivative(x, v, delta) - known).norm(), 1e-12 * known.norm()) << deck::word(mesh_motions, motion);
+    EXPECT_LT((derivative_along(resumed, x, v, delta) - known).norm(), 1e-12 * known.norm()) << deck::word(mesh_motions, motion);
   }
 }
 

@@ -8,31 +8,33 @@
 
 #include "base/errors.hpp"
 #include "system/solvers/nonlinear.hpp"
+#include "tests/states.hpp"
 
 namespace tanktread::coupling {
 namespace {
 
-double norm(const Net& x) { return x.norm(); }
+double norm(const State& x) { return x.norm(); }
 
 /// Map of ten points that stretches by up to 1.5, so that the plain iteration diverges.
-Net stretched(const Net& x) {
-  Net y = x;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double rate = -1.5 * static_cast<double>(i + 1) / static_cast<double>(x.size());
-    y.data()[i] = 1 + rate * x.data()[i] + 0.1 * std::sin(x.data()[i]);
+State stretched(const State& x) {
+  State y = x;
+  const Eigen::Index n = x.numbers().size();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double rate = -1.5 * static_cast<double>(i + 1) / static_cast<double>(n);
+    y.numbers()[i] = 1 + rate * x.numbers()[i] + 0.1 * std::sin(x.numbers()[i]);
   }
   return y;
 }
 
 TEST(FixedPoint, IsFoundIfPlainIterationDiverges) {
-  const Net start = Net::Zero(10, 3);
-  Net plain = start;
+  const State start = state_of(Net::Zero(10, 3));
+  State plain = start;
   for (int k = 0; k < 40; ++k) plain = stretched(plain);
   EXPECT_GT(norm(stretched(plain) - plain), 1);
   for (const char* method : {"anderson", "newton-krylov"}) {
-    Net x = start;
+    State x = start;
     int evaluations = 0;
-    const auto g = [&](const Net& y) {
+    const auto g = [&](const State& y) {
       ++evaluations;
       return stretched(y);
     };
@@ -45,31 +47,31 @@ TEST(FixedPoint, IsFoundIfPlainIterationDiverges) {
 
 TEST(FixedPoint, EndsUnconvergedAtTheLastIterationOrAtAValueThatIsNotFinite) {
   for (const char* method : {"anderson", "newton-krylov"}) {
-    Net x = Net::Zero(10, 3);
+    State x = state_of(Net::Zero(10, 3));
     EXPECT_FALSE(FixedPoint(method, nullptr).solve(stretched, norm, 1e-14, 1, x).converged) << method;
-    const auto broken = [](const Net& y) -> Net { return Net::Constant(y.rows(), 3, std::numeric_limits<double>::quiet_NaN()); };
+    const auto broken = [](const State& y) { return not_a_number(y); };
     EXPECT_FALSE(FixedPoint(method, nullptr).solve(broken, norm, 1e-8, 10, x).converged) << method;
   }
 }
 
 TEST(FixedPoint, DoesNotDependOnTheUnitOfLength) {
   constexpr double unit = 0x1p-60;
-  const auto g = [&](const Net& y) -> Net { return unit * stretched(y / unit); };
-  const auto in_unit = [&](const Net& y) { return norm(y) / unit; };
+  const auto g = [&](const State& y) -> State { return unit * stretched(y / unit); };
+  const auto in_unit = [&](const State& y) { return norm(y) / unit; };
   for (const char* method : {"anderson", "newton-krylov"}) {
-    Net x = Net::Zero(10, 3), small = x;
+    State x = state_of(Net::Zero(10, 3)), small = x;
     const NonlinearReport report = FixedPoint(method, nullptr).solve(stretched, norm, 1e-8, 60, x);
     const NonlinearReport same = FixedPoint(method, nullptr).solve(g, in_unit, 1e-8, 60, small);
     EXPECT_TRUE(same.converged) << method;
     EXPECT_EQ(same.iterations, report.iterations) << method;
-    EXPECT_TRUE(small == unit * x) << method;
+    EXPECT_TRUE(small == State(unit * x)) << method;
   }
 }
 
 TEST(FixedPoint, ParametersThatNoxRejectsAreReported) {
   const auto list = std::make_shared<Teuchos::ParameterList>();
   list->sublist("Anderson Parameters").set("Storage Deep", 3);
-  Net x = Net::Zero(10, 3);
+  State x = state_of(Net::Zero(10, 3));
   EXPECT_THROW(FixedPoint("anderson", list).solve(stretched, norm, 1e-8, 10, x), UserError);
 }
 

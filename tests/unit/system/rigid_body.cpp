@@ -34,11 +34,9 @@ struct Fixture : SingleEllipsoid {
     body = std::make_unique<FreeBody>(*tractions, rest, shape.center, shape.equivalent_radius(), stokes::AmbientFlow(flow));
   }
 
-  Net turned(double angle, const Vec3& axis) const {
-    Net place = placed(shape.center);
-    const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, axis.normalized()));
-    place.row(1) = q.vec().transpose();
-    place(2, 0) = q.w();
+  State turned(double angle, const Vec3& axis) const {
+    State place = placed(shape.center);
+    place(BlockId{1}) = Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())).coeffs().transpose();
     return place;
   }
 };
@@ -57,7 +55,7 @@ TEST(FreeBody, SpheroidRotatesAsByJeffery) {
   const double ratio = 1.6, b = (ratio * ratio - 1) / (ratio * ratio + 1);
   const Fixture f(Vec3(0.7, 0.7, 0.7 * ratio));
   const Mat3 l = some_gradient(), e = 0.5 * (l + l.transpose()), w = 0.5 * (l - l.transpose());
-  for (const Net& place : {placed(f.shape.center), f.turned(0.7, Vec3(1, 2, 3)), f.turned(2.5, Vec3(0, 1, -1))}) {
+  for (const State& place : {placed(f.shape.center), f.turned(0.7, Vec3(1, 2, 3)), f.turned(2.5, Vec3(0, 1, -1))}) {
     const Vec3 p = rotation_of(place) * Vec3(0, 0, 1);
     const Vec3 exact = w * p + b * (e * p - p * p.dot(e * p));
     EXPECT_LT((f.body->motion(place).angular_velocity.cross(p) - exact).norm(), 1e-5);  // error of the fitted surface with six elements per side
@@ -92,7 +90,7 @@ TEST(FreeBody, InAQuadraticFlowModesAgreeWithADirectSolve) {
   const stokes::AmbientFlow flow(options);
   FreeBody modes(*f.tractions, f.rest, f.shape.center, 0.9, flow);
   FreeBodyInMedium solve(*f.tractions, f.rest, f.shape.center, 0.9, flow);
-  const Net place = f.turned(1.1, Vec3(1, -1, 0.5));
+  const State place = f.turned(1.1, Vec3(1, -1, 0.5));
   for (const double time : {0.0, 1.0}) {
     modes.set_time(time, 0);
     solve.set_time(time, 0);
@@ -120,10 +118,10 @@ TEST(FreeBody, IsFreeOfForceAndTorque) {
 
 TEST(FreeBody, MovesAsItsSurfaceDoes) {
   Fixture f(Vec3(0.7, 0.9, 1.2));
-  const Net place = f.turned(1.1, Vec3(1, -1, 0.5));
+  const State place = f.turned(1.1, Vec3(1, -1, 0.5));
   const RigidMotion motion = f.body->motion(place);
   const double h = 1e-5;
-  const Net slope = f.body->velocity(place);
+  const State slope = f.body->velocity(place);
   const Net rate = (f.body->surface(place + h * slope) - f.body->surface(place - h * slope)) / (2 * h);
   const Net exact = rigid_velocity(f.body->surface(place), motion, centre_of(place));
   EXPECT_LT((rate - exact).norm() / exact.norm(), 1e-8);  // truncation error h^2, and round-off divided by h
@@ -131,12 +129,12 @@ TEST(FreeBody, MovesAsItsSurfaceDoes) {
 
 TEST(FreeBody, KeepsItsQuaternionNormalised) {
   Fixture f(Vec3(0.7, 0.9, 1.2));
-  Net place = f.turned(1.1, Vec3(1, -1, 0.5));
+  State place = f.turned(1.1, Vec3(1, -1, 0.5));
   const Mat3 before = rotation_of(place);
-  place.bottomRows<2>() *= 1.3;
+  place(BlockId{1}) *= 1.3;
   EXPECT_LT((rotation_of(place) - before).norm(), 1e-15);
   f.body->restore_constraints(place);
-  EXPECT_NEAR(place.bottomRows<2>().norm(), 1, 1e-15);
+  EXPECT_NEAR(place(BlockId{1}).norm(), 1, 1e-15);
 }
 
 }  // namespace rigid_body_test

@@ -89,9 +89,8 @@ TEST(RigidParticles, OneMovesAsByTheFirstKindEquation) {
   const CapsuleParameters alone = single_body(one.space, 1, viscosity, one.parameters.quadrature, one.parameters.solvers);
   RigidTractions tractions(one.space, one.rest, one.rest, alone, {}, {}, one.ranks);
   FreeBody body(tractions, one.rest, centre, 1, one.flow, driven);
-  Net place = placed(centre);
-  const Eigen::Quaterniond q(turn);
-  place.row(1) = q.vec().transpose(), place(2, 0) = q.w();
+  State place = placed(centre);
+  place(BlockId{1}) = Eigen::Quaterniond(turn).coeffs().transpose();
   const RigidMotion expected = body.motion(place);
   const RigidParticles found = system.evaluate(x)->rigid();
   EXPECT_LT((found.motion(0).velocity - expected.velocity).norm(), 2e-5);  // n = 6: the collocation error is 1e-5 of the velocity

@@ -16,6 +16,7 @@
 #include "system/solvers/krylov.hpp"
 #include "system/solvers/nonlinear.hpp"
 #include "tests/layers.hpp"
+#include "tests/states.hpp"
 
 namespace tanktread::coupling {
 namespace {
@@ -44,13 +45,13 @@ class StopTogether : public testing::Test {
   }
 
   void find_fixed_point(const char* method) {
-    Net x = Net::Zero(n / 3, 3);
-    const auto g = [product = map()](const Net& y) {
-      Net image = y;
-      product(y.data(), image.data());
-      return Net(0.5 * image + Net::Ones(n / 3, 3));
+    State x = state_of(Net::Zero(n / 3, 3));
+    const auto g = [product = map(), one = state_of(Net::Ones(n / 3, 3))](const State& y) -> State {
+      State image = y;
+      product(y.numbers().data(), image.numbers().data());
+      return 0.5 * image + one;
     };
-    EXPECT_TRUE(FixedPoint(method, nullptr).solve(g, [](const Net& y) { return y.norm(); }, 1e-10, 50, x).converged);
+    EXPECT_TRUE(FixedPoint(method, nullptr).solve(g, [](const State& y) { return y.norm(); }, 1e-10, 50, x).converged);
   }
 
   /// Checks that no product follows the request, that the request is answered once, and that the computation runs to its end afterwards.

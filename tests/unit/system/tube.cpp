@@ -175,19 +175,19 @@ TEST(FreeBodyInTube, IsInvariantUnderRotationAndTranslation) {
   stokes::FlowOptions options;
   options.type = "duct", options.mean_velocity = 1.3;
   const FreeBodyInTube body(tractions, s.x, s.shape.center, 0.5, stokes::AmbientFlow(options, s.flow), viscosity);
-  const Net here = placed(s.shape.center);
+  const State here = placed(s.shape.center);
   const RigidMotion motion = body.motion(here);
   const double drop = body.pressure_drop(here);
   EXPECT_GT(motion.velocity[0], 1.3);
   EXPECT_NEAR(motion.angular_velocity.dot(s.shape.center), 0, 1e-4);  // rotation by the shear of the profile
-  Net there = here;
-  there.row(0) += Eigen::RowVector3d(-4, 0, 0);
-  there(2, 0) = std::cos(pi / 4), there(1, 0) = std::sin(pi / 4);  // rotation by 90 degrees about x1, which maps the cube mesh onto itself
+  State there = here;
+  there(BlockId{0})(0, 0) -= 4;
+  there(BlockId{1}) << std::sin(pi / 4), 0, 0, std::cos(pi / 4);  // rotation by 90 degrees about x1, which maps the cube mesh onto itself
   const double rules = 1e-5;  // other quadrature rules, with the tolerance 1e-6; another mesh would give 1e-3
   EXPECT_LT((body.motion(there).velocity - motion.velocity).norm(), rules);
   EXPECT_LT((body.motion(there).angular_velocity - motion.angular_velocity).norm(), rules);
   EXPECT_NEAR(body.pressure_drop(there) / drop, 1, rules);
-  there(0, 1) = 0.6;  // trial position of a step that intersects the wall
+  there(BlockId{0})(0, 1) = 0.6;  // trial position of a step that intersects the wall
   EXPECT_FALSE(body.motion(there).velocity.allFinite());
   EXPECT_TRUE(body.motion(here).velocity.allFinite());
 }

@@ -7,8 +7,8 @@
 
 namespace tanktread::coupling {
 
-const BoundedFreeBody::Solution& BoundedFreeBody::solution(const Net& position) const {
-  if (same(position, position_)) return solution_;
+const BoundedFreeBody::Solution& BoundedFreeBody::solution(const State& position) const {
+  if (position == position_) return solution_;
   position_ = {};  // invalidates the cached solution, also if the solve throws
   solution_ = solve(position);
   ++solves_;
@@ -21,7 +21,7 @@ BoundedFreeBody::Solution BoundedFreeBody::outside_fluid(const Net& x) {
   return {{Vec3::Constant(nan), Vec3::Constant(nan)}, not_a_number(x), Mat3::Constant(nan)};
 }
 
-BoundedFreeBody::Solution FreeBodyInMedium::solve(const Net& position) const {
+BoundedFreeBody::Solution FreeBodyInMedium::solve(const State& position) const {
   const Net x = surface(position);
   if (!body_.inside(x)) return outside_fluid(x);
   const Vec3 centre = centre_of(position);
@@ -35,7 +35,7 @@ FreeBodyInTube::FreeBodyInTube(RigidTractions& body, const Net& surface, const V
     : BoundedFreeBody(body, surface, centre, radius, flow, driven), viscosity_(viscosity), modes_(body, surface, centre, false) {}
 
 /// Returns the solution. If the pressure drop of the duct is prescribed, the correction of the disturbed pressure drop changes the flow rate, too.
-BoundedFreeBody::Solution FreeBodyInTube::solve(const Net& position) const {
+BoundedFreeBody::Solution FreeBodyInTube::solve(const State& position) const {
   const Net x = surface(position);
   if (!body_.inside(x)) return outside_fluid(x);
   const Solution found = in_body_axes(position, 0);
@@ -47,7 +47,7 @@ BoundedFreeBody::Solution FreeBodyInTube::solve(const Net& position) const {
 /// z due to the flow of the empty duct at a prescribed flow rate. For a body without forces in this flow, -f takes the place of z, and no further
 /// solve is needed. If the pressure drop is prescribed, -f or z results from the flow that the pressure drop due to the body leaves, and is divided
 /// by it.
-double FreeBodyInTube::pressure_correction(const Net& position, const Solution& found) const {
+double FreeBodyInTube::pressure_correction(const State& position, const Solution& found) const {
   Tube& tube = *body_.tube();
   const Net x = surface(position);
   const Net& f = found.density;
@@ -57,7 +57,7 @@ double FreeBodyInTube::pressure_correction(const Net& position, const Solution& 
   return body_.pressure_correction_of(x, f, rigid_velocity(x, found.motion, centre_of(position)), flow_, found.slower, z / amplitude);
 }
 
-double FreeBodyInTube::pressure_drop(const Net& position) const {
+double FreeBodyInTube::pressure_drop(const State& position) const {
   const Solution& found = solution(position);
   if (!found.motion.velocity.allFinite()) return found.motion.velocity[0];  // outside of the fluid
   body_.tube()->set_shape(surface(position));
@@ -65,7 +65,7 @@ double FreeBodyInTube::pressure_drop(const Net& position) const {
 }
 
 /// Returns the force density on the body at rest at `position` in the tube, which causes the given velocities at its sites.
-Net FreeBodyInTube::density_at_rest(const Net& position, const Net& velocities) const {
+Net FreeBodyInTube::density_at_rest(const State& position, const Net& velocities) const {
   const Mat3 turn = rotation_of(position);
   const Eigen::Index n = 3 * surface_.rows();
   const Apply apply = on_nets(n / 3, [&](const Net& f) { return body_.caused(-f, turn); });
@@ -78,7 +78,7 @@ Net FreeBodyInTube::density_at_rest(const Net& position, const Net& velocities) 
 
 /// Solves for the force density f and the motion U, Omega. The unknowns are scaled to velocities: f R_C/mu, U and Omega R_C. The force balance is
 /// divided by 6 pi mu R_C and the torque balance by 6 pi mu R_C^2, so that their residuals are velocities too. `slower`: see Solution.
-BoundedFreeBody::Solution FreeBodyInTube::in_body_axes(const Net& position, double slower) const {
+BoundedFreeBody::Solution FreeBodyInTube::in_body_axes(const State& position, double slower) const {
   using Six = Eigen::Matrix<double, 6, 1>;
   const Mat3 turn = rotation_of(position);
   const Eigen::Index n = surface_.rows();

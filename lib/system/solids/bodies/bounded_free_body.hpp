@@ -14,9 +14,9 @@ class BoundedFreeBody : public LoneRigidBody {
     if (flow_.set_time(time, start)) position_ = {};
   }
   std::string why_undefined() const override { return "the body would cross the wall"; }
-  RigidMotion motion(const Net& position) const override { return solution(position).motion; }
-  Net force_density(const Net& position) const override { return solution(position).density; }
-  Mat3 stresslet(const Net& position) const override { return solution(position).stresslet; }
+  RigidMotion motion(const State& position) const override { return solution(position).motion; }
+  Net force_density(const State& position) const override { return solution(position).density; }
+  Mat3 stresslet(const State& position) const override { return solution(position).stresslet; }
   long linear_solves() const override { return solves_; }
 
  protected:
@@ -33,15 +33,15 @@ class BoundedFreeBody : public LoneRigidBody {
       : LoneRigidBody(surface, centre, radius, flow, driven), body_(body) {}
 
   static Solution outside_fluid(const Net& x);          ///< returns NaN for the motion and all other quantities
-  const Solution& solution(const Net& position) const;  ///< returns solve(), or the result of its latest call if that was for the same position
+  const Solution& solution(const State& position) const;  ///< returns solve(), or the result of its latest call if that was for the same position
 
   RigidTractions& body_;
   mutable long solves_ = 0;  // number of systems solved
 
  private:
-  virtual Solution solve(const Net& position) const = 0;
+  virtual Solution solve(const State& position) const = 0;
 
-  mutable Net position_;       // state of the body (centre and quaternion, see placed()) at the latest solve; empty if there is no valid solution
+  mutable State position_;       // state of the body (centre and quaternion, see placed()) at the latest solve; empty if there is no valid solution
   mutable Solution solution_;  // solution at `position_`
 };
 
@@ -53,7 +53,7 @@ class FreeBodyInMedium : public BoundedFreeBody {
       : BoundedFreeBody(body, surface, centre, radius, flow, driven) {}
 
  private:
-  Solution solve(const Net& position) const override;
+  Solution solve(const State& position) const override;
 };
 
 /// A free body in a tube. The force density f and the motion (U, Omega) are the unknowns of one system in body-fixed axes,
@@ -69,16 +69,16 @@ class FreeBodyInTube : public BoundedFreeBody {
   FreeBodyInTube(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
                  const RigidDrive& driven = {});
 
-  double pressure_drop(const Net& position) const override;
+  double pressure_drop(const State& position) const override;
   Eigen::VectorXd unknowns() const override { return unknowns_; }
   void start_from(const Eigen::VectorXd& unknowns) override { unknowns_ = unknowns; }
   long solver_iterations() const override { return iterations_; }
 
  private:
-  Solution solve(const Net& position) const override;
-  Solution in_body_axes(const Net& position, double slower) const;
-  double pressure_correction(const Net& position, const Solution& found) const;
-  Net density_at_rest(const Net& position, const Net& velocities) const;
+  Solution solve(const State& position) const override;
+  Solution in_body_axes(const State& position, double slower) const;
+  double pressure_correction(const State& position, const Solution& found) const;
+  Net density_at_rest(const State& position, const Net& velocities) const;
 
   double viscosity_;
   RigidModes modes_;                  // force densities for unit motions and unit flows, without the effect of the tube

@@ -27,7 +27,8 @@ Eigen::Matrix<double, 5, 1> strain_components(const Mat3& e) {
   return c;
 }
 
-Eigen::Quaterniond quaternion(const Net& position) { return {position(2, 0), position(1, 0), position(1, 1), position(1, 2)}; }
+constexpr BlockId place{0}, orientation{1};  // blocks of the states
+
 
 }  // namespace
 
@@ -75,37 +76,40 @@ RigidModes::RigidModes(RigidTractions& body, const Net& surface, const Vec3& cen
   }
 }
 
-Net placed(const Vec3& centre) {
-  Net position = Net::Zero(3, 3);
-  position.row(0) = centre.transpose();
-  position(2, 0) = 1;
+State placed(const Vec3& centre) {
+  State position(std::make_shared<Layout>(
+      std::vector<Block>{{.name = "position", .on = 0, .rows = 1},
+                         {.name = "orientation", .on = 0, .rows = 1, .components = 4, .parity = Parity::scalar}}));
+  position(place) = centre.transpose();
+  position(orientation)(0, 3) = 1;
   return position;
 }
 
-Vec3 centre_of(const Net& position) { return position.row(0).transpose(); }
+Vec3 centre_of(const State& position) { return position(place).transpose(); }
 
-Mat3 rotation_of(const Net& position) { return quaternion(position).normalized().toRotationMatrix(); }
+Eigen::Quaterniond orientation_of(const State& position) { return Eigen::Quaterniond(Eigen::Vector4d(position(orientation).transpose())); }
 
-Net LoneRigidBody::velocity(const Net& position) {
+Mat3 rotation_of(const State& position) { return orientation_of(position).normalized().toRotationMatrix(); }
+
+State LoneRigidBody::velocity(const State& position) {
   ++evaluations_;
   const RigidMotion now = motion(position);
-  const Eigen::Quaterniond q = quaternion(position);
+  const Eigen::Quaterniond q = orientation_of(position);
   const Eigen::Quaterniond rate = Eigen::Quaterniond(0, now.angular_velocity[0], now.angular_velocity[1], now.angular_velocity[2]) * q;
-  Net slope = Net::Zero(3, 3);
-  slope.row(0) = now.velocity.transpose();
-  slope.row(1) = 0.5 * rate.vec().transpose();
-  slope(2, 0) = 0.5 * rate.w();
+  State slope(position.layout());
+  slope(place) = now.velocity.transpose();
+  slope(orientation) = 0.5 * rate.coeffs().transpose();
   return slope;
 }
 
-void LoneRigidBody::restore_constraints(Net& position) { position.bottomRows<2>() /= quaternion(position).norm(); }
+void LoneRigidBody::restore_constraints(State& position) { position(orientation) /= orientation_of(position).norm(); }
 
-double LoneRigidBody::norm(const Net& displacement) const {
-  return std::hypot(displacement.row(0).norm() / radius_, 2 * displacement.bottomRows<2>().norm());
+double LoneRigidBody::norm(const State& displacement) const {
+  return std::hypot(displacement(place).norm() / radius_, 2 * displacement(orientation).norm());
 }
 
-Net LoneRigidBody::moved(const Net& x, const Net& position) const {
-  return ((x.rowwise() - centre_.transpose()) * rotation_of(position).transpose()).rowwise() + position.row(0);
+Net LoneRigidBody::moved(const Net& x, const State& position) const {
+  return ((x.rowwise() - centre_.transpose()) * rotation_of(position).transpose()).rowwise() + centre_of(position).transpose();
 }
 
 FreeBody::FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
@@ -117,7 +121,7 @@ FreeBody::FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre,
 
 /// Returns the amplitudes of the modes (RigidModes) of the disturbance velocity on the body, in body-fixed axes. These are the rigid motion relative
 /// to the flow, the negative strain rate of the flow and, if the flow is quadratic, its negative quadratic coefficients.
-Eigen::VectorXd FreeBody::amplitudes(const Net& position) const {
+Eigen::VectorXd FreeBody::amplitudes(const State& position) const {
   const Mat3 turn = rotation_of(position), l = turn.transpose() * flow_.gradient(centre_of(position)) * turn;
   Eigen::VectorXd a(modes_.response.cols());
   a.segment<5>(6) = -strain_components(0.5 * (l + l.transpose()));
@@ -135,21 +139,21 @@ Eigen::VectorXd FreeBody::amplitudes(const Net& position) const {
   return a;
 }
 
-RigidMotion FreeBody::motion(const Net& position) const {
+RigidMotion FreeBody::motion(const State& position) const {
   const Eigen::VectorXd a = amplitudes(position);
   const Mat3 turn = rotation_of(position);
   const Vec3 centre = centre_of(position);
   return {flow_.velocity(centre) + turn * a.segment<3>(0), 0.5 * axial_vector(flow_.gradient(centre)) + turn * a.segment<3>(3)};
 }
 
-Net FreeBody::force_density(const Net& position) const {
+Net FreeBody::force_density(const State& position) const {
   const Eigen::VectorXd a = amplitudes(position);
   Net f = Net::Zero(surface_.rows(), 3);
   for (Eigen::Index k = 0; k < a.size(); ++k) f += a[k] * modes_.density[static_cast<size_t>(k)];
   return f * rotation_of(position).transpose();
 }
 
-Mat3 FreeBody::stresslet(const Net& position) const {
+Mat3 FreeBody::stresslet(const State& position) const {
   const Eigen::VectorXd a = amplitudes(position);
   Mat3 s = Mat3::Zero();
   for (Eigen::Index k = 0; k < a.size(); ++k) s -= a[k] * modes_.stresslet[static_cast<size_t>(k)];

@@ -29,11 +29,12 @@ struct RigidModes {
   std::vector<Mat3> stresslet;                  ///< stresslet of each entry of `density`
 };
 
-/// Returns the state of a rigid body in its initial orientation. A state is a net of three rows: the centre, and the vector part and the scalar part
-/// of the quaternion that rotates the body from its initial orientation.
-Net placed(const Vec3& centre);
-Vec3 centre_of(const Net& position);
-Mat3 rotation_of(const Net& position);
+/// Returns the state of a rigid body in its initial orientation. A state has two blocks: "position", the centre, and "orientation", the vector part
+/// and the scalar part of the quaternion that rotates the body from its initial orientation.
+State placed(const Vec3& centre);
+Vec3 centre_of(const State& position);
+Eigen::Quaterniond orientation_of(const State& position);
+Mat3 rotation_of(const State& position);
 
 /// Centre and orientation of a single rigid body as a system dx/dt = v(x).
 class LoneRigidBody : public Dynamics {
@@ -46,15 +47,15 @@ class LoneRigidBody : public Dynamics {
   void set_time(double time, double start) override { flow_.set_time(time, start); }
   double next_kink(double time) const override { return flow_.next_kink(time); }
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< flow at the time set last
-  Net velocity(const Net& position) override;
-  void restore_constraints(Net& position) override;              ///< normalises the quaternion; the volume of a rigid body needs no correction
-  double norm(const Net& displacement) const override;            ///< combines the displacement of the centre, divided by R_C, and the angle of
+  State velocity(const State& position) override;
+  void restore_constraints(State& position) override;              ///< normalises the quaternion; the volume of a rigid body needs no correction
+  double norm(const State& displacement) const override;            ///< combines the displacement of the centre, divided by R_C, and the angle of
                                                                   ///< rotation
 
-  virtual RigidMotion motion(const Net& position) const = 0;
-  virtual Net force_density(const Net& position) const = 0;  ///< force density on the fluid, control values
-  virtual Mat3 stresslet(const Net& position) const = 0;     ///< int [(t_i x_j + t_j x_i)/2 - delta_ij t.x/3] dGamma; t: traction on the body
-  virtual double pressure_drop(const Net&) const { return 0; }  ///< additional pressure drop due to the body, in a tube
+  virtual RigidMotion motion(const State& position) const = 0;
+  virtual Net force_density(const State& position) const = 0;  ///< force density on the fluid, control values
+  virtual Mat3 stresslet(const State& position) const = 0;     ///< int [(t_i x_j + t_j x_i)/2 - delta_ij t.x/3] dGamma; t: traction on the body
+  virtual double pressure_drop(const State&) const { return 0; }  ///< additional pressure drop due to the body, in a tube
 
   /// Returns the latest solution of the linear system; empty if no system is solved iteratively. The next solve starts from this solution.
   /// Checkpoints store it, so that a resumed run is bitwise equal to an uninterrupted run.
@@ -64,12 +65,12 @@ class LoneRigidBody : public Dynamics {
   virtual long linear_solves() const = 0;               ///< number of linear systems solved for the motion
   virtual long solver_iterations() const { return 0; }  ///< number of iterations of the linear solver since construction
 
-  Net surface(const Net& position) const { return moved(surface_, position); }  ///< control net of the surface in the laboratory frame
+  Net surface(const State& position) const { return moved(surface_, position); }  ///< control net of the surface in the laboratory frame
   const Vec3& centre() const { return centre_; }  ///< centre at the initial position
   long evaluations() const { return evaluations_; }
 
  protected:
-  Net moved(const Net& x, const Net& position) const;  ///< returns points of the body in its initial position, moved to `position`
+  Net moved(const Net& x, const State& position) const;  ///< returns points of the body in its initial position, moved to `position`
 
   Net surface_;
   Vec3 centre_;
@@ -89,13 +90,13 @@ class FreeBody : public LoneRigidBody {
   FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow,
            const RigidDrive& driven = {});
 
-  RigidMotion motion(const Net& position) const override;
-  Net force_density(const Net& position) const override;
-  Mat3 stresslet(const Net& position) const override;
+  RigidMotion motion(const State& position) const override;
+  Net force_density(const State& position) const override;
+  Mat3 stresslet(const State& position) const override;
   long linear_solves() const override { return modes_.response.cols(); }
 
  private:
-  Eigen::VectorXd amplitudes(const Net& position) const;
+  Eigen::VectorXd amplitudes(const State& position) const;
 
   RigidModes modes_;
   Eigen::Matrix<double, 6, 6> mobility_;            ///< column k: rigid motion due to the unit force (k = 0, 1, 2) or unit torque (k = 3, 4, 5)
