@@ -43,7 +43,7 @@ VelocitySolver::VelocitySolver(const spline::Space& space, const Net& unstressed
       walls_{tube_.get(), solids_.get()},
       bodies_{RigidParticles(particles(), resting, parameters_.viscosity, parameters_.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
-      krylov_(parameters_.solvers.of(parameters_.solvers.velocity)) {
+      solving_{Krylov(parameters_.solvers.of(parameters_.solvers.velocity)), {}, {}} {
   assert(!tube_ || !targets_.projection());  // Tube computes its response only at collocation sites, not at the sites of a projection
   walls_.set_particles(membranes_.unstressed(), particles());
   if (std::ranges::any_of(particles(), &Particle::by_traction))

@@ -95,7 +95,7 @@ class VelocitySolver {
   /// Sets an approximate inverse of the operator B of (4.2). Later calls of solve() that allow an error (`error` > 0) use it if there are no rigid
   /// bodies. They need only a few products with B, so that no rows are assembled for them. Exact solves do not use the inverse, because it belongs to
   /// the latest implicit step, which a resumed run does not know.
-  void use_inverse(std::function<Net(const Net&)> inverse) { inverse_ = std::move(inverse); }
+  void use_inverse(std::function<Net(const Net&)> inverse) { solving_.inverse = std::move(inverse); }
 
   /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14), where B v = w is the linear system for the velocity v at the shape, and P
   /// the volume projection (2.8). Needs no linear solve. Requires that all unknowns are velocities and that walls are eliminated.
@@ -178,6 +178,12 @@ class VelocitySolver {
   }
   bool has_velocity_system() const { return !is_explicit() || !eliminates_walls() || keeps_multipliers(); }
   // In the functions below, x is a shape whose particles are in the cell (place), if there is a lattice.
+  /// How linear systems are solved. `unknowns`: see unknowns(), set at its first call. `inverse`: see use_inverse().
+  struct Solving {
+    Krylov krylov;
+    std::array<std::shared_ptr<const Layout>, 2> unknowns;
+    std::function<Net(const Net&)> inverse;
+  };
   /// The system at the shape x, with what it refers to.
   struct AtShape {
     Net x;
@@ -210,7 +216,7 @@ class VelocitySolver {
   //   interface_          velocities: each call with its shape; derivative: CapsuleJacobian::linearise()
   //   bodies_.rigid       solve() and Capsule::restore_constraints()
   //   bodies_.tractions   solve_tractions()
-  //   inverse_            Capsule::linearise()
+  //   solving_.inverse    Capsule::linearise()
   //   layers_             each call with its shape; rows that are stored, by assemble() in solve_velocity() and solve_tractions()
   const spline::Space& space_;
   Net resting_;
@@ -230,9 +236,7 @@ class VelocitySolver {
   std::string crossing_;                   // see crossing(); set by in_fluid()
   Bodies bodies_;
   std::unique_ptr<InterfaceMotion> interface_;  // set if any control points slide along an interface
-  Krylov krylov_;
-  std::array<std::shared_ptr<const Layout>, 2> unknowns_;  // see unknowns(); set at the first call
-  std::function<Net(const Net&)> inverse_;  // see use_inverse()
+  Solving solving_;
   Forces forces_;
 };
 

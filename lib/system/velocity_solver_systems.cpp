@@ -65,7 +65,7 @@ void VelocitySolver::record_solve(const SolveReport& report, bool finite, double
 
 /// Returns the layout of the unknowns: those of the particles and, unless they are eliminated, of the wall and of the volumes.
 std::shared_ptr<const Layout> VelocitySolver::unknowns(bool multipliers) {
-  std::shared_ptr<const Layout>& kept = unknowns_[multipliers];
+  std::shared_ptr<const Layout>& kept = solving_.unknowns[multipliers];
   if (kept) return kept;
   std::vector<Block> blocks = blocks_of_particles(particles());
   if (!eliminates_walls()) std::ranges::copy(DuctWall::unknowns(*tube_, parameters_.viscosity), std::back_inserter(blocks));
@@ -103,7 +103,8 @@ std::shared_ptr<VelocitySolver::AtShape> VelocitySolver::at_shape(const Net& x, 
 /// Returns whether the inverse of use_inverse() is the preconditioner of a solve that allows the error `error`, with the relative residual
 /// `tolerance`. It is the result of an iteration, so that the solver must admit preconditioners that are not linear.
 bool VelocitySolver::uses_inverse(double error, double tolerance) const {
-  const bool suitable = inverse_ && bodies_.rigid.empty() && eliminates_walls() && krylov_.uses_own_preconditioner() && krylov_.flexible();
+  const Krylov& krylov = solving_.krylov;
+  const bool suitable = solving_.inverse && bodies_.rigid.empty() && eliminates_walls() && krylov.uses_own_preconditioner() && krylov.flexible();
   return suitable && error > 0 && tolerance > few_iterations;
 }
 
@@ -131,11 +132,11 @@ BlockVector VelocitySolver::solve_velocity(AtShape& at, const BlockVector& right
   const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
   const bool by_inverse = uses_inverse(error, tolerance);
   layers_.assemble(at.x, viscous(), by_inverse);
-  if (by_inverse) at.system->set_inverse_of_particles(on_nets(at.x.rows(), inverse_));
+  if (by_inverse) at.system->set_inverse_of_particles(on_nets(at.x.rows(), solving_.inverse));
   else if (eliminates_walls()) at.system->set_inverse_of_particles(velocity_preconditioner(at.x));
   const bool guessed = guess.size() > 0 && bodies_.rigid.empty();
   BlockVector y = at.system->projected(at.system->of(guessed ? guess : Net(System::particles(right))));
-  record_solve(at.system->solve(krylov_, right, y, tolerance), y.allFinite(), tolerance);
+  record_solve(at.system->solve(solving_.krylov, right, y, tolerance), y.allFinite(), tolerance);
   return y;
 }
 

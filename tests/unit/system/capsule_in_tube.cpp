@@ -161,7 +161,7 @@ TEST(CapsuleInTube, TheFrozenResponseOfAPeriodicTubeContainsTheImagesOfThePartic
     Confined scene(ratio, "schur", {}, 1.4);
     const Net v = scene.capsule->velocity(scene.x), f = scene.capsule->evaluate(scene.x)->load();
     scene.capsule->freeze(scene.x);
-    const Net exact = scene.capsule->tube()->respond(f, v).velocity, images = scene.capsule->tube()->images_on_particle(f, v);
+    const Net exact = scene.capsule->tube()->respond(f, v).velocity, images = scene.capsule->tube()->cause(f, v).velocity;
     const double error = (scene.capsule->tube()->frozen_response(f, v) - exact).norm();
     EXPECT_LT(error, 0.15 * exact.norm()) << ratio;  // images beyond the second are omitted, of the particle and of the wall
     EXPECT_GT(images.norm(), exact.norm()) << ratio;

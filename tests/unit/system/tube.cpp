@@ -73,8 +73,10 @@ TEST(Tube, SolvesTheBlockSystem) {
   const Net wall = s.tube->wall_on_wall(r.wall_traction) - r.pressure_drop * s.tube->inlet_on_wall(),
             particle = s.tube->particle_on_wall(s.f, s.v);
   EXPECT_LT((wall - particle).norm() / particle.norm(), 1e-11);
-  const Net answer = s.tube->wall_on_particle(r.wall_traction) + r.pressure_drop * s.tube->inlet_on_particle();
-  EXPECT_LT((answer - r.velocity).norm() / answer.norm(), 1e-12);
+  Tube::Response answer = r;
+  answer.velocity.setZero();
+  s.tube->add_answer(answer);
+  EXPECT_LT((answer.velocity - r.velocity).norm() / r.velocity.norm(), 1e-12);
 }
 
 TEST(Tube, HasTheExactPressureDropOnAnyMeshOfTheSurface) {

@@ -14,12 +14,9 @@
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "stokes/medium/medium.hpp"
-#include "system/capsule_parameters.hpp"
-#include "system/parallel/ranks.hpp"
 #include "system/solids/bodies/body_layer.hpp"
 #include "system/rigid_motion.hpp"
 #include "system/solids/bodies/rigid_residual.hpp"
-#include "system/solvers/krylov.hpp"
 #include "system/system.hpp"
 
 namespace tanktread::coupling {

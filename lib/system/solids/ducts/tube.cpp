@@ -31,7 +31,6 @@ Tube::~Tube() = default;
 
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
 ParticleSources& Tube::particles() { return particle_->sources; }
-const Net& Tube::inlet_on_particle() const { return particle_->inlet; }
 const Net& Tube::ambient() const { return particle_->ambient; }
 const std::optional<stokes::PeriodicCell>& Tube::cell() const { return wall_->cell(); }
 
@@ -88,8 +87,6 @@ Net Tube::wall_on_particle(const Net& traction) {
     wall_->layer().apply(wall_->on_space(traction), particle_->sites(), particle_->own, u, near ? &*near : nullptr);
   }) / -viscosity();
 }
-
-Net Tube::images_on_particle(const Net& f, const Net& v) { return on_particle(particle_->cause(f, v).at_sites); }
 
 /// Returns, on all ranks, a net with one row per collocation point of the particle, gathered from the rank-owned rows of `own`.
 Net Tube::on_particle(const Net& own) const {

@@ -146,11 +146,7 @@ class Tube {
   Net particle_on_wall(const Net& f, const Net& v = {});    ///< -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dGamma
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
-  Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity due to the particle's images in a periodic duct
 
-  /// Returns the velocity c (2.5) per unit pressure drop at the particle's collocation points. In a periodic duct it is v_inf of the empty duct per
-  /// unit pressure drop of a period.
-  const Net& inlet_on_particle() const;
   const Net& ambient() const;                           ///< v_inf (2.7) at the particle's collocation points, with amplitude 1
   Net inlet_on_wall() const;                            ///< c on the wall
   double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
