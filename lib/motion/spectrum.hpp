@@ -72,8 +72,8 @@ void add_columns(const std::complex<double>& rate, const std::string& number, Co
 /// particle deforms, so the modes are rotations.
 void add_columns(const std::vector<Mode>& modes, int number, bool all_rigid, Columns& to);
 
-/// Returns the derivative of the function f of a net along the displacement d of x, by a central difference. `largest`: length of the largest
-/// displacement of a control point:
+/// Returns the derivative of the function f of a state along the change d of x, by a central difference. `largest`: length of the largest
+/// displacement of a control point, or largest change of a number of a field:
 ///
 ///   (f(x + e d) - f(x - e d))/2e,   e max |d| = largest
 template <class Function>
