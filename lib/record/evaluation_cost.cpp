@@ -21,6 +21,7 @@ constexpr double longest = 5;  // largest allowed duration of a timed evaluation
 struct Cost {
   double setup, seconds, kernel_evaluations, elements;
   long memory;  // peak memory of all ranks in bytes
+  std::string system;
 };
 
 /// Builds the particles of a scene and evaluates their velocity once, in the initial shape. Returns the cost of both. Collective.
@@ -42,6 +43,7 @@ Cost measured(const Scene& scene) {
   cost.kernel_evaluations = static_cast<double>(evaluations() - before);
   cost.elements = static_cast<double>(particles->body().space.elements.size());
   cost.memory = peak_memory(ranks).back().second;
+  if (coupling::Capsule* const capsule = particles->capsule()) cost.system = capsule->plan();
   return cost;
 }
 
@@ -96,9 +98,12 @@ output::Entries<std::string> evaluation_cost(const Scene& scene) {
     break;
   }
   const Cost cost = measured(scene);
-  return {{"evaluation", formatted("%.3g kernel evaluations and %.2g s for one velocity, after %.2g s of setup", cost.kernel_evaluations,
-                                   cost.seconds, cost.setup)},
-          {"memory", formatted("%.0f MB of all ranks, without the Jacobian of implicit steps", 1e-6 * static_cast<double>(cost.memory))}};
+  output::Entries<std::string> lines;
+  if (!cost.system.empty()) lines.emplace_back("system", cost.system);
+  lines.emplace_back("evaluation", formatted("%.3g kernel evaluations and %.2g s for one velocity, after %.2g s of setup", cost.kernel_evaluations,
+                                             cost.seconds, cost.setup));
+  lines.emplace_back("memory", formatted("%.0f MB of all ranks, without the Jacobian of implicit steps", 1e-6 * static_cast<double>(cost.memory)));
+  return lines;
 }
 
 }  // namespace tanktread

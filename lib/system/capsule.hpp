@@ -55,6 +55,9 @@ class Capsule {
   double distance(const Net& from, const Net& to) const;
   double norm(const Net& displacement) const;  ///< largest root mean square displacement of the control points of a particle, divided by its R_C
 
+  /// Returns VelocitySolver::plan() at the shape evaluated last; empty if there is none.
+  std::string plan() { return latest_ ? solver_.plan(latest_->x()) : std::string(); }
+
   using Forces = VelocitySolver::Forces;
   void set_forces(Net Forces::* of, Net work);  ///< sets one kind of additional forces for all later calls
 
@@ -94,7 +97,6 @@ class Capsule {
   const stokes::AmbientFlow& flow() const { return solver_.flow(); }                       ///< flow at the time set by `set_time`
   const std::optional<stokes::PeriodicCell>& cell() const { return solver_.cell(); }       ///< cell at that time; not set without a lattice
   const VelocityProjection* projection() const { return solver_.targets().projection(); }  ///< null if velocities are collocated
-  const Phases& layer_phases() const { return solver_.layers().single_layer().phases(); }  ///< run time of the parts of the single layer
 
   stokes::Evaluations kernel_evaluations() const { return solver_.kernel_evaluations() + frozen_.evaluations(); }
   const OperationCounts& counts() const { return solver_.counts(); }

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "base/formatted.hpp"
+
 namespace tanktread::coupling {
 
 namespace {
@@ -21,6 +23,15 @@ Eigen::Map<const Net> System::particles(const BlockVector& x) { return {x.number
 System::System(std::shared_ptr<const Layout> unknowns, Equations equations, std::shared_ptr<LayersAt> layers,
                std::function<Net(const Net&)> control_values)
     : unknowns_(std::move(unknowns)), equations_(std::move(equations)), layers_(std::move(layers)), control_values_(std::move(control_values)) {}
+
+std::string System::plan() const {
+  std::string blocks, equations;
+  for (const Block& one : unknowns_->blocks())
+    blocks += (blocks.empty() ? "" : ", ") + one.name + formatted(" %d x %d", static_cast<int>(one.rows), one.components);
+  for (const auto& one : equations_)
+    if (const std::string text = one->plan(); !text.empty()) equations += (equations.empty() ? ": " : "; ") + text;
+  return blocks + equations;
+}
 
 Sources System::sources(const BlockVector& x, Given given) const {
   Sources all;

@@ -42,6 +42,8 @@ class Equation {
  public:
   virtual ~Equation() = default;
 
+  virtual std::string plan() const { return {}; }  ///< what it determines, and how if the unknowns are eliminated; for the plan
+
   /// Removes from x, unknowns or a residual, what this equation eliminates by a projection P: x becomes P x.
   virtual void project(BlockVector& /*x*/) const {}
 
@@ -70,6 +72,7 @@ class System {
          std::function<Net(const Net&)> control_values);
 
   const std::shared_ptr<const Layout>& unknowns() const { return unknowns_; }
+  std::string plan() const;  ///< blocks of unknowns with their sizes, and the equations
   static Eigen::Map<Net> particles(BlockVector& x);              ///< unknowns of all particles, one row per control point
   static Eigen::Map<const Net> particles(const BlockVector& x);
   BlockVector of(const Net& particles) const;                    ///< returns unknowns with these unknowns of the particles, and zero for all others

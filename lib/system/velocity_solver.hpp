@@ -112,6 +112,9 @@ class VelocitySolver {
   /// solved last. r is the position relative to the centre of the body.
   Mat3 moment_by_traction(std::size_t p);
 
+  /// Returns the blocks of unknowns of the system at a shape, its equations, and whether they are solved by iteration; for the plan. Collective.
+  std::string plan(const Net& shape);
+
   bool slides() const { return interface_ != nullptr; }        ///< whether control points slide along an interface
   bool viscous() const { return membranes_.viscous(); }        ///< whether a membrane or interface is viscous: then the load depends on the velocity
   bool is_explicit() const { return !layers_.has_double() && !viscous(); }  ///< whether B of (4.2) is the identity
@@ -160,7 +163,6 @@ class VelocitySolver {
   const ParticleLayers& layers() const { return layers_; }
   InterfaceMotion* interface() { return interface_.get(); }  ///< null if no control points slide
 
-  Net symmetric(Net field) const { return parameters_.symmetry.completed(std::move(field)); }
   stokes::Evaluations kernel_evaluations() const;  ///< number for all layers at the targets, the walls and the tractions on bodies
   OperationCounts& counts() { return counts_; }
   const OperationCounts& counts() const { return counts_; }
@@ -176,6 +178,8 @@ class VelocitySolver {
   bool keeps_multipliers() const {
     return parameters_.volume.constrained() && !bodies_.tractions && parameters_.solvers.keeps_multipliers(!eliminates_walls());
   }
+  Net symmetric(Net field) const { return parameters_.symmetry.completed(std::move(field)); }
+  bool bodies_respond() const { return layers_.repeats() || walls_.any() || !is_explicit(); }  // see RigidTractions::Surroundings::responds
   bool has_velocity_system() const { return !is_explicit() || !eliminates_walls() || keeps_multipliers(); }
   // In the functions below, x is a shape whose particles are in the cell (place), if there is a lattice.
   /// How linear systems are solved. `unknowns`: see unknowns(), set at its first call. `inverse`: see use_inverse().

@@ -100,6 +100,12 @@ std::shared_ptr<VelocitySolver::AtShape> VelocitySolver::at_shape(const Net& x, 
   return at;
 }
 
+std::string VelocitySolver::plan(const Net& shape) {
+  WorkOfLoads known;
+  const bool iterated = bodies_.tractions ? bodies_respond() : has_velocity_system();
+  return at_shape(place(shape), known, keeps_multipliers())->system->plan() + (iterated ? "; iterated" : "; without an iteration");
+}
+
 /// Returns whether the inverse of use_inverse() is the preconditioner of a solve that allows the error `error`, with the relative residual
 /// `tolerance`. It is the result of an iteration, so that the solver must admit preconditioners that are not linear.
 bool VelocitySolver::uses_inverse(double error, double tolerance) const {
@@ -149,9 +155,8 @@ Net VelocitySolver::solve_tractions(const std::shared_ptr<AtShape>& at, SolvedSh
   std::vector<RigidDrive> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
-  const bool responds = layers_.repeats() || walls_.any() || !is_explicit();
   const RigidTractions::Solution& solution = bodies_.tractions->solve(
-      at->x, centres, driven, flow_, RigidTractions::Surroundings{std::shared_ptr<const System>(at, &*at->system), responds});
+      at->x, centres, driven, flow_, RigidTractions::Surroundings{std::shared_ptr<const System>(at, &*at->system), bodies_respond()});
   const BlockVector y = at->system->projected(at->system->of(solution.unknowns));
   Net v = System::particles(y);
   clear_rigid(particles(), v);

@@ -165,7 +165,7 @@ void catmull_clark_over_g1(benchmark::State& state) {
     ++turn;
   }
   for (const char* part : {"setup", "far", "near", "self"})
-    state.counters[std::string(part) + " ratio"] = capsule[1].layer_phases().seconds(part) / capsule[0].layer_phases().seconds(part);
+    state.counters[std::string(part) + " ratio"] = capsule[1].solver().layers().single_layer().phases().seconds(part) / capsule[0].solver().layers().single_layer().phases().seconds(part);
   for (const Phases::Phase& phase : phases[0].all()) state.counters[phase.name + " ratio"] = phases[1].seconds(phase.name) / phase.seconds;
   const auto evaluations = [&](int k) { return static_cast<double>(capsule[k].kernel_evaluations().far - first[k].far); };
   state.counters["far evaluations ratio"] = evaluations(1) / evaluations(0);

@@ -88,7 +88,7 @@ void growth(benchmark::State& state) {
   benchmark::DoNotOptimize(capsule.velocity(shapes[1]));  // computes and stores the singular quadrature rules, outside the measured time
   const long long far = capsule.kernel_evaluations().far;
   const Phases first = phases;
-  const Phases layer_first = capsule.layer_phases();
+  const Phases layer_first = capsule.solver().layers().single_layer().phases();
   double best = 1e9;
   int turn = 0;
   for (auto _ : state) {
@@ -108,7 +108,7 @@ void growth(benchmark::State& state) {
     for (const Phases::Phase& p : all.all()) counter(prefix + p.name + " s", best * (p.seconds - earlier.seconds(p.name)) / wall);
   };
   split(phases, first, "");
-  split(capsule.layer_phases(), layer_first, "layer ");
+  split(capsule.solver().layers().single_layer().phases(), layer_first, "layer ");
   if (state.range(1) == 0) counter("far error", far_error(space, unstressed, x, capsule.evaluate(x)->load()));
 }
 BENCHMARK(growth)

@@ -52,7 +52,7 @@ class CoupledParticles : public ParticleSystem {
   }
 
   coupling::Dynamics& dynamics() override { return fields_->motion(); }
-  const coupling::Capsule* capsule() const override { return capsule_.get(); }
+  coupling::Capsule* capsule() const override { return capsule_.get(); }
   coupling::CoupledMotion* coupled_motion() override { return &fields_->motion(); }
   const Body& body() const override { return stacked_ ? *stacked_ : *members_.front().body; }
   coupling::State start() const override { return fields_->motion().start(body().initial); }

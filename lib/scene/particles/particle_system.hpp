@@ -40,7 +40,7 @@ class ParticleSystem {
  public:
   virtual ~ParticleSystem() = default;
   virtual coupling::Dynamics& dynamics() = 0;
-  virtual const coupling::Capsule* capsule() const { return nullptr; }           ///< returns the coupled system; null for a free rigid body
+  virtual coupling::Capsule* capsule() const { return nullptr; }                 ///< returns the coupled system; null for a free rigid body
   /// Returns the motion of the surfaces together with their fields; null for a free rigid body.
   virtual coupling::CoupledMotion* coupled_motion() { return nullptr; }
   virtual const Body& body() const = 0;

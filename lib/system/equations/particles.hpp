@@ -18,6 +18,7 @@ class DeformableVelocities : public Equation {
   DeformableVelocities(std::span<const Particle> particles, Membranes& membranes, Net x, Net load, bool has_double)
       : particles_(particles), membranes_(membranes), x_(std::move(x)), load_(std::move(load)), has_double_(has_double) {}
 
+  std::string plan() const override { return "velocities of deformable particles"; }
   void add_sources(const BlockVector& x, Given given, Sources& to) const override;
   void add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity& u, Given given, BlockVector& r) const override;
 
@@ -33,6 +34,7 @@ class BodyDensities : public Equation {
  public:
   BodyDensities(std::span<const Particle> particles, const RigidParticles& rigid) : particles_(particles), rigid_(rigid) {}
 
+  std::string plan() const override { return "double-layer densities of rigid bodies, with their motions"; }
   void add_sources(const BlockVector& x, Given given, Sources& to) const override;
   void add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity& u, Given given, BlockVector& r) const override;
 
@@ -48,6 +50,7 @@ class BodyTractions : public Equation {
   BodyTractions(std::span<const Particle> particles, const BodyLayer& bodies, bool on_lattice)
       : particles_(particles), bodies_(bodies), on_lattice_(on_lattice) {}
 
+  std::string plan() const override { return "tractions on rigid bodies, whose motions are eliminated by unit motions"; }
   void add_sources(const BlockVector& x, Given given, Sources& to) const override;
   void add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity& u, Given given, BlockVector& r) const override;
 

@@ -23,6 +23,7 @@ class VolumeConstraint : public Equation {
     return {.name = name, .rows = n, .components = 1, .parity = Parity::scalar};
   }
 
+  std::string plan() const override { return multipliers_ ? "volumes, by multipliers" : "volumes, whose multipliers are eliminated by a projection"; }
   void project(BlockVector& x) const override;
   void add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity& u, Given given, BlockVector& r) const override;
   void precondition(const BlockVector& r, BlockVector& x) const override;

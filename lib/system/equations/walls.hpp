@@ -10,6 +10,9 @@ class EliminatedWalls : public Equation {
  public:
   EliminatedWalls(const FluidWalls& walls, Phases& phases) : walls_(walls), phases_(phases) {}
 
+  std::string plan() const override {
+    return std::string(walls_.tube ? "wall traction and pressure drop" : "tractions of plates and posts") + ", eliminated by factors";
+  }
   void answer(const BlockVector& x, Given given, Sources& to) const override;
 
  private:
@@ -30,6 +33,7 @@ class DuctWall : public Equation {
 
   static std::vector<Block> unknowns(const Tube& tube, double viscosity);
 
+  std::string plan() const override { return "wall traction and pressure drop, preconditioner `" + form_ + "`"; }
   void answer(const BlockVector& x, Given given, Sources& to) const override;
   void add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity& u, Given given, BlockVector& r) const override;
   void precondition(const BlockVector& r, BlockVector& x) const override;
