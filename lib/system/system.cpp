@@ -85,8 +85,10 @@ BlockVector System::precondition(const BlockVector& r) const {
 }
 
 SolveReport System::solve(const Krylov& krylov, const BlockVector& right, BlockVector& x, double tolerance) const {
-  const LinearSystem system{unknowns_->blocks(), on_blocks(unknowns_, [this](const BlockVector& v) { return residual(v, Given::omitted); }),
-                            on_blocks(unknowns_, [this](const BlockVector& r) { return precondition(r); })};
+  LinearSystem system{unknowns_->blocks(), on_blocks(unknowns_, [this](const BlockVector& v) { return residual(v, Given::omitted); }), {}};
+  const bool only_particles = particles(right).size() == right.numbers().size();
+  if (of_particles_ || !only_particles)  // otherwise precondition() is the identity, and a scaled one (`recycled`) is better
+    system.precondition = on_blocks(unknowns_, [this](const BlockVector& r) { return precondition(r); });
   Eigen::VectorXd found = x.numbers();
   const SolveReport report = krylov.solve(system, right.numbers(), found, tolerance);
   x.numbers() = found;

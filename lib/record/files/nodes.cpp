@@ -115,7 +115,12 @@ std::vector<Vec3> cell_normals(const surface::Patch& patch, std::span<const surf
 }  // namespace
 
 Nodes::Nodes(surface::BezierMap map, LagrangeMesh mesh) : map_(std::move(map)), mesh_(std::move(mesh)) {
-  for (const surface::DegreeGroup& group : map_.groups()) tables_[group.degree] = jet_table(group.degree);
+  for (const surface::DegreeGroup& group : map_.groups()) {
+    const std::vector<double>& table = tables_[group.degree] = jet_table(group.degree);
+    const auto n = static_cast<std::ptrdiff_t>((group.degree + 1) * (group.degree + 1));
+    std::vector<double>& values = values_[group.degree];
+    for (auto row = table.begin(); row != table.end(); row += n_parts * n) values.insert(values.end(), row, row + n);
+  }
 }
 
 /// Computes the jets (position and derivatives) at the nodes of the Lagrange cell of an element. Returns the element's Bezier points.
@@ -134,40 +139,40 @@ Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>
   return points;
 }
 
-/// Calls use(patch, nodes, jets) for every element, in reverse order. If `use` sets values at nodes, a node shared by several elements thus keeps the
-/// value from the element with the lowest index. The jets are computed by all threads.
-template <class Use>
-void Nodes::each_cell(const Net& net, Use use) const {
-  const int at_a_time = std::min(256, map_.n_elements());
-  std::vector<Points> points(at_a_time);
-  std::vector<std::vector<surface::Jet>> all(at_a_time);
-  for (int end = map_.n_elements(); end > 0; end -= at_a_time) {
-    const int some = std::min(at_a_time, end);
-    each_block(some, 16, [&](int first, int last) {
-      for (int k = first; k < last; ++k) points[k] = jets(end - 1 - k, net, all[k]);
-    });
-    for (int k = 0; k < some; ++k) {
-      const int e = end - 1 - k;
-      const auto nodes = std::span(mesh_.connectivity).subspan(static_cast<std::size_t>(mesh_.offsets[e]), all[k].size());
-      use(surface::Patch{map_.degree(e), points[k].data()}, nodes, all[k]);
-    }
-  }
+/// Returns the numbers of the nodes of an element's cell.
+std::span<const std::int64_t> Nodes::cell(int element) const {
+  const auto first = static_cast<std::size_t>(mesh_.offsets[element]), last = static_cast<std::size_t>(mesh_.offsets[element + 1]);
+  return std::span(mesh_.connectivity).subspan(first, last - first);
 }
 
 Net Nodes::values(const Net& control_values) const {
   Net result(mesh_.sites.size(), 3);
-  each_cell(control_values, [&](const surface::Patch&, std::span<const std::int64_t> nodes, const std::vector<surface::Jet>& here) {
-    for (std::size_t k = 0; k < nodes.size(); ++k) result.row(nodes[k]) = here[k].x;
-  });
+  Points points, sums;
+  for (int e = map_.n_elements(); e-- > 0;) {  // in reverse order: a node of several elements keeps the value from the first one
+    const int n = map_.n_bezier(e);
+    map_.points(e, control_values, points.data());
+    surface::three_sums(n, n, values_.at(map_.degree(e)).data(), points.data(), sums.data());
+    for (int k = 0; k < n; ++k) result.row(cell(e)[k]) << sums[k], sums[n + k], sums[2 * n + k];
+  }
   return result;
 }
 
 Net Nodes::normals(const Net& net) const {
   Net sum = Net::Zero(static_cast<Eigen::Index>(mesh_.sites.size()), 3);
-  each_cell(net, [&](const surface::Patch& patch, std::span<const std::int64_t> nodes, const std::vector<surface::Jet>& here) {
-    const std::vector<Vec3> normals = cell_normals(patch, here);
-    for (std::size_t k = 0; k < nodes.size(); ++k) sum.row(nodes[k]) += normals[k].normalized();
-  });
+  const int at_a_time = std::min(256, map_.n_elements());
+  std::vector<std::vector<Vec3>> all(at_a_time);
+  for (int end = map_.n_elements(); end > 0; end -= at_a_time) {
+    const int some = std::min(at_a_time, end);
+    each_block(some, 16, [&](int first, int last) {
+      std::vector<surface::Jet> here;
+      for (int k = first; k < last; ++k) {
+        const Points points = jets(end - 1 - k, net, here);
+        all[k] = cell_normals(surface::Patch{map_.degree(end - 1 - k), points.data()}, here);
+      }
+    });
+    for (int k = 0; k < some; ++k)
+      for (std::size_t j = 0; j < all[k].size(); ++j) sum.row(cell(end - 1 - k)[j]) += all[k][j].normalized();
+  }
   sum.rowwise().normalize();
   return sum;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "base/types.hpp"
@@ -67,13 +68,12 @@ class Nodes {
  private:
   /// Bezier points, shape (3, n_bezier); storage for the largest degree
   using Points = std::array<double, 3 * (spline::most_polynomial_degree + 1) * (spline::most_polynomial_degree + 1)>;
-  template <class Use>
-  void each_cell(const Net& net, Use use) const;
+  std::span<const std::int64_t> cell(int element) const;
   Points jets(int element, const Net& net, std::vector<surface::Jet>& jets) const;
 
   surface::BezierMap map_;
   LagrangeMesh mesh_;
-  std::map<int, std::vector<double>> tables_;  ///< jet_table of each degree
+  std::map<int, std::vector<double>> tables_, values_;  ///< jet_table of each degree, and its rows of positions
 };
 
 }  // namespace tanktread::output

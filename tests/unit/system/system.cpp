@@ -88,7 +88,7 @@ TEST(System, ResidualIsAffineAndVanishesAtTheSolution) {
     BlockVector sum = system.residual(x, Given::included);
     sum -= system.residual(x, Given::omitted);
     sum += right;
-    EXPECT_LT(sum.norm(), 1e-14) << multipliers;
+    EXPECT_LT(sum.norm(), 1e-13) << multipliers;  // round-off of sums of 21 numbers of size 1
     EXPECT_TRUE(system.solve(Krylov({"GMRES"}), right, x, 1e-13).converged) << multipliers;
     EXPECT_LT(system.residual(x, Given::included).norm(), 1e-12 * right.norm()) << multipliers;
     EXPECT_LT(small.volume.multipliers(System::particles(std::as_const(x))).norm(), 1e-12) << multipliers;
