@@ -71,7 +71,7 @@ class FrozenVelocities : public Equation {
         const Net viscous = membranes_.viscous_work_change(moving);
         work = work.size() > 0 ? Net(viscous + work) : viscous;
       }
-      if (has_double_) to.density = std::move(moving);
+      if (has_double_) to.add_density(std::move(moving));
     }
     if (work.size() > 0) to.add_load(membranes_.solved(std::move(work)));
   }
@@ -103,7 +103,7 @@ class FrozenTube : public Equation {
 
 CapsuleJacobian::CapsuleJacobian(VelocitySolver& solver, FrozenLayers& frozen)
     : parameters_(solver.parameters()), flow_(solver.flow()),
-      flow_at_sites_(solver.walls().any() || !solver.flow().affine()), targets_(solver.targets()),
+      flow_at_sites_(flow_at_targets(solver.walls(), solver.flow())), targets_(solver.targets()),
       membranes_(solver.membranes()), volumes_(solver.volumes()), frozen_(frozen), explicit_(solver.is_explicit()), tube_(solver.walls().tube),
       interface_(solver.interface()), counts_(solver.counts()),
       unknowns_(std::make_shared<const Layout>(blocks_of_particles(parameters_.particles))),

@@ -37,6 +37,7 @@ Sources System::sources(const BlockVector& x, Given given) const {
   Sources all;
   all.ambient = given == Given::included;
   for (const auto& one : equations_) one->add_sources(x, given, all);
+  if (all.density.isZero(0)) all.density.resize(0, 3);  // so that the right-hand side takes no sum of the double layer
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "system/blocks/block_vector.hpp"
@@ -13,7 +14,7 @@
 
 namespace tanktread::coupling {
 
-/// Whether a residual contains what does not depend on the unknowns (ambient flow, given loads, forces and motions), or only its linear part.
+/// Part of a residual: with the terms that do not depend on the unknowns (ambient flow, given loads, forces and motions), or only the linear terms.
 enum class Given { included, omitted };
 
 /// Velocity that the sources cause on the particles: at the targets, and its control values R^-1 u, computed at first use.

@@ -32,7 +32,7 @@ class LayersAtTargets : public LayersAt {
   }
   Net ambient_control_values() override {
     const bool at_sites = std::ranges::any_of(solver_.particles(), &Particle::by_traction);  // rows that need the velocity at the sites
-    return at_sites || solver_.walls().any() || !solver_.flow().affine() ? Net() : solver_.flow().velocities(x_);
+    return at_sites || flow_at_targets(solver_.walls(), solver_.flow()) ? Net() : solver_.flow().velocities(x_);
   }
   Net of_particles(const Net& load, const Net& density) override {
     Net others = load, on_bodies;
@@ -89,7 +89,7 @@ std::shared_ptr<VelocitySolver::AtShape> VelocitySolver::at_shape(const Net& x, 
   else if (!bodies_.rigid.empty()) equations.push_back(std::make_unique<BodyDensities>(particles(), bodies_.rigid));
   if (at->volume.active()) equations.push_back(std::make_unique<VolumeConstraint>(at->volume, multipliers ? layout.get() : nullptr));
   if (!eliminates_walls())
-    equations.push_back(std::make_unique<DuctWall>(*tube_, parameters_.viscosity, *layout, parameters_.solvers.tube));
+    equations.push_back(std::make_unique<DuctWall>(*tube_, *layout, parameters_.solvers.tube));
   else if (walls_.any())
     equations.push_back(std::make_unique<EliminatedWalls>(walls_, phases_));
   at->system.emplace(layout, std::move(equations), std::make_shared<LayersAtTargets>(*this, x, layers_.repeats() ? nullptr : bodies),

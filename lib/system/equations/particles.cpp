@@ -4,47 +4,33 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Sets the rows of the particles that are rigid bodies, or of those that are not, in `to`, which gets rows of zeros if it has none.
-void set_rows(std::span<const Particle> particles, bool rigid, const Net& from, Net& to) {
-  if (to.size() == 0) to = Net::Zero(from.rows(), 3);
+/// Returns the rows of the particles that are rigid bodies, or of those that are not, with zeros in all other rows.
+Net rows_of(std::span<const Particle> particles, bool rigid, const Net& net) {
+  Net rows = Net::Zero(net.rows(), 3);
   for (const Particle& one : particles)
-    if (one.rigid.has_value() == rigid) one.block.rows(to) = one.block.rows(from);
-}
-
-/// Adds the rows of the particles that are rigid bodies, or of those that are not, to r.
-void add_rows(std::span<const Particle> particles, bool rigid, const Net& rows, BlockVector& r) {
-  Eigen::Map<Net> all = System::particles(r);
-  for (const Particle& one : particles)
-    if (one.rigid.has_value() == rigid) all.middleRows(one.block.first_point, one.block.n_points) += one.block.rows(rows);
+    if (one.rigid.has_value() == rigid) one.block.rows(rows) = one.block.rows(net);
+  return rows;
 }
 
 }  // namespace
 
 void DeformableVelocities::add_sources(const BlockVector& x, Given given, Sources& to) const {
-  const Net v = System::particles(x);
-  if (has_double_ && !v.isZero(0)) set_rows(particles_, false, v, to.density);
+  const Net v = rows_of(particles_, false, System::particles(x));
+  if (has_double_) to.add_density(v);
   if (given == Given::included && load_.size() > 0) to.add_load(load_);
-  if (membranes_.viscous() && !v.isZero(0)) {
-    Net moving = v;
-    clear_rigid(particles_, moving);
-    to.add_load(membranes_.viscous_load(x_, moving));
-  }
+  if (membranes_.viscous() && !v.isZero(0)) to.add_load(membranes_.viscous_load(x_, v));
 }
 
 void DeformableVelocities::add_residual(const BlockVector& x, const Sources&, const SurfaceVelocity& u, Given, BlockVector& r) const {
-  add_rows(particles_, false, System::particles(x) - u.control_values(), r);
+  System::particles(r) += rows_of(particles_, false, System::particles(x) - u.control_values());
 }
 
 void BodyDensities::add_sources(const BlockVector& x, Given given, Sources& to) const {
   const Net w = System::particles(x);
-  if (given == Given::included) {
-    Net load = Net::Zero(w.rows(), 3);
-    rigid_.add_load(load);
-    to.add_load(std::move(load));
-  }
-  if (w.isZero(0)) return;
-  set_rows(particles_, true, w, to.density);
-  if (rigid_.prescribed()) to.add_load(rigid_.completing_load(w));
+  to.add_density(rows_of(particles_, true, w));
+  Net load = rigid_.prescribed() ? rigid_.completing_load(w) : Net(Net::Zero(w.rows(), 3));
+  if (given == Given::included) rigid_.add_load(load);
+  if (given == Given::included || rigid_.prescribed()) to.add_load(std::move(load));
 }
 
 void BodyDensities::add_residual(const BlockVector& x, const Sources&, const SurfaceVelocity& u, Given given, BlockVector& r) const {
@@ -53,20 +39,17 @@ void BodyDensities::add_residual(const BlockVector& x, const Sources&, const Sur
   if (given == Given::included) rigid_.add_load_correction(known), rigid_.subtract_prescribed(known);
   Net rows = w - known;
   rigid_.complete(w, rows);
-  add_rows(particles_, true, rows, r);
+  System::particles(r) += rows_of(particles_, true, rows);
 }
 
 void BodyTractions::add_sources(const BlockVector& x, Given, Sources& to) const {
   const Net y = System::particles(x);
-  if (y.isZero(0)) return;
-  Net load = Net::Zero(y.rows(), 3);
-  set_rows(particles_, true, -y, load);
-  to.add_load(std::move(load));
+  if (!y.isZero(0)) to.add_load(-rows_of(particles_, true, y));
 }
 
 void BodyTractions::add_residual(const BlockVector& x, const Sources&, const SurfaceVelocity& u, Given, BlockVector& r) const {
-  add_rows(particles_, true, u.at_targets(), r);
-  if (on_lattice_) add_rows(particles_, true, bodies_.regular(System::particles(x)), r);
+  System::particles(r) += rows_of(particles_, true, u.at_targets());
+  if (on_lattice_) System::particles(r) += rows_of(particles_, true, bodies_.regular(System::particles(x)));
 }
 
 }  // namespace tanktread::coupling

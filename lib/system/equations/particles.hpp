@@ -1,8 +1,9 @@
 #pragma once
 // Equations of the unknowns on particles: velocities of deformable particles, and densities or tractions of rigid bodies.
 
-#include <memory>
 #include <span>
+#include <string>
+#include <utility>
 
 #include "system/membranes.hpp"
 #include "system/solids/bodies/body_layer.hpp"
@@ -11,7 +12,8 @@
 
 namespace tanktread::coupling {
 
-/// Velocity v of deformable particles: v - R^-1 u = 0 (4.2). v is a density if lambda != 1, and a load if a membrane is viscous (3.11).
+/// Velocity v of deformable particles: v - R^-1 u = 0 (4.2). v is a density if lambda != 1, and a load if a membrane is viscous (3.11). References of
+/// the classes here must outlive their objects.
 class DeformableVelocities : public Equation {
  public:
   /// `load`: given load at the shape x, no rows if there is none. `has_double`: whether any particle has a double layer.

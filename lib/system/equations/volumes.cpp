@@ -5,7 +5,7 @@
 namespace tanktread::coupling {
 
 void VolumeConstraint::project(BlockVector& x) const {
-  if (multipliers_ || !volumes_.active()) return;
+  if (multipliers_) return;
   System::particles(x) = volumes_.applied(System::particles(std::as_const(x)));
 }
 

@@ -11,9 +11,9 @@ void EliminatedWalls::answer(const BlockVector&, Given given, Sources& to) const
   to.walls = walls_.respond(to.load, to.density, with_empty);
 }
 
-DuctWall::DuctWall(Tube& tube, double viscosity, const Layout& unknowns, std::string form)
-    : tube_(tube), form_(std::move(form)), unit_(tube.wall().radius() / viscosity), traction_(unknowns.id("wall traction", -1)),
-      drop_(unknowns.id("pressure drop", -1)) {}
+DuctWall::DuctWall(Tube& tube, const Layout& unknowns, std::string form)
+    : tube_(tube), form_(std::move(form)), traction_(unknowns.id("wall traction", -1)), drop_(unknowns.id("pressure drop", -1)),
+      unit_(unknowns[drop_].unit) {}
 
 std::vector<Block> DuctWall::unknowns(const Tube& tube, double viscosity) {
   const double unit = viscosity / tube.wall().radius();
@@ -32,7 +32,7 @@ void DuctWall::answer(const BlockVector& x, Given, Sources& to) const {
 void DuctWall::add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity&, Given, BlockVector& r) const {
   const Tube::Response& response = from.walls->tube;
   r(traction_) += tube_.wall_on_wall(response.wall_traction) - response.pressure_drop * tube_.inlet_on_wall() - response.on_wall;
-  r(drop_) += x(drop_) - Eigen::MatrixXd::Constant(1, 1, unit_ * response.caused_drop);
+  r(drop_)(0, 0) += x(drop_)(0, 0) - response.caused_drop / unit_;
 }
 
 void DuctWall::precondition(const BlockVector& r, BlockVector& x) const {
@@ -41,7 +41,7 @@ void DuctWall::precondition(const BlockVector& r, BlockVector& x) const {
   Net on_wall = r(traction_);
   if (form_ == "block triangular") {
     const Net y = System::particles(std::as_const(x));
-    x(drop_)(0, 0) += unit_ * tube_.pressure_of({}, y);
+    x(drop_)(0, 0) += tube_.pressure_of({}, y) / unit_;
     on_wall += x.value(drop_)(0, 0) * tube_.inlet_on_wall() + tube_.particle_on_wall({}, y);
   }
   x.set(traction_, tube_.solve_wall(on_wall));

@@ -29,8 +29,9 @@ class DuctWall : public Equation {
  public:
   /// `form`: word of Solvers/tube that chooses the preconditioner. `block triangular`: dp includes the effect of the particles, and f^D that of
   /// particles and dp. `block diagonal`: without these. `block`: none.
-  DuctWall(Tube& tube, double viscosity, const Layout& unknowns, std::string form);
+  DuctWall(Tube& tube, const Layout& unknowns, std::string form);
 
+  /// Returns the blocks of f^D (control values of the traction) and dp, in the unit mu/R_T, so that their numbers are velocities. mu: `viscosity`.
   static std::vector<Block> unknowns(const Tube& tube, double viscosity);
 
   std::string plan() const override { return "wall traction and pressure drop, preconditioner `" + form_ + "`"; }
@@ -41,8 +42,8 @@ class DuctWall : public Equation {
  private:
   Tube& tube_;
   std::string form_;
-  double unit_;  // velocity per traction by which the rows of dp are scaled
   BlockId traction_, drop_;
+  double unit_;  // unit of dp: its row is divided by it, so that the residual is a velocity
 };
 
 }  // namespace tanktread::coupling

@@ -14,15 +14,22 @@
 
 namespace tanktread::coupling {
 
-/// What causes flow at one shape, by control values of all particles. Absent parts (nets without rows) count as zero and cost nothing.
+/// Sources of flow at one shape, by control values of all particles. Absent parts (nets without rows) count as zero and cost nothing.
 struct Sources {
   Net load;                                   ///< f of the single layers, force per area
   Net density;                                ///< v: the double layers have the density (1 - lambda) v, or -w on rigid bodies (viscosity_contrast)
   std::optional<FluidWalls::Response> walls;  ///< tractions on walls and the pressure drop, and the flow of plates and posts
   bool ambient = false;                       ///< whether the ambient flow is included
 
-  void add_load(Net part) { load = load.size() > 0 ? Net(load + part) : std::move(part); }
+  void add_load(Net part) { add(load, std::move(part)); }
+  void add_density(Net part) { add(density, std::move(part)); }
+
+ private:
+  static void add(Net& to, Net part) { to = to.size() > 0 ? Net(to + part) : std::move(part); }
 };
+
+/// Returns whether the ambient velocity is needed at the targets. Otherwise it is affine, and exact at the control points.
+inline bool flow_at_targets(const FluidWalls& walls, const stokes::AmbientFlow& flow) { return walls.any() || !flow.affine(); }
 
 /// One set of target points, and the operators by which the sources cause velocities there: exact, assembled or frozen. Calls are collective and
 /// return equal nets on all ranks.

@@ -20,8 +20,4 @@ Net Targets::control_values(Net at_targets) const {
   return projection_ ? projection_->control_values(at_targets) : collocated(std::move(at_targets));
 }
 
-Net Targets::serial_control_values(const Net& at_targets) const {
-  return projection_ ? projection_->control_values(at_targets) : collocation_.solve(at_targets);
-}
-
 }  // namespace tanktread::coupling

@@ -35,8 +35,6 @@ class Targets {
   /// Returns the control values of the velocity whose values at the targets are `at_targets`. With collocation, this function is collective and
   /// divides the work among the ranks.
   Net control_values(Net at_targets) const;
-  /// Returns the same control values as control_values(). With collocation, every rank does all the work.
-  Net serial_control_values(const Net& at_targets) const;
 
   /// Returns the control values of the field whose values at the collocation sites are `at_sites`. Collective.
   Net collocated(Net at_sites) const { return layout_.solved(collocation_, std::move(at_sites)); }

@@ -52,8 +52,7 @@ struct MatrixLayers : LayersAt {
 /// v - u = 0, with the density v.
 struct Velocities : Equation {
   void add_sources(const BlockVector& x, Given, Sources& to) const override {
-    const Net v = System::particles(x);
-    if (!v.isZero(0)) to.density = v;
+    to.add_density(System::particles(x));
   }
   void add_residual(const BlockVector& x, const Sources&, const SurfaceVelocity& u, Given, BlockVector& r) const override {
     System::particles(r) += System::particles(x) - u.control_values();
