@@ -1,5 +1,5 @@
 #pragma once
-// The program as a function, for a main function that adds user-defined parts (loads, fields, flows, media, series).
+// The program as a function, for a main function that adds user-defined parts (loads, fields, flows, media, series, equations).
 
 #include "scene/registry.hpp"
 

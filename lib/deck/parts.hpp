@@ -1,5 +1,5 @@
 #pragma once
-// Registry of user-defined parts of a scene (loads, fields, flows, media, series), which decks choose by name.
+// Registry of user-defined parts of a scene (loads, fields, flows, media, series, equations), which decks choose by name.
 
 #include <algorithm>
 #include <functional>

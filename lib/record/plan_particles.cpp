@@ -94,7 +94,7 @@ VelocityUnknowns velocity_unknowns(const Scene& scene, const std::vector<Particl
   const bool constrained = scene.volume.constrained();
   found.multipliers = found.deforms && !found.tractions && constrained && scene.solvers.keeps_multipliers(found.walls);
   const bool other = found.tractions ? scene.tube.present || scene.domain.present : found.bodies || found.walls || found.multipliers;
-  found.iterates = layers || other;
+  found.iterates = layers || other || !scene.equations.empty();
   found.system = found.deforms && found.iterates;
   return found;
 }

@@ -186,6 +186,7 @@ std::string series_manual(const Registry& registry) {
   add(registry.loads.columns(), "Membrane/loads");
   add(registry.fields.columns(), "Interface/fields");
   add(registry.series.columns(), "Output/series");
+  add(registry.equations.columns(), "Equations");
   text += "\n## Fields\n\nThe group `/VTKHDF` in `snapshot_<step>.hdf`, at the nodes of the snapshot.\n" + table("field", fields);
   text += "\n## The empty tube\n\nThe file `duct.h5` of a run in a tube.\n\n| array | unit | description |\n|---|---|---|\n";
   for (const output::Array& one : duct_arrays(stokes::DuctFlow(circle, 1, 1)))

@@ -146,6 +146,7 @@ void check_in_medium(const ParticleScene& particle_scene, const Body& body) {
 
 std::string lacks_symmetry(const ParticleScene& particle_scene, const Body& body) {
   if (particle_scene.particle.rigid()) return "for a rigid body";
+  if (!particle_scene.equations.empty()) return "with added equations";
   if (body.wall)
     switch (body.wall->kind) {
       case surface::DuctKind::straight_tube: return "in a tube";

@@ -195,6 +195,7 @@ std::shared_ptr<coupling::Capsule> make_capsule(std::vector<Member>& members, co
   parameters.cell = particle_scene.domain.cell();
   parameters.medium = particle_scene.medium();
   parameters.solids = solids;
+  for (const EquationParts::Chosen& one : particle_scene.equations) parameters.equations.push_back(one.make);
   const auto system = std::make_shared<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, phases, std::move(tube));
   if (members.size() == 1) {
     members.front().geometry = {system, &system->geometry()};

@@ -1,7 +1,8 @@
 #pragma once
-// Registry of user-defined parts (loads, fields, flows, media, series), which a program adds to the parts of the library.
+// Registry of user-defined parts (loads, fields, flows, media, series, equations), which a program adds to the parts of the library.
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <variant>
 #include <vector>
@@ -12,6 +13,11 @@
 #include "spline/space.hpp"
 #include "stokes/flow/user_flow.hpp"
 #include "stokes/medium/medium.hpp"
+
+namespace tanktread::coupling {
+class UserEquation;  // system/equations/user_equation.hpp
+struct ParticlesAtRest;
+}  // namespace tanktread::coupling
 
 namespace tanktread {
 
@@ -29,7 +35,10 @@ using RunSeries = std::function<std::vector<double>(double time, std::span<const
 /// The registered series. Each is computed per particle, or once for all particles together.
 using SeriesParts = deck::Parts<std::variant<ParticleSeries, RunSeries>()>;
 
-/// User-defined parts of the program, by name: loads, fields, flows, media and series. Each part declares its keys of the deck. `main`
+/// The registered equations, with unknowns of their own.
+using EquationParts = deck::Parts<std::shared_ptr<const coupling::UserEquation>(const coupling::ParticlesAtRest&)>;
+
+/// User-defined parts of the program, by name: loads, fields, flows, media, series and equations. Each part declares its keys of the deck. `main`
 /// (app/program.hpp) accepts a registry. The section Recipes of lib/README.md shows an example of each kind of part.
 struct Registry {
   membrane::LoadParts loads;    ///< `Membrane/loads/<name>`
@@ -37,6 +46,7 @@ struct Registry {
   stokes::UserFlows flows;      ///< `Flow/type <name>`, keys in `Flow/<name>`
   stokes::UserMedia media;      ///< `Domain/kind <name>`, keys in `Domain/<name>`
   SeriesParts series;           ///< `Output/series/<name>`
+  EquationParts equations;      ///< `Equations/<name>`
 };
 
 inline const Registry no_parts;

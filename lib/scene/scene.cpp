@@ -13,8 +13,9 @@ namespace tanktread {
 
 namespace {
 
-/// Declares the sections Output, Expect and Accuracy.
+/// Declares the sections Equations, Output, Expect and Accuracy.
 void declare_results(deck::Section& root, Scene& scene) {
+  scene.equations = scene.registry->equations.read(root, "Equations", "equations that this program adds; none without this section");
   const auto results = [&scene](deck::Section& section) {
     scene.output.declare(section);
     scene.series = scene.registry->series.read(section, "series", "series that this program adds to the record; none without this section");
@@ -57,6 +58,7 @@ void list_idle_keys(Scene& scene) {
       "with the tractions on rigid bodies as unknowns");
   add(scene.only_solids && scene.output.power_balance, "Output/power balance", "in a scene of posts only");
   add(scene.output.view && (scene.only_solids || scene.is_resistance_problem()), "Output/view direction", "without a moving particle");
+  add(scene.only_solids && !scene.equations.empty(), "Equations", "in a scene of posts only");
   add(scene.only_solids && !scene.series.empty(), "Output/series", "in a scene of posts only");
   add(scene.tube.present && !surface::properties(scene.tube.kind()).may_iterate && scene.solvers.wall == "iterative", "Solvers/wall `iterative`",
       "on the wall of a straight tube, which is always factored");
@@ -250,6 +252,7 @@ std::string_view why_in_system(const SharedOptions& shared, const ParticleKind& 
   if (shared.tube.repulsion) return "repulsion";
   if (shared.varies_in_time() && kind.particle.motion == Motion::prescribed) return "Flow/history";
   if (!shared.series.empty()) return "Output/series";
+  if (!shared.equations.empty()) return "Equations";
   return shared.flow.user && !shared.flow.user->affine() ? "Flow/type" : "";
 }
 

@@ -69,7 +69,7 @@ struct SearchOptions {
 
 /// Options of a deck that all particles share, with one section of the deck each.
 struct SharedOptions : SearchOptions {
-  const Registry* registry = &no_parts;  ///< user-defined loads, fields, flows, media and series
+  const Registry* registry = &no_parts;  ///< user-defined parts
   stokes::FlowOptions flow;
   std::shared_ptr<const deck::Units> units;  ///< units of the deck's values; null if the deck does not set them
   ContactOptions contact;
@@ -87,6 +87,7 @@ struct SharedOptions : SearchOptions {
   deck::Expectations expect;
   accuracy::Options accuracy;
   std::vector<SeriesParts::Chosen> series;  ///< Output/series
+  std::vector<EquationParts::Chosen> equations;  ///< Equations
   bool volume_given = false;  ///< true if the deck has the section Volume
   std::shared_ptr<coupling::SharedWalls> walls;  ///< walls, plates and posts, which the systems of one search share
   std::vector<std::pair<std::string, std::string>> files;  ///< files that the deck names: path, and name of the copy that the run keeps

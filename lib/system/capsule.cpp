@@ -74,7 +74,7 @@ void Capsule::linearise(const Net& x) {
   const auto clock = phases_.time("tangent");
   ++counts().tangents;
   const auto e = evaluate_on_demand(x, {}, 0);
-  jacobian_.linearise(x, slides() ? e->virtual_work() : Net(), e->load_sums(), e->slip());
+  jacobian_.linearise(x, slides() ? e->virtual_work() : Net(), e->load_sums(), e->slip(), e->solution());
   if (!solver_.is_explicit() && has_frozen()) solver_.use_inverse([this](const Net& rhs) { return jacobian_.inverse_product(rhs); });
 }
 
@@ -92,9 +92,13 @@ Net Capsule::mesh_motion(const Net& delta) {
 
 void Capsule::restore_constraints(Net& x) {
   solver_.rigid().fit_to(x);
-  if (parameters().volume.constraint != VolumeConservation::exact) return;
-  const auto clock = phases_.time("volume");
-  solver_.volumes().restore(x, [&](const Net& b) { return jacobian_.inflation(solver_.membranes().solved(b)); });
+  if (parameters().volume.constraint == VolumeConservation::exact) {
+    const auto clock = phases_.time("volume");
+    solver_.volumes().restore(x, [&](const Net& b) { return jacobian_.inflation(solver_.membranes().solved(b)); });
+  }
+  if (solver_.equations().empty() || !x.allFinite()) return;
+  solver_.equations().restore(x);
+  solver_.rigid().fit_to(x);
 }
 
 /// Returns velocity fields, with the symmetry of the scene, that do not change the shape: rotations of the meshes of drops and of membranes (4.22).
@@ -132,7 +136,8 @@ bool Capsule::evaluated_about(const Net& x, double distance) const {
   Net moved = x - latest_->x();
   const auto depends_on_x1 = [](const auto& load) { return !load->rigid_conditions().col(0).isZero(0); };
   const auto notices = [&](const Particle& one) { return std::ranges::any_of(one.loads, depends_on_x1); };
-  if (tube() && !tube()->fixed() && std::ranges::none_of(particles(), notices)) moved.col(0).array() -= moved.col(0).mean();
+  const bool moves_along = tube() && !tube()->fixed() && solver_.equations().empty();
+  if (moves_along && std::ranges::none_of(particles(), notices)) moved.col(0).array() -= moved.col(0).mean();
   return norm(moved) <= distance;
 }
 

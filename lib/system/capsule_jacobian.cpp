@@ -63,18 +63,19 @@ class FrozenVelocities : public Equation {
       : particles_(particles), membranes_(membranes), work_(std::move(work)), has_double_(has_double), moves_(moves) {}
 
   void add_sources(const BlockVector& x, Given given, Sources& to) const override {
-    Net work = given == Given::included ? work_ : Net();
+    if (given == Given::included && work_.size() > 0) to.add_work(work_);
     Net moving = System::particles(x);
-    if (moves_ && !moving.isZero(0)) {
-      clear_rigid(particles_, moving);
-      if (membranes_.viscous()) {
-        const Net viscous = membranes_.viscous_work_change(moving);
-        work = work.size() > 0 ? Net(viscous + work) : viscous;
-      }
-      if (has_double_) to.add_density(std::move(moving));
-    }
-    if (work.size() > 0) to.add_load(membranes_.solved(std::move(work)));
+    if (!moves_ || moving.isZero(0)) return;
+    clear_rigid(particles_, moving);
+    if (membranes_.viscous()) to.add_work(membranes_.viscous_work_change(moving));
+    if (has_double_) to.add_density(std::move(moving));
   }
+  void add_loads_of_work(Sources& to) const override {
+    Net work = to.work;
+    clear_rigid(particles_, work);
+    to.add_load(membranes_.solved(std::move(work)));
+  }
+  void add_velocity(const BlockVector& x, Given, Net& v) const override { v += System::particles(x); }
   void add_residual(const BlockVector& x, const Sources&, const SurfaceVelocity& u, Given, BlockVector& r) const override {
     Net caused = u.control_values();
     clear_rigid(particles_, caused);
@@ -86,6 +87,22 @@ class FrozenVelocities : public Equation {
   const Membranes& membranes_;
   Net work_;
   bool has_double_, moves_;
+};
+
+/// An equation that the program adds, without its terms that do not depend on the unknowns.
+class FrozenEquation : public Equation {
+ public:
+  explicit FrozenEquation(std::shared_ptr<const Equation> exact) : exact_(std::move(exact)) {}
+  void add_sources(const BlockVector& x, Given, Sources& to) const override { exact_->add_sources(x, Given::omitted, to); }
+  void add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity& u, Given, BlockVector& r) const override {
+    constexpr double regular = 1e-8;  // if the equation acts on rigid bodies only, whose rows of J are 0, its unknowns have no other entries
+    exact_->add_residual(x, from, u, Given::omitted, r);
+    const Eigen::Index n = x.numbers().size() - System::particles(x).size();
+    r.numbers().tail(n) += regular * x.numbers().tail(n);
+  }
+
+ private:
+  std::shared_ptr<const Equation> exact_;
 };
 
 class FrozenTube : public Equation {
@@ -105,17 +122,20 @@ CapsuleJacobian::CapsuleJacobian(VelocitySolver& solver, FrozenLayers& frozen)
     : parameters_(solver.parameters()), flow_(solver.flow()),
       flow_at_sites_(flow_at_targets(solver.walls(), solver.flow())), targets_(solver.targets()),
       membranes_(solver.membranes()), volumes_(solver.volumes()), frozen_(frozen), explicit_(solver.is_explicit()), tube_(solver.walls().tube),
-      interface_(solver.interface()), counts_(solver.counts()),
-      unknowns_(std::make_shared<const Layout>(blocks_of_particles(parameters_.particles))),
-      step_solver_(parameters_.solvers.of(parameters_.solvers.implicit_step)),
-      inner_solver_(parameters_.solvers.of(parameters_.solvers.velocity)) {
+      interface_(solver.interface()), counts_(solver.counts()), added_{solver.equations(), {}, {}},
+      unknowns_(std::make_shared<const Layout>(with_added(blocks_of_particles(parameters_.particles)))),
+      solvers_{Krylov(parameters_.solvers.of(parameters_.solvers.implicit_step)), Krylov(parameters_.solvers.of(parameters_.solvers.velocity))} {
   if (std::ranges::none_of(parameters_.particles, [](const Particle& one) { return one.material.area_order > 0; })) return;
   const Eigen::VectorXd areas = membranes_.mass_matrix().row_sums(membranes_.unstressed());
   area_.emplace(membranes_.membrane(), mobilities(parameters_.particles, areas, parameters_.viscosity));
   if (area_->empty()) area_.reset();
 }
 
-void CapsuleJacobian::linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums, const Slip& slip) {
+void CapsuleJacobian::linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums, const Slip& slip,
+                                const BlockVector& solution) {
+  x_ = x, added_.solution = solution;
+  added_.here.clear();
+  if (!interface_) std::ranges::move(added_.all.at(x, *unknowns_), std::back_inserter(added_.here));
   membranes_.linearise(x, sums);
   frozen_.turn_to(x);
   if (area_) area_->set_shape(x);
@@ -125,7 +145,7 @@ void CapsuleJacobian::linearise(const Net& x, const Net& energy_gradient, const 
   if (parameters_.volume.constrained()) projection_ = volumes_.projection(gradient, membranes_.solved(gradient));
   if (!interface_) return;
   interface_->linearise(x, gradient, slip);
-  pressures_.clear(), x_ = x;
+  pressures_.clear();
   for (const Particle& one : parameters_.particles) {
     const Net y = one.block.rows(x).rowwise() - one.block.rows(x).colwise().mean();
     if (one.slides()) pressures_.push_back({one.block, dot(Net(one.block.rows(energy_gradient)), y) / dot(Net(one.block.rows(gradient)), y)});
@@ -148,8 +168,8 @@ Net CapsuleJacobian::inflation(const Net& c) {
   if (latest_shift_ == 0 || interface_ || c.rows() != projection_.gradient.rows()) return c;
   if (std::ranges::none_of(parameters_.particles, resists_area)) return c;
   const double shift = latest_shift_;
-  const Apply apply = on_nets(c.rows(), [&](const Net& delta) { return step_change(delta, shift, {}).rate; });
-  const Apply precondition = area_ ? on_nets(c.rows(), [this](const Net& r) { return step_preconditioner(r); }) : Apply();
+  const Apply apply = on_nets(c.rows(), [&](const Net& delta) { return step_change(delta, {}, shift, {}).rate; });
+  const Apply precondition = area_ ? on_nets(c.rows(), [this](const Net& r) { return area_->apply(r); }) : Apply();
   const Net along = parameters_.symmetry.completed(as_net(solve_step(shift, apply, precondition, flat(c), rough)));
   return along.allFinite() ? along : c;
 }
@@ -174,14 +194,23 @@ Net CapsuleJacobian::without_pressure(Net work, const Net& db) const {
 ///
 /// P is the volume projection (2.8), v_inf the ambient velocity, R the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the
 /// membrane tangent. `added_work`, if given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies, B is the
-/// identity and B J dx is 0. This is the residual of the system with frozen layers and walls, in which the displacement is what is given.
-Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& added_work) {
+/// identity and B J dx is 0. This is the residual of the system with frozen layers and walls, in which the displacement is what is given. It has the
+/// rows of the added equations, whose unknowns are `added` if they are not zero.
+BlockVector CapsuleJacobian::product(const Net& v, const Eigen::VectorXd& added, const Net& dx, double shift, const Net& added_work) {
   const bool displaced = dx.size() > 0;
-  if (explicit_ && !displaced) return v;
+  BlockVector x(unknowns_);
+  if (v.size() > 0) System::particles(x) = v;
+  x.numbers().tail(added.size()) = added;
+  if (explicit_ && !displaced && added_.here.empty()) return x;
   Net work, moved;
   if (displaced) {
     work = shift * membranes_.work_change(dx);
     if (added_work.size() > 0) work += shift * added_work;
+    if (!added_.here.empty()) {
+      Net change = Net::Zero(dx.rows(), 3);
+      added_.all.add_work_change(x_, added_.solution, dx, change);
+      work += shift * change;
+    }
     moved = flow_at_sites_ ? Net(shift * (targets_.at_sites() * dx)) : Net(shift * dx * flow_.gradient(Vec3::Zero()).transpose());
     for (Eigen::Index i = 0; flow_at_sites_ && i < moved.rows(); ++i)
       moved.row(i) = (moved.row(i) * gradients_[static_cast<size_t>(i)].transpose()).eval();
@@ -191,23 +220,39 @@ Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Ne
   if (projection_.active()) equations.push_back(std::make_unique<VolumeConstraint>(projection_, nullptr));
   if (tube_) equations.push_back(std::make_unique<FrozenTube>(*tube_));
   const auto layers = std::make_shared<FrozenAtSites>(frozen_, parameters_.viscosity, std::move(moved), flow_at_sites_);
+  for (const auto& one : added_.here) equations.push_back(std::make_unique<FrozenEquation>(one));
   const System system(unknowns_, std::move(equations), layers, [this](const Net& u) { return targets_.collocated(u); });
-  const BlockVector x = v.size() > 0 ? system.of(v) : BlockVector(unknowns_);
-  return System::particles(system.residual(x, displaced ? Given::included : Given::omitted));
+  return system.residual(x, displaced ? Given::included : Given::omitted);
+}
+
+/// Returns the rows of the particles, and those of the added equations times a weight. Without it, an iterative solver would neglect their few rows.
+CapsuleJacobian::RateChange CapsuleJacobian::parted(const BlockVector& r, double weight) const {
+  const auto particles = System::particles(r);
+  return {particles, {}, weight * r.numbers().tail(r.numbers().size() - particles.size())};
+}
+
+CapsuleJacobian::RateChange CapsuleJacobian::step_preconditioner(const Net& r, const Eigen::VectorXd& added) const {
+  BlockVector rows(unknowns_), x(unknowns_);
+  System::particles(rows) = r, rows.numbers().tail(added.size()) = added / row_weight();
+  x = rows;
+  System::particles(x) = area_ ? area_->apply(r) : r;
+  for (const auto& one : added_.here) one->precondition(rows, x);
+  return parted(x, 1);
 }
 
 /// Solves B v = rhs for v to the relative residual `tolerance`.
 Net CapsuleJacobian::fluid_velocity(const Net& rhs, double tolerance) {
-  const LinearSystem system{unknowns_->blocks(), on_nets(rhs.rows(), [this](const Net& u) { return product(u, {}, 0, {}); }), {}};
+  const LinearSystem system{blocks_of_particles(parameters_.particles),
+                            on_nets(rhs.rows(), [this](const Net& u) { return Net(System::particles(product(u, {}, {}, 0, {}))); }), {}};
   Eigen::VectorXd v = flat(rhs);
-  counts_.solver_iterations += inner_solver_.solve(system, flat(rhs), v, tolerance).iterations;
+  counts_.solver_iterations += solvers_.inner.solve(system, flat(rhs), v, tolerance).iterations;
   return as_net(v);
 }
 
 /// Returns the change J dx of the fluid velocity due to the displacement dx. Solves B (J dx) = rhs to a smaller tolerance than the system of
 /// an implicit step, because each product with the matrix of that system may require this solve.
 Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& added_work) {
-  const Net rhs = product({}, dx, -1, added_work);
+  const Net rhs = System::particles(product({}, {}, dx, -1, added_work));
   return explicit_ ? rhs : fluid_velocity(rhs, 1e-3);
 }
 
@@ -219,8 +264,8 @@ CapsuleJacobian::RateChange CapsuleJacobian::velocity_change(const Net& dx, cons
   return {du, dv - du};
 }
 
-CapsuleJacobian::RateChange CapsuleJacobian::step_change(const Net& dx, double shift, const Net& added_work) {
-  if (!interface_) return {product(dx, dx, shift, added_work), {}};
+CapsuleJacobian::RateChange CapsuleJacobian::step_change(const Net& dx, const Eigen::VectorXd& added, double shift, const Net& added_work) {
+  if (!interface_) return parted(product(dx, added, dx, shift, added_work), row_weight());
   RateChange change = velocity_change(dx, added_work);
   return {dx - shift * change.rate, std::move(change.slip)};
 }
@@ -243,7 +288,7 @@ Eigen::VectorXd CapsuleJacobian::solve_step(double shift, const Apply& product, 
   if (area_) area_->factor(shift);
   Eigen::VectorXd solution = Eigen::VectorXd::Zero(rhs.size());
   const LinearSystem system{one_block("displacement", rhs.size()), product, precondition};
-  const SolveReport report = step_solver_.solve(system, rhs, solution, tolerance * tolerance_factor());
+  const SolveReport report = solvers_.step.solve(system, rhs, solution, tolerance * tolerance_factor());
   ++counts_.solves;
   counts_.solver_iterations += report.iterations;
   return solution;

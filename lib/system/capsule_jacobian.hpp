@@ -1,6 +1,7 @@
 #pragma once
 // The Jacobian of Capsule, and the linear systems of an implicit step.
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -19,9 +20,11 @@ namespace tanktread::coupling {
 class CapsuleJacobian {
  public:
   /// Changes due to a displacement dx and to additional loads with the virtual work `added_work`. `rate`: see velocity_change() and step_change().
-  /// `slip`: change of the fluid velocity minus the velocity of the control points; empty if no control points slide along an interface.
+  /// `slip`: change of the fluid velocity minus the velocity of the control points; empty if no control points slide along an interface. `added`:
+  /// rows of the equations that the program adds.
   struct RateChange {
     Net rate, slip;
+    Eigen::VectorXd added{};
   };
 
   /// `solver`: computes the velocity v; this object increases its counters of operations. `frozen`: its layers, frozen. References must outlive this
@@ -29,24 +32,31 @@ class CapsuleJacobian {
   CapsuleJacobian(VelocitySolver& solver, FrozenLayers& frozen);
 
   /// Linearises at x. `energy_gradient`: dE/dx at x, required only if control points slide. `sums`: surface integrals that Membranes::work computed
-  /// at x. `slip`: slip at x, required only if control points slide; empty if it is unknown.
-  void linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums, const Slip& slip);
+  /// at x. `slip`: slip at x, required only if control points slide; empty if it is unknown. `solution`: unknowns at x, required only if the program
+  /// adds equations.
+  void linearise(const Net& x, const Net& energy_gradient, const std::vector<Net>& sums, const Slip& slip, const BlockVector& solution);
 
   /// Returns an approximation of B^-1 rhs with the operator B of (4.2), solved to the relative residual 0.05.
   Net inverse_product(const Net& rhs) { return fluid_velocity(rhs, 0.05); }
 
-  /// Returns B v with the operator B of (4.2), or v if control points slide along an interface.
-  Net velocity_product(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
+  /// Returns these blocks, followed by the blocks of the equations that the program adds, unless control points slide: a step then omits them.
+  std::vector<Block> with_added(std::vector<Block> blocks) const { return interface_ ? blocks : added_.all.after(std::move(blocks)); }
+
+  /// Returns B v with the operator B of (4.2), or v if control points slide along an interface, as `rate`, and the rows of the added equations.
+  RateChange velocity_product(const Net& v) { return interface_ ? RateChange{v, {}} : parted(product(v, {}, {}, 0, {}), row_weight()); }
   RateChange velocity_change(const Net& dx, const Net& added_work);  ///< returns J dx as `rate`
   /// Returns the left-hand side of an implicit step as `rate`: B (dx - shift J dx), or dx - shift J dx if control points slide. `slip` equals
-  /// velocity_change(dx, added_work).slip. If no control points slide, applies each layer only once.
-  RateChange step_change(const Net& dx, double shift, const Net& added_work);
+  /// velocity_change(dx, added_work).slip. If no control points slide, applies each layer only once. `added`: unknowns of the added equations, times
+  /// the shift; they are zero if it is empty. Their rows are taken for the velocity dx, because displacements satisfy the same linear conditions as
+  /// velocities.
+  RateChange step_change(const Net& dx, const Eigen::VectorXd& added, double shift, const Net& added_work);
 
-  /// Applies an approximate inverse of the matrix of `solve`, for the shift of the latest call of solve_step().
-  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }
+  /// Applies an approximate inverse of the matrix of `solve`, for the shift of the latest call of solve_step(), to rows of the particles and of the
+  /// added equations.
+  RateChange step_preconditioner(const Net& r, const Eigen::VectorXd& added) const;
 
   /// Returns true if step_preconditioner() is not the identity.
-  bool has_preconditioner() const { return area_.has_value(); }
+  bool has_preconditioner() const { return area_ || !added_.all.empty(); }
 
   /// Solves the linear system of an implicit step with the shift gamma dt to the relative residual `tolerance`, and counts the solve. The tolerance
   /// is multiplied by 10/lambda if the largest viscosity ratio lambda of the deformable particles is between 10 and 2e4 and no control points slide.
@@ -66,7 +76,9 @@ class CapsuleJacobian {
 
  private:
   std::vector<Mat3> gradients_at(const Net& x) const;
-  Net product(const Net& v, const Net& dx, double shift, const Net& added_work);
+  BlockVector product(const Net& v, const Eigen::VectorXd& added, const Net& dx, double shift, const Net& added_work);
+  RateChange parted(const BlockVector& r, double weight) const;
+  double row_weight() const { return std::sqrt(static_cast<double>(frozen_.n_points())); }
   Net without_pressure(Net work, const Net& db) const;
   Net fluid_velocity(const Net& rhs, double tolerance);
   Net fluid_velocity_change(const Net& dx, const Net& added_work);
@@ -84,8 +96,17 @@ class CapsuleJacobian {
   InterfaceMotion* interface_;  // null if no control points slide
   OperationCounts& counts_;
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
-  std::shared_ptr<const Layout> unknowns_;  // velocities of the particles
-  Krylov step_solver_, inner_solver_;
+  /// Equations that the program adds; at x_, with the unknowns there. None are at x_ if control points slide.
+  struct Added {
+    const UserEquations& all;
+    std::vector<std::shared_ptr<const Equation>> here;
+    BlockVector solution;
+  };
+  Added added_;
+  std::shared_ptr<const Layout> unknowns_;  // velocities of the particles, and unknowns of the added equations
+  struct {
+    Krylov step, inner;
+  } solvers_;
   double latest_shift_ = 0;      // shift gamma dt of the implicit system solved last
   VolumeProjection projection_;  // projection P (2.8); not active if the volumes are free
   struct Pressure {
@@ -93,7 +114,7 @@ class CapsuleJacobian {
     double p;
   };
   std::vector<Pressure> pressures_;  // pressures p (4.35) of all particles whose control points slide
-  Net x_;                            // shape of the last linearisation; set if there are pressures
+  Net x_;                            // shape of the last linearisation
   std::vector<Mat3> gradients_;  // velocity gradients of the ambient flow at the collocation sites; set if flow_at_sites_ is true
 };
 

@@ -2,6 +2,7 @@
 // Parameters of a Capsule, and counts of its operations.
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -39,6 +40,10 @@ inline OperationCounts operator+(OperationCounts a, const OperationCounts& b) {
   return a;
 }
 
+class UserEquation;
+struct ParticlesAtRest;
+using UserEquationMaker = std::function<std::shared_ptr<const UserEquation>(const ParticlesAtRest&)>;
+
 /// Particles, medium and solver options of a Capsule.
 struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid
@@ -50,6 +55,7 @@ struct CapsuleParameters {
   std::optional<stokes::PeriodicCell> cell;  ///< cell of the lattice at time zero, if any. The flow deforms it, unless it has walls or posts
   std::shared_ptr<const stokes::Medium> medium;  ///< for example a plane wall; null in unbounded fluid, a lattice or a tube
   std::optional<SolidScene> solids;          ///< plates and posts in the cell
+  std::vector<UserEquationMaker> equations;  ///< equations that the program adds (system/equations/user_equation.hpp)
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; Symmetry() if there is none
 
   bool any_rigid() const { return std::ranges::any_of(particles, [](const Particle& one) { return one.rigid.has_value(); }); }

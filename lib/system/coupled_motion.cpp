@@ -7,7 +7,10 @@
 namespace tanktread::coupling {
 
 CoupledMotion::CoupledMotion(Capsule& capsule, std::vector<FieldOnParticle> fields)
-    : capsule_(capsule), fields_(std::move(fields)), layout_(layout(capsule.symmetry())) {}
+    : capsule_(capsule), fields_(std::move(fields)), layout_(layout(capsule.symmetry())), step_(layout_) {
+  std::vector<Block> unknowns = capsule.jacobian().with_added(layout_->blocks());
+  if (unknowns.size() > layout_->blocks().size()) step_ = std::make_shared<const Layout>(std::move(unknowns));
+}
 
 std::shared_ptr<const Layout> CoupledMotion::layout(const surface::Symmetry& symmetry, const Vec3& of_planes) const {
   const std::vector<Particle>& particles = capsule_.particles();
@@ -104,21 +107,43 @@ void CoupledMotion::linearise(const State& y) {
   capsule_.linearise(shape(y));
 }
 
-/// Multiplies the change of shape in delta by the operator B of (4.2). Does not modify the changes of the fields.
-State CoupledMotion::velocity_product(State delta) {
-  shape(delta) = capsule_.jacobian().velocity_product(shape(std::as_const(delta)));
+/// Multiplies the change of shape in delta by the operator B of (4.2). Does not modify the changes of the fields. Returns a vector of the step.
+BlockVector CoupledMotion::velocity_product(State delta) {
+  const CapsuleJacobian::RateChange product = capsule_.jacobian().velocity_product(shape(std::as_const(delta)));
+  shape(delta) = product.rate;
+  return in_step(std::move(delta), product.added);
+}
+
+/// Returns the vector of an implicit step with a change of state, and with unknowns or rows of the added equations, which are zero if `added` is
+/// empty.
+BlockVector CoupledMotion::in_step(State delta, const Eigen::VectorXd& added) const {
+  if (step_ == layout_) return delta;
+  BlockVector all(step_);
+  all.numbers().head(layout_->size()) = delta.numbers();
+  all.numbers().tail(added.size()) = added;
+  return all;
+}
+
+/// Returns the change of state in a vector of an implicit step.
+State CoupledMotion::state_in(BlockVector step) const {
+  if (step_ == layout_) return step;
+  State delta(layout_);
+  delta.numbers() = step.numbers().head(layout_->size());
   return delta;
 }
 
+/// Returns the unknowns or rows of the added equations in a vector of an implicit step.
+Eigen::VectorXd CoupledMotion::added_in(const BlockVector& step) const { return step.numbers().tail(step_->size() - layout_->size()); }
+
 /// Returns the left-hand side of an implicit step, delta - shift J delta with the Jacobian J (4.33). If no control points slide along an interface,
 /// the rows of the shape are multiplied by B (4.2), so that no linear system with B needs to be solved, and each layer is applied once.
-State CoupledMotion::step(const State& delta, double shift) {
+BlockVector CoupledMotion::step(const State& delta, const Eigen::VectorXd& added, double shift) {
   const FieldChange fields = field_change(delta);
-  const CapsuleJacobian::RateChange change = capsule_.jacobian().step_change(shape(delta), shift, fields.load);
+  const CapsuleJacobian::RateChange change = capsule_.jacobian().step_change(shape(delta), added, shift, fields.load);
   State result = state_of(change.rate);
   for (std::size_t k = 0; k < fields_.size(); ++k)
     result.set(id(k), coefficients(delta, k) - shift * field_rate(k, delta, fields, change.slip));
-  return result;
+  return in_step(std::move(result), change.added);
 }
 
 CoupledMotion::FieldChange CoupledMotion::field_change(const State& delta) const {
@@ -139,32 +164,38 @@ Eigen::VectorXd CoupledMotion::field_rate(std::size_t k, const State& delta, con
 }
 
 /// Applies an approximate inverse of step(), for the shift of the latest linear system.
-State CoupledMotion::preconditioned(State delta, double shift) const {
-  shape(delta) = capsule_.jacobian().step_preconditioner(shape(std::as_const(delta)));
+BlockVector CoupledMotion::preconditioned(const BlockVector& r, double shift) const {
+  State delta = state_in(r);
+  const CapsuleJacobian::RateChange change = capsule_.jacobian().step_preconditioner(shape(std::as_const(delta)), added_in(r));
+  shape(delta) = change.rate;
   for (std::size_t k = 0; k < fields_.size(); ++k) {
     const membrane::Field& field = *fields_[k].field;
-    Eigen::VectorXd r = coefficients(delta, k);
+    Eigen::VectorXd q = coefficients(delta, k);
     if (field.follows_shape()) {
       const Net dx = shape_at(k, delta);
-      r += shift * field.rate_change(dx, field.value_change(dx, Eigen::VectorXd::Zero(r.size())), {});
+      q += shift * field.rate_change(dx, field.value_change(dx, Eigen::VectorXd::Zero(q.size())), {});
     }
-    delta.set(id(k), field.solve(shift, r));
+    delta.set(id(k), field.solve(shift, q));
   }
-  return delta;
+  return in_step(std::move(delta), change.added);
 }
 
 /// Solves step(delta) - shift secants(delta) = rhs for the change of state delta.
-State CoupledMotion::system(double shift, const State& rhs, double tolerance, const Secants& secants) {
+State CoupledMotion::system(double shift, const BlockVector& rhs, double tolerance, const Secants& secants) {
   const auto clock = capsule_.phases().time("implicit solve");
-  const auto apply = on_blocks(layout_, [&](const State& delta) -> State { return step(delta, shift) - shift * secants(delta); });
+  const auto apply = on_blocks(step_, [&](const BlockVector& unknowns) -> BlockVector {
+    const State delta = state_in(unknowns);
+    return step(delta, added_in(unknowns), shift) - shift * in_step(secants(delta));
+  });
   Apply precondition;
   if (!fields_.empty() || capsule_.jacobian().has_preconditioner())
-    precondition = on_blocks(layout_, [&](const State& r) { return preconditioned(r, shift); });
-  State delta(layout_);
-  delta.numbers() = capsule_.jacobian().solve_step(shift, apply, precondition, rhs.numbers(), tolerance);
+    precondition = on_blocks(step_, [&](const BlockVector& r) { return preconditioned(r, shift); });
+  BlockVector found(step_);
+  found.numbers() = capsule_.jacobian().solve_step(shift, apply, precondition, rhs.numbers(), tolerance);
+  State delta = state_in(std::move(found));
   for (std::size_t k = 0; k < fields_.size(); ++k) {
     Eigen::VectorXd q = coefficients(delta, k);
-    fields_[k].field->conserve(coefficients(rhs, k), q);
+    fields_[k].field->conserve(rhs.value(id(k)), q);
     delta.set(id(k), q);
   }
   return symmetric(std::move(delta));
@@ -180,11 +211,11 @@ State CoupledMotion::correction(double shift, const State& defect, double tolera
 
 State CoupledMotion::jacobian_error(const State& change, const State& delta, double shift) {
   const auto clock = capsule_.phases().time("implicit solve");
-  return (defect_spares_system() ? change : velocity_product(change)) + step(delta, shift) / shift;
+  return state_in((defect_spares_system() ? in_step(change) : velocity_product(change)) + step(delta, {}, shift) / shift);
 }
 
 State CoupledMotion::derivative(const State& y, const State& v, const State& delta) {
-  if (!capsule_.has_frozen()) return difference(y, v, delta);
+  if (!capsule_.has_frozen() || !capsule_.solver().equations().empty()) return difference(y, v, delta);
   set_state(y);
   if (capsule_.slides()) capsule_.evaluate(shape(y));  // because the change of the mesh motion depends on the fluid velocity
   const auto clock = capsule_.phases().time("stiffness");

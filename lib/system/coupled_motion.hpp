@@ -95,15 +95,19 @@ class CoupledMotion : public Dynamics {
   Net shape_at(std::size_t k, const State& y) const { return y(BlockId{fields_[k].particle}); }  ///< rows of the particle of field k
   FieldChange field_change(const State& delta) const;
   Eigen::VectorXd field_rate(std::size_t k, const State& delta, const FieldChange& fields, const Net& slip) const;
-  State velocity_product(State delta);
-  State step(const State& delta, double shift);
-  State preconditioned(State delta, double shift) const;
-  State system(double shift, const State& rhs, double tolerance, const Secants& secants);
+  BlockVector in_step(State delta, const Eigen::VectorXd& added = {}) const;
+  State state_in(BlockVector step) const;
+  Eigen::VectorXd added_in(const BlockVector& step) const;
+  BlockVector velocity_product(State delta);
+  BlockVector step(const State& delta, const Eigen::VectorXd& added, double shift);
+  BlockVector preconditioned(const BlockVector& r, double shift) const;
+  State system(double shift, const BlockVector& rhs, double tolerance, const Secants& secants);
   Net slip_at(const Net& x);
 
   Capsule& capsule_;
   std::vector<FieldOnParticle> fields_;
   std::shared_ptr<const Layout> layout_;
+  std::shared_ptr<const Layout> step_;  // of implicit steps: blocks of states, and then blocks of the equations that the program adds
 };
 
 }  // namespace tanktread::coupling

@@ -40,6 +40,7 @@ const Net& Evaluation::solved_fluid_velocity() {
 }
 
 const WorkOfLoads& Evaluation::work_of_loads() {
+  if (!system_->solver().equations().empty()) require_solution();  // part of the work depends on the unknowns
   if (known_.virtual_work.work.size() == 0) known_.virtual_work = system_->solver().work_of_loads(x_);
   return known_.virtual_work;
 }
@@ -53,6 +54,22 @@ const Net& Evaluation::load() {
   if (solver.load_depends_on_unknowns()) require_solution();
   else if (known_.load.size() == 0) known_.load = solver.membrane_load(x_, known_.virtual_work);
   return known_.load;
+}
+
+const BlockVector& Evaluation::solution() {
+  if (!system_->solver().equations().empty()) require_solution();
+  return known_.solution;
+}
+
+std::vector<double> Evaluation::values_of_added(std::size_t k) { return system_->solver().equations()[k].values(x_, solution()); }
+
+Mat3 Evaluation::stresslet_between_particles() {
+  Mat3 moment = Mat3::Zero();
+  for (const Particle& one : system_->particles())
+    if (solution(); known_.added_work.size() > 0)
+      moment += one.block.rows(known_.added_work).colwise().sum().transpose() *
+                surface::measures(*one.space, one.block.rows(x_)).centroid.transpose();
+  return coupling::stresslet(moment);
 }
 
 const RigidParticles& Evaluation::rigid() {
@@ -118,7 +135,8 @@ Mat3 Evaluation::stresslet(std::size_t p) {
     Net of_particle = own(virtual_work());
     if (system.solver().viscous()) of_particle += own(viscous_work());
     moment = of_particle.transpose() * own(x_);  // first moment int df x dGamma of the load, with x = sum N_A x_A
-    if (!particle.loads.empty() || system.solver().has_forces())  // refers the moment to the centroid, because the load has a net force
+    const bool has_others = system.solver().has_forces() || !system.solver().equations().empty();
+    if (!particle.loads.empty() || has_others)  // refers the moment to the centroid, because the load has a net force
       moment -= of_particle.colwise().sum().transpose() * surface::measures(*particle.space, own(x_)).centroid.transpose();
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0) {

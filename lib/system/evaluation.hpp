@@ -36,6 +36,7 @@ class Evaluation {
   /// force and torque of the body on the fluid. For a body whose unknown is the traction, it is the traction on the body.
   const Net& load();
 
+  const BlockVector& solution();                         ///< unknowns of all equations, if the program adds equations; otherwise absent
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
   const Tube::Response& response();                      ///< returns the tube's response to load and velocity; also sets the tube to this shape
 
@@ -59,6 +60,12 @@ class Evaluation {
   /// Returns the stresslet of particle p (6.7), force x length, with the velocity v of the fluids,
   /// S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dGamma. Batchelor 1970; Pozrikidis 1992, section 5.1.
   Mat3 stresslet(std::size_t p = 0);
+
+  std::vector<double> values_of_added(std::size_t k);  ///< values of the columns of equation k of those that the program adds
+
+  /// Returns the stresslet of the forces between particles by which added equations act, with each force at the centroid of its particle. The
+  /// stresslets of the particles refer to these centroids.
+  Mat3 stresslet_between_particles();
 
   /// Returns the power v.C v that the viscosity (3.10) of the membrane or interface of particle p dissipates.
   double membrane_dissipation(std::size_t p = 0);

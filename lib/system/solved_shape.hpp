@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "system/blocks/block_vector.hpp"
 #include "system/interface_motion.hpp"
 #include "system/solids/bodies/rigid_particles.hpp"
 #include "system/solids/ducts/tube.hpp"
@@ -28,6 +29,8 @@ struct SolvedShape {
   /// On a lattice, a solve stores the velocities of the particles' images in the cell, unlike in `velocity` and `fluid`. Evaluation::find_unknowns
   /// stores the velocities of the particles themselves. Only walls use these, and with walls the velocities of particles and images are equal
   Net unknowns;
+  BlockVector solution;  ///< all unknowns; set only if the program adds equations
+  Net added_work;        ///< virtual work of the loads of these equations (Sources::work); no rows if there are none
   WorkOfLoads virtual_work;
   Net load;                                ///< see Evaluation::load
   std::optional<Tube::Response> response;  ///< response of the tube; not set if a velocity system was solved, because the solution changes it

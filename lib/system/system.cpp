@@ -37,6 +37,8 @@ Sources System::sources(const BlockVector& x, Given given) const {
   Sources all;
   all.ambient = given == Given::included;
   for (const auto& one : equations_) one->add_sources(x, given, all);
+  if (all.work.size() > 0 && !all.work.isZero(0))
+    for (const auto& one : equations_) one->add_loads_of_work(all);
   if (all.density.isZero(0)) all.density.resize(0, 3);  // so that the right-hand side takes no sum of the double layer
   return all;
 }
@@ -45,7 +47,7 @@ BlockVector System::residual(const BlockVector& x, Given given, Sources* found) 
   const BlockVector y = projected(x);
   Sources all = sources(y, given);
   for (const auto& one : equations_) one->answer(y, given, all);
-  const SurfaceVelocity u(*layers_, all, control_values_);
+  const SurfaceVelocity u(*layers_, all, control_values_, [&] { return velocity(y, given); });
   BlockVector r(unknowns_);
   for (const auto& one : equations_) one->add_residual(y, all, u, given, r);
   r = projected(std::move(r));
@@ -66,9 +68,16 @@ BlockVector System::projected(BlockVector x) const {
   return x;
 }
 
-Net System::load(const BlockVector& x) const {
-  Net load = sources(x, Given::included).load;
-  return load.size() > 0 ? load : Net(Net::Zero(particles(x).rows(), 3));
+Net System::load(const BlockVector& x, Net* work) const {
+  Sources all = sources(x, Given::included);
+  if (work) *work = std::move(all.work);
+  return all.load.size() > 0 ? all.load : Net(Net::Zero(particles(x).rows(), 3));
+}
+
+Net System::velocity(const BlockVector& x, Given given) const {
+  Net v = Net::Zero(particles(x).rows(), 3);
+  for (const auto& one : equations_) one->add_velocity(x, given, v);
+  return v;
 }
 
 BlockVector System::of(const Net& of_particles) const {
@@ -78,9 +87,8 @@ BlockVector System::of(const Net& of_particles) const {
 }
 
 BlockVector System::precondition(const BlockVector& r) const {
-  BlockVector x(unknowns_);
+  BlockVector x = r;
   if (of_particles_) of_particles_(particles(r).data(), particles(x).data());
-  else particles(x) = particles(r);
   for (const auto& one : equations_) one->precondition(r, x);
   return x;
 }

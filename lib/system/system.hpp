@@ -17,11 +17,15 @@ namespace tanktread::coupling {
 /// Part of a residual: with the terms that do not depend on the unknowns (ambient flow, given loads, forces and motions), or only the linear terms.
 enum class Given { included, omitted };
 
-/// Velocity that the sources cause on the particles: at the targets, and its control values R^-1 u, computed at first use.
+/// Velocities on the particles. `at_targets`, `control_values`: caused by the sources, at the targets and as control values R^-1 u. `of_points`: of
+/// the fluid at the control points, as the unknowns state it. The last two are computed at first use.
 class SurfaceVelocity {
  public:
-  SurfaceVelocity(LayersAt& layers, const Sources& sources, const std::function<Net(const Net&)>& control_values)
-      : at_targets_(velocities(layers, sources, &known_)), map_(control_values) {}
+  /// `map`: R^-1. `of_points`: computes of_points().
+  SurfaceVelocity(LayersAt& layers, const Sources& sources, std::function<Net(const Net&)> map, std::function<Net()> of_points)
+      : at_targets_(velocities(layers, sources, &known_)), map_(std::move(map)), find_points_(std::move(of_points)) {}
+  /// Velocities of which only of_points() is known.
+  explicit SurfaceVelocity(Net of_points) : of_points_(std::move(of_points)) {}
 
   /// Returns the velocity at the targets; without the ambient velocity if its control values are known (LayersAt::ambient_control_values).
   const Net& at_targets() const { return at_targets_; }
@@ -29,11 +33,16 @@ class SurfaceVelocity {
     if (!control_values_) control_values_ = known_.size() > 0 ? Net(known_ + map_(at_targets_)) : map_(at_targets_);
     return *control_values_;
   }
+  const Net& of_points() const {
+    if (!of_points_) of_points_ = find_points_();
+    return *of_points_;
+  }
 
  private:
   Net known_, at_targets_;
-  const std::function<Net(const Net&)>& map_;
-  mutable std::optional<Net> control_values_;
+  std::function<Net(const Net&)> map_;
+  std::function<Net()> find_points_;
+  mutable std::optional<Net> control_values_, of_points_;
 };
 
 /// One kind of unknown on all surfaces that have it, with the equations that determine it, at one shape. The unknowns of the particles are three
@@ -48,8 +57,14 @@ class Equation {
   /// Removes from x, unknowns or a residual, what this equation eliminates by a projection P: x becomes P x.
   virtual void project(BlockVector& /*x*/) const {}
 
-  /// Adds the loads and velocities that the unknowns x put on the surfaces.
+  /// Adds the loads and velocities that the unknowns x put on the surfaces. A load may be given by its virtual work (Sources::work).
   virtual void add_sources(const BlockVector& /*x*/, Given, Sources& /*to*/) const {}
+
+  /// Adds the loads on the particles of this equation whose virtual work is `to.work`.
+  virtual void add_loads_of_work(Sources& /*to*/) const {}
+
+  /// Adds the velocity of the control points of this equation's particles to v, in their rows.
+  virtual void add_velocity(const BlockVector& /*x*/, Given, Net& /*v*/) const {}
 
   /// Sets what a wall puts on the fluid, in answer to the sources of all particles: by its unknowns in x or, if they are eliminated, by its factors.
   virtual void answer(const BlockVector& /*x*/, Given, Sources& /*to*/) const {}
@@ -58,6 +73,7 @@ class Equation {
   virtual void add_residual(const BlockVector& /*x*/, const Sources&, const SurfaceVelocity& /*u*/, Given, BlockVector& /*r*/) const {}
 
   /// Changes x, an approximate solution for the residual r in which earlier equations have set their unknowns, to one that solves this equation too.
+  /// Unknowns that no equation sets are equal to their rows of r.
   virtual void precondition(const BlockVector& /*r*/, BlockVector& /*x*/) const {}
 };
 
@@ -85,7 +101,10 @@ class System {
   /// P of the equations. `found`: if given, receives all sources.
   BlockVector residual(const BlockVector& x, Given given, Sources* found = nullptr) const;
   BlockVector right_hand_side(Sources* found = nullptr) const;   ///< -residual(0, included)
-  Net load(const BlockVector& x) const;                          ///< load of the fluids on all particles
+  /// Returns the load of the fluids on all particles. `work`: if given, receives the part that equations state by its virtual work (Sources::work).
+  Net load(const BlockVector& x, Net* work = nullptr) const;
+  /// Returns the velocity of the fluids at the control points, by Equation::add_velocity.
+  Net velocity(const BlockVector& x, Given given) const;
 
   /// Removes from x what the equations eliminate by projection: P x.
   BlockVector projected(BlockVector x) const;

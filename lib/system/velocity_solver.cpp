@@ -7,6 +7,7 @@
 
 #include "base/formatted.hpp"
 #include "system/dynamics.hpp"
+#include "system/solids/bodies/body_preconditioner.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
 
 namespace tanktread::coupling {
@@ -41,9 +42,10 @@ VelocitySolver::VelocitySolver(const spline::Space& space, const Net& unstressed
       tube_(std::move(tube)),
       solids_(parameters_.solids ? std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_) : nullptr),
       walls_{tube_.get(), solids_.get()},
+      solving_{Krylov(parameters_.solvers.of(parameters_.solvers.velocity)), {}, {},
+               UserEquations(parameters_.equations, {particles(), resting_, parameters_.viscosity})},
       bodies_{RigidParticles(particles(), resting, parameters_.viscosity, parameters_.quadrature), {}, {}},
-      interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
-      solving_{Krylov(parameters_.solvers.of(parameters_.solvers.velocity)), {}, {}} {
+      interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)) {
   assert(!tube_ || !targets_.projection());  // Tube computes its response only at collocation sites, not at the sites of a projection
   walls_.set_particles(membranes_.unstressed(), particles());
   if (std::ranges::any_of(particles(), &Particle::by_traction))
@@ -68,14 +70,15 @@ bool VelocitySolver::set_forces(Net Forces::* of, Net work) {
 /// Solves (4.2) at a shape, with each particle replaced by its image in the cell of a lattice, and converts the velocities of the images to
 /// velocities of the particles. `guess`: see solve(). `error`: see SolvedShape.
 SolvedShape VelocitySolver::solve(const Net& shape, const Net& guess, double error) {
-  if (!shape.allFinite()) return {.error = error, .velocity = not_a_number(shape)};
-  SolvedShape found{.error = error};
+  SolvedShape found{.error = error, .velocity = not_a_number(shape)};
+  if (!solving_.added.empty()) found.solution = not_a_number(BlockVector(unknowns(keeps_multipliers())));
+  if (!shape.allFinite()) return found;
   Net x = shape, v = guess;
   const auto [shifts, origin] = move_into_cell(x, &v);
   bodies_.rigid.move_into_cell(shifts);
   bodies_.rigid.fit_to(x);
   walls_.set_shape(x, targets_, origin);
-  v = solve_in_cell(x, v, found);
+  v = solve_in_cell(x, shifts, v, found);
   for (std::size_t p = 0; p < shifts.size(); ++p)
     for (Net* net : {&v, &found.fluid})
       if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += shifts[p].velocity.transpose();
@@ -95,13 +98,15 @@ WorkOfLoads VelocitySolver::work_of_loads(const Net& x) {
 }
 
 /// Sets the contact forces on rigid bodies and the forces of their loads (Particle::loads), in addition to the prescribed forces on the bodies.
-void VelocitySolver::push_bodies(const Net& x) {
+/// `work`: virtual work (Sources::work) of further loads, if it has rows.
+void VelocitySolver::push_bodies(const Net& x, const Net& work) {
   if (bodies_.rigid.empty()) return;
   Net push = forces_.contacts;  // there are no fields on rigid bodies
+  if (work.size() > 0) push = push.size() > 0 ? Net(push - work) : Net(-work);
   if (std::ranges::any_of(particles(), [](const Particle& one) { return one.rigid && !one.loads.empty(); })) {
-    Net work = Net::Zero(x.rows(), 3);
-    membranes_.complete_work(x, work);
-    push = push.size() > 0 ? Net(push - work) : Net(-work);
+    Net of_loads = Net::Zero(x.rows(), 3);
+    membranes_.complete_work(x, of_loads);
+    push = push.size() > 0 ? Net(push - of_loads) : Net(-of_loads);
   }
   bodies_.rigid.push(push);
 }
@@ -126,10 +131,10 @@ Net VelocitySolver::load_and_projection(const Net& x, WorkOfLoads& known, Volume
 
 /// Computes (4.2) in the cell. All walls and the rigid bodies must be set to the shape x. Returns the velocity of the control points, and sets the
 /// other quantities of `found`, whose allowed error is given.
-Net VelocitySolver::solve_in_cell(const Net& x, const Net& guess, SolvedShape& found) {
+Net VelocitySolver::solve_in_cell(const Net& x, std::span<const CellShift> shifts, const Net& guess, SolvedShape& found) {
   if (!in_fluid(x)) return not_a_number(x);
   push_bodies(x);
-  const std::shared_ptr<AtShape> at = at_shape(x, found.virtual_work, keeps_multipliers());
+  const std::shared_ptr<AtShape> at = at_shape(x, found.virtual_work, keeps_multipliers(), shifts);
   const Net fluid = bodies_.tractions ? solve_tractions(at, found) : solve_second_kind(*at, guess, found);
   if (!interface_) return fluid;
   found.fluid = symmetric(fluid);
@@ -150,7 +155,12 @@ Net VelocitySolver::solve_second_kind(AtShape& at, const Net& guess, SolvedShape
   Net v = System::particles(y);
   at.volume.apply(v);
   found.unknowns = v;
-  found.load = is_explicit() ? std::move(known.load) : at.system->load(at.system->of(symmetric(v)));
+  if (is_explicit() && solving_.added.empty()) {
+    found.load = std::move(known.load);
+  } else {
+    System::particles(y) = symmetric(v);
+    set_load(at, y, found);
+  }
   if (rigid.empty()) return v;
   found.unknowns = symmetric(v);
   rigid.store_density(v);

@@ -11,17 +11,18 @@
 
 #include "stokes/flow/ambient_flow.hpp"
 #include "system/capsule_parameters.hpp"
+#include "system/equations/user_equation.hpp"
 #include "system/membranes.hpp"
 #include "system/parallel/row_share.hpp"
-#include "system/solids/bodies/body_preconditioner.hpp"
+#include "system/solids/bodies/rigid_particles.hpp"
 #include "system/solids/fluid_walls.hpp"
 #include "system/solved_shape.hpp"
-#include "system/system.hpp"
 #include "system/targets/particle_layers.hpp"
 #include "system/volumes.hpp"
 
 namespace tanktread::coupling {
 
+class OneBodyInverses;
 class RigidTractions;
 
 /// Solves for the velocity v(x) of all particles at a shape x, the stacked control nets. solve() is the entry point. The
@@ -121,10 +122,11 @@ class VelocitySolver {
 
   /// Returns whether the load on particles depends on the unknowns of the system, so that it is known only after a solve at the same shape. With the
   /// velocity of an implicit step, the load of a viscous membrane has an up to 20 times larger error.
-  bool load_depends_on_unknowns() const { return viscous() || !bodies_.rigid.empty(); }
+  bool load_depends_on_unknowns() const { return viscous() || !bodies_.rigid.empty() || !solving_.added.empty(); }
 
-  /// Returns whether all unknowns are velocities of control points: no control point slides along an interface, and no particle is a rigid body.
-  bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty(); }
+  /// Returns whether all unknowns are velocities of control points: no control point slides along an interface, no particle is a rigid body, and no
+  /// equations are added.
+  bool unknowns_are_velocities() const { return !interface_ && bodies_.rigid.empty() && solving_.added.empty(); }
 
   /// Returns whether the wall traction is eliminated from the velocity system, so that only the particles have unknowns in the system.
   bool eliminates_walls() const { return !tube_ || bodies_.tractions || parameters_.solvers.eliminates_walls(); }
@@ -157,10 +159,10 @@ class VelocitySolver {
   const Targets& targets() const { return targets_; }
   Membranes& membranes() { return membranes_; }
   const Membranes& membranes() const { return membranes_; }
+  const UserEquations& equations() const { return solving_.added; }  ///< equations that the program adds
   Volumes& volumes() { return volumes_; }
   const Volumes& volumes() const { return volumes_; }
   ParticleLayers& layers() { return layers_; }
-  const ParticleLayers& layers() const { return layers_; }
   InterfaceMotion* interface() { return interface_.get(); }  ///< null if no control points slide
 
   stokes::Evaluations kernel_evaluations() const;  ///< number for all layers at the targets, the walls and the tractions on bodies
@@ -173,39 +175,42 @@ class VelocitySolver {
   struct Bodies {
     RigidParticles rigid;
     std::unique_ptr<RigidTractions> tractions;
-    std::optional<OneBodyInverses> isolated;
+    std::unique_ptr<OneBodyInverses> isolated;
   };
   bool keeps_multipliers() const {
     return parameters_.volume.constrained() && !bodies_.tractions && parameters_.solvers.keeps_multipliers(!eliminates_walls());
   }
   Net symmetric(Net field) const { return parameters_.symmetry.completed(std::move(field)); }
   bool bodies_respond() const { return layers_.repeats() || walls_.any() || !is_explicit(); }  // see RigidTractions::Surroundings::responds
-  bool has_velocity_system() const { return !is_explicit() || !eliminates_walls() || keeps_multipliers(); }
+  bool has_velocity_system() const { return !is_explicit() || !eliminates_walls() || keeps_multipliers() || !solving_.added.empty(); }
   // In the functions below, x is a shape whose particles are in the cell (place), if there is a lattice.
-  /// How linear systems are solved. `unknowns`: see unknowns(), set at its first call. `inverse`: see use_inverse().
+  /// How linear systems are solved. `unknowns`: see unknowns(), set at its first call. `inverse`: see use_inverse(). `added`: see equations().
   struct Solving {
     Krylov krylov;
     std::array<std::shared_ptr<const Layout>, 2> unknowns;
     std::function<Net(const Net&)> inverse;
+    UserEquations added;
   };
   /// The system at the shape x, with what it refers to.
   struct AtShape {
     Net x;
     VolumeProjection volume;  // projection (2.8) at x; not active if the volumes are free
+    std::vector<const Equation*> added{};  // equations of the program
     std::optional<System> system;
   };
   // Stages.
-  Net solve_in_cell(const Net& x, const Net& guess, SolvedShape& found);
+  Net solve_in_cell(const Net& x, std::span<const CellShift> shifts, const Net& guess, SolvedShape& found);
   Net solve_second_kind(AtShape& at, const Net& guess, SolvedShape& found);
   Net load_and_projection(const Net& x, WorkOfLoads& known, VolumeProjection* volume);
   bool in_fluid(const Net& x);
-  void push_bodies(const Net& x);
+  void push_bodies(const Net& x, const Net& work = {});
   // Cells of lattices, tubes, plates and posts.
   bool deform_cell(double time);
   Vec3 cell_origin(const Net& x) const;
   // The system and its solution (velocity_solver_systems.cpp).
   std::shared_ptr<const Layout> unknowns(bool multipliers);
-  std::shared_ptr<AtShape> at_shape(const Net& x, WorkOfLoads& known, bool multipliers);
+  std::shared_ptr<AtShape> at_shape(const Net& x, WorkOfLoads& known, bool multipliers, std::span<const CellShift> shifts = {});
+  void set_load(const AtShape& at, const BlockVector& y, SolvedShape& found);
   bool uses_inverse(double error, double tolerance) const;
   Apply velocity_preconditioner(const Net& x);
   BlockVector solve_velocity(AtShape& at, const BlockVector& right, const Net& guess, double error);
@@ -238,9 +243,9 @@ class VelocitySolver {
   std::unique_ptr<SolidResponse> solids_;  // plates and posts
   FluidWalls walls_;                       // refers to tube_ and solids_
   std::string crossing_;                   // see crossing(); set by in_fluid()
+  Solving solving_;  // before bodies_, whose systems refer to the added equations
   Bodies bodies_;
   std::unique_ptr<InterfaceMotion> interface_;  // set if any control points slide along an interface
-  Solving solving_;
   Forces forces_;
 };
 

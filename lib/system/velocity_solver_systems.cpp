@@ -10,6 +10,7 @@
 #include "system/equations/particles.hpp"
 #include "system/equations/volumes.hpp"
 #include "system/equations/walls.hpp"
+#include "system/solids/bodies/body_preconditioner.hpp"
 #include "system/solids/bodies/rigid_tractions.hpp"
 #include "system/velocity_solver.hpp"
 
@@ -49,6 +50,20 @@ class LayersAtTargets : public LayersAt {
   BodyLayer* bodies_;
 };
 
+/// Velocities of particles on a lattice minus those of their images in the cell, whose velocities are the unknowns.
+class OutOfCell : public Equation {
+ public:
+  OutOfCell(std::span<const Particle> particles, std::vector<CellShift> shifts) : particles_(particles), shifts_(std::move(shifts)) {}
+  void add_velocity(const BlockVector&, Given given, Net& v) const override {
+    for (std::size_t p = 0; p < shifts_.size() && given == Given::included; ++p)
+      particles_[p].block.rows(v).rowwise() += shifts_[p].velocity.transpose();
+  }
+
+ private:
+  std::span<const Particle> particles_;
+  std::vector<CellShift> shifts_;
+};
+
 }  // namespace
 
 /// Adds an iterative solve to the counts. Throws RunFailure if it did not converge although its solution is finite (`finite`).
@@ -70,12 +85,14 @@ std::shared_ptr<const Layout> VelocitySolver::unknowns(bool multipliers) {
   std::vector<Block> blocks = blocks_of_particles(particles());
   if (!eliminates_walls()) std::ranges::copy(DuctWall::unknowns(*tube_, parameters_.viscosity), std::back_inserter(blocks));
   if (multipliers) blocks.push_back(VolumeConstraint::unknowns(particles()));
-  return kept = std::make_shared<const Layout>(std::move(blocks));
+  return kept = std::make_shared<const Layout>(solving_.added.after(std::move(blocks)));
 }
 
 /// Returns the system at the shape x in the cell, to which the walls and the rigid bodies must be set. `known`: virtual work of the loads at x,
-/// computed here if it has no rows. `multipliers`: whether the multipliers of the volumes are unknowns.
-std::shared_ptr<VelocitySolver::AtShape> VelocitySolver::at_shape(const Net& x, WorkOfLoads& known, bool multipliers) {
+/// computed here if it has no rows. `multipliers`: whether the multipliers of the volumes are unknowns. `shifts`: from the particles in the cell to
+/// the particles themselves; empty without a lattice.
+std::shared_ptr<VelocitySolver::AtShape> VelocitySolver::at_shape(const Net& x, WorkOfLoads& known, bool multipliers,
+                                                                  std::span<const CellShift> shifts) {
   const auto at = std::make_shared<AtShape>(AtShape{.x = x, .volume = {}, .system = {}});
   layers_.discard_rows();
   System::Equations equations;
@@ -92,6 +109,12 @@ std::shared_ptr<VelocitySolver::AtShape> VelocitySolver::at_shape(const Net& x, 
     equations.push_back(std::make_unique<DuctWall>(*tube_, *layout, parameters_.solvers.tube));
   else if (walls_.any())
     equations.push_back(std::make_unique<EliminatedWalls>(walls_, phases_));
+  if (!solving_.added.empty()) {
+    Net shape = x;
+    for (std::size_t p = 0; p < shifts.size(); ++p) particles()[p].block.rows(shape).rowwise() += shifts[p].position.transpose();
+    if (!shifts.empty()) equations.push_back(std::make_unique<OutOfCell>(particles(), std::vector(shifts.begin(), shifts.end())));
+    for (auto& one : solving_.added.at(shape, *layout)) at->added.push_back(one.get()), equations.push_back(std::move(one));
+  }
   at->system.emplace(layout, std::move(equations), std::make_shared<LayersAtTargets>(*this, x, layers_.repeats() ? nullptr : bodies),
                      [this](const Net& u) {
                        const auto clock = phases_.time("projection");
@@ -117,7 +140,7 @@ bool VelocitySolver::uses_inverse(double error, double tolerance) const {
 /// Returns the preconditioner of the velocity system at x, from inverses for isolated rigid bodies and for the thin films between bodies. Empty if no
 /// such inverses are stored. Valid until the bodies move.
 Apply VelocitySolver::velocity_preconditioner(const Net& x) {
-  if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, resting_, parameters_.quadrature);
+  if (!bodies_.isolated) bodies_.isolated = std::make_unique<OneBodyInverses>(particles(), bodies_.rigid, resting_, parameters_.quadrature);
   if (bodies_.isolated->empty()) return {};
   const auto films = std::make_shared<FilmInverses>(particles(), *bodies_.isolated, bodies_.rigid, x,
                                                     [&](std::span<const int> sites) { return layers_.double_rows(sites); });
@@ -137,13 +160,26 @@ BlockVector VelocitySolver::solve_velocity(AtShape& at, const BlockVector& right
   const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // allowed error of v in the Euclidean norm
   const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
   const bool by_inverse = uses_inverse(error, tolerance);
-  layers_.assemble(at.x, viscous(), by_inverse);
+  layers_.assemble(at.x, viscous() || !solving_.added.empty(), by_inverse);
   if (by_inverse) at.system->set_inverse_of_particles(on_nets(at.x.rows(), solving_.inverse));
   else if (eliminates_walls()) at.system->set_inverse_of_particles(velocity_preconditioner(at.x));
   const bool guessed = guess.size() > 0 && bodies_.rigid.empty();
   BlockVector y = at.system->projected(at.system->of(guessed ? guess : Net(System::particles(right))));
   record_solve(at.system->solve(solving_.krylov, right, y, tolerance), y.allFinite(), tolerance);
   return y;
+}
+
+/// Sets the load of `found` for the unknowns y. Adds the loads of the equations of the program to the known loads and to the forces on rigid bodies,
+/// and sets the solution.
+void VelocitySolver::set_load(const AtShape& at, const BlockVector& y, SolvedShape& found) {
+  found.load = at.system->load(y, &found.added_work);
+  if (solving_.added.empty()) return;
+  found.solution = y;
+  if (found.added_work.size() == 0) return;
+  push_bodies(at.x, found.added_work);
+  if (found.virtual_work.work.size() == 0) found.virtual_work = work_of_loads(at.x);
+  found.virtual_work.work += found.added_work;
+  clear_rigid(particles(), found.virtual_work.work);
 }
 
 /// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). Returns the velocity of all particles. Sets the
@@ -156,14 +192,15 @@ Net VelocitySolver::solve_tractions(const std::shared_ptr<AtShape>& at, SolvedSh
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
   const RigidTractions::Solution& solution = bodies_.tractions->solve(
-      at->x, centres, driven, flow_, RigidTractions::Surroundings{std::shared_ptr<const System>(at, &*at->system), bodies_respond()});
-  const BlockVector y = at->system->projected(at->system->of(solution.unknowns));
+      at->x, centres, driven, flow_, RigidTractions::Surroundings{std::shared_ptr<const System>(at, &*at->system), at->added, bodies_respond()});
+  BlockVector y = at->system->projected(at->system->of(solution.unknowns));
+  y.numbers().tail(solution.added.size()) = solution.added;
   Net v = System::particles(y);
   clear_rigid(particles(), v);
   auto body = solution.bodies.begin();
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.is_rigid(p)) bodies_.rigid.set_motion(p, body->motion, body->force, body->torque, v), ++body;
-  found.load = at->system->load(y);
+  set_load(*at, y, found);
   found.unknowns = v;
   for (const SolveReport& report : bodies_.tractions->reports()) record_solve(report, v.allFinite(), parameters_.solvers.tolerance);
   if (tube_) found.response = tube_->respond(found.load, v, solution.pressure_correction);

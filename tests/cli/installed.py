@@ -3,6 +3,7 @@
 # library to which another project links.
 import os
 import pathlib
+import shutil
 import subprocess
 
 import h5py
@@ -125,6 +126,43 @@ def _measures_the_extent(of):
     check((np.diff(of["stretch"]) > 0).all() and np.allclose(of["fastest_way"], of["fastest"] * of["time"]), of["stretch"], of["fastest_way"])
 
 
+def _tension(deck, *settings, ranks=1):
+    launcher = ["mpirun", "-n", ranks] if ranks > 1 else []
+    pathlib.Path("tether.yaml").write_text(deck)
+    shutil.rmtree("tether", ignore_errors=True)
+    _done(*launcher, "build/equation", "tether.yaml", "--output", "tether", "--quiet", *(word for one in settings for word in ("--set", one)))
+    return _series("tether")
+
+
+def _pulls_two_spheres(of):
+    # (1 - A) s 6 pi/(2 (x11 - x12)) of two spheres at the distance s in the unit extension (Jeffrey & Onishi 1984; multipole solution)
+    length = 1e-12  # round-off of a length of 1
+    close(of["tension"][0], 46.8820687, 1e-4 * 46.9, "tension")
+    check(abs(of["tether_length"] - 1).max() < length, "length", of["tether_length"])
+    near = _tension(SPHERES.replace("1.5, 0, 0", "1.05, 0, 0"), "Time/final time=0")
+    close(near["tension"][0], 39.2582369, 1e-4 * 39.3, "tension at s = 2.1")
+    two = _tension(SPHERES, ranks=2)
+    check(abs(two["tension"] / of["tension"] - 1).max() < 1e-10, "tension on two ranks", two["tension"], of["tension"])
+    dual = _tension(SPHERES, "Solvers/rigid bodies=second kind", "Time/final time=0")  # one body equation for the other
+    close(dual["tension"][0], 46.8820687, 1e-3 * 46.9, "tension with densities as unknowns")
+    drawn = {scheme: _tension(CAPSULES, f"Time/scheme={scheme}") for scheme in ("bs3", "tr-bdf2")}
+    for scheme, series in drawn.items():
+        check(abs(series["tether_length"] - series["tether_length"][0]).max() < length, scheme, series["tether_length"])
+    close(drawn["tr-bdf2"]["tension"][-1] / drawn["bs3"]["tension"][-1], 1, 1e-3, "tension between capsules by two schemes")
+
+
+SPHERES = """Tanktread:
+  Flow: { type: linear, gradient: [1, 0, 0, 0, -0.5, 0, 0, 0, -0.5] }
+  Particles:
+    defaults: { motion: free, Surface: { elements per side: 6 } }
+    left: { center: [-1.5, 0, 0] }
+    right: { center: [1.5, 0, 0] }
+  Equations: { tether: { from: left, to: right } }
+  Quadrature: { tolerance: 1e-6 }
+  Time: { tolerance: 1e-4, final time: 0.4 }
+  Output: { interval: 0.1 }
+"""
+CAPSULES = SPHERES.replace("motion: free", "viscosity ratio: 2, Membrane: { shear modulus: 1, bending number: 0.02 }")
 SHEAR = "type: simple shear"
 PARTS = [
     ("load", _deck("type: quiescent", ", loads: { trap: { stiffness: 0.2 } }", "scheme: tr-bdf2"), "Membrane/loads/trap/stiffness=3", _draws_to_its_center),
@@ -135,6 +173,7 @@ PARTS = [
      + "  Domain: { kind: slip plane, slip plane: { height: 0.1 } }\n", "Domain/slip plane/height=0", _is_the_upper_of_a_mirrored_pair),
     ("series", _deck(SHEAR, "", "tolerance: 1e-4", ", series: { stretch: { direction: [1, 0, 1] }, fastest: {} }"), "Output/series/stretch/direction=[1, 0, 0]",
      _measures_the_extent),
+    ("equation", SPHERES, "Equations/tether/to=left", _pulls_two_spheres),
 ]
 
 

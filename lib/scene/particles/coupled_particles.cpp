@@ -201,21 +201,21 @@ class CoupledParticles : public ParticleSystem {
   stokes::Evaluations kernel_evaluations() const override { return kernel_evaluations_ + capsule_->kernel_evaluations(); }
 
   Columns next_row(const motion::TimeState& state, const ProgressRow& progress) override {
-    const Net x = surface(state.x);
     const auto here = evaluated_for_walls(state);
-    const Net v = here->fluid_velocity();
+    const Net x = surface(state.x), v = here->fluid_velocity();
     RunRow row{.progress = progress};
     row.progress.time = state.time, row.progress.counts = capsule_->counts();
     ParticleRows rows(members_, *capsule_, *fields_, *here, state, ranks_);
     const std::vector<RecordedParticle> recorded = recorded_particles(members_, x, v);
     const Columns of_particles = rows.columns(row.progress.step.step, recorded);
-    row.together = rows.together();
+    row.together = rows.together(), row.together.stresslet += here->stresslet_between_particles();
     for (const coupling::Contact& contact : contacts_.all) row.together.stresslet += stresslet_between(contact, x);
     set_surroundings(scene_, members_, body(), *capsule_, *here, ranks_, row);
     if (scene_.output.power_balance) row.powers = powers(state);
     row.contacts = contacts_;
     Columns columns;
     row.add_columns(scene_, columns);
+    for (std::size_t k = 0; k < scene_.equations.size(); ++k) scene_.equations[k].add_columns(here->values_of_added(k), columns);
     add_series(scene_, state.time, recorded, columns);
     finish(columns);
     columns.append(of_particles);
@@ -247,7 +247,7 @@ class CoupledParticles : public ParticleSystem {
     std::shared_ptr<coupling::Evaluation> here = fields_->evaluate(state.x, state.history.front(), scene_.time.tolerance);
     const auto rigid = [](const Member& member) { return member.scene.particle.rigid(); };
     const bool mixed = std::ranges::any_of(members_, rigid) && !std::ranges::all_of(members_, rigid);
-    if (mixed || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
+    if (mixed || !scene_.equations.empty() || ((body().wall || solids_) && state.slope_error > accuracy())) here->solve(0.1 * accuracy());
     return here;
   }
 

@@ -7,7 +7,7 @@ namespace tanktread {
 bool holds_centre(const ParticleScene& particle_scene) {
   if (particle_scene.particle.drift) return *particle_scene.particle.drift == "held";
   if (particle_scene.tube.present || particle_scene.wall.present || particle_scene.medium() || particle_scene.particle.rigid()) return false;
-  if (!particle_scene.net_force().empty() || !particle_scene.loads.empty()) return false;
+  if (!particle_scene.net_force().empty() || !particle_scene.loads.empty() || !particle_scene.equations.empty()) return false;
   const stokes::AmbientFlow flow(particle_scene.flow);
   if (!flow.affine()) return false;
   const Vec3& center = particle_scene.particle.shape.center;

@@ -95,6 +95,9 @@ void reject_searches(const ParticleScene& particle_scene, Rejections& to) {
   const std::string& unstressed = stress_free == "resting" ? resting : stress_free;
   to.pair(steady && particle_scene.periodic.present, "Steady", "Periodic", "a steady shape has no period; give one of them");
   to.add(particle_scene.continuation.present && !steady, "Continuation needs a section Steady, because it continues steady shapes.");
+  if (!particle_scene.registry->equations.empty())
+    to.pair(search && !particle_scene.equations.empty(), particle_scene.sought(), "Equations",
+            "an added equation may keep a quantity that distinguishes between steady shapes, so that they are not isolated");
   to.pair(search && particle_scene.varies_in_time() && !particle_scene.periodic.present, {particle_scene.sought().here, "Steady or Spectrum"},
           "Flow/history", reason::unsteady);
   to.pair(particle_scene.time.steady_tolerance && particle_scene.flow.history && particle_scene.flow.history->type == "sine", "Time/steady tolerance",

@@ -118,6 +118,7 @@ Columns run_columns(const Scene& scene, bool every) {
       case Motion::deforming: break;  // in_system() is true
     }
   }
+  for (const EquationParts::Chosen& one : scene.equations) one.add_columns(all);
   if (!scene.only_solids) add_series_of<RunSeries>(scene, all);
   put_in_order(all);
   return all;

@@ -20,7 +20,7 @@ enum class Parity { polar, axial, scalar };
 /// A block of unknowns: a matrix with one row per control point, site or coefficient.
 struct Block {
   std::string name;
-  int on = -1;              ///< index of the particle or wall; -1: unknowns of the whole scene
+  int on = -1;              ///< index of the particle; -1: all other unknowns, also those of a wall
   Eigen::Index rows = 0;
   int components = 3;
   Parity parity = Parity::polar;

@@ -21,6 +21,10 @@ void DeformableVelocities::add_sources(const BlockVector& x, Given given, Source
   if (membranes_.viscous() && !v.isZero(0)) to.add_load(membranes_.viscous_load(x_, v));
 }
 
+void DeformableVelocities::add_loads_of_work(Sources& to) const { to.add_load(membranes_.load(x_, rows_of(particles_, false, to.work))); }
+
+void DeformableVelocities::add_velocity(const BlockVector& x, Given, Net& v) const { v += rows_of(particles_, false, System::particles(x)); }
+
 void DeformableVelocities::add_residual(const BlockVector& x, const Sources&, const SurfaceVelocity& u, Given, BlockVector& r) const {
   System::particles(r) += rows_of(particles_, false, System::particles(x) - u.control_values());
 }
@@ -33,10 +37,25 @@ void BodyDensities::add_sources(const BlockVector& x, Given given, Sources& to) 
   if (given == Given::included || rigid_.prescribed()) to.add_load(std::move(load));
 }
 
-void BodyDensities::add_residual(const BlockVector& x, const Sources&, const SurfaceVelocity& u, Given given, BlockVector& r) const {
+void BodyDensities::add_loads_of_work(Sources& to) const {
+  Net load = Net::Zero(to.work.rows(), 3);
+  rigid_.add_load(load, &to.work);
+  to.add_load(std::move(load));
+}
+
+void BodyDensities::add_velocity(const BlockVector& x, Given given, Net& v) const {
+  rigid_.add_velocity(System::particles(x), given == Given::included, v);
+}
+
+void BodyDensities::add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity& u, Given given, BlockVector& r) const {
   const Net w = System::particles(x);
   Net known = u.control_values();
-  if (given == Given::included) rigid_.add_load_correction(known), rigid_.subtract_prescribed(known);
+  if (given == Given::included) {
+    Net prescribed = Net::Zero(w.rows(), 3);
+    rigid_.add_velocity(Net::Zero(w.rows(), 3), true, prescribed);
+    rigid_.add_load_correction(known), known -= prescribed;
+  }
+  if (from.work.size() > 0) rigid_.add_load_correction(known, &from.work);
   Net rows = w - known;
   rigid_.complete(w, rows);
   System::particles(r) += rows_of(particles_, true, rows);

@@ -22,6 +22,8 @@ class DeformableVelocities : public Equation {
 
   std::string plan() const override { return "velocities of deformable particles"; }
   void add_sources(const BlockVector& x, Given given, Sources& to) const override;
+  void add_loads_of_work(Sources& to) const override;
+  void add_velocity(const BlockVector& x, Given given, Net& v) const override;
   void add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity& u, Given given, BlockVector& r) const override;
 
  private:
@@ -38,6 +40,8 @@ class BodyDensities : public Equation {
 
   std::string plan() const override { return "double-layer densities of rigid bodies, with their motions"; }
   void add_sources(const BlockVector& x, Given given, Sources& to) const override;
+  void add_loads_of_work(Sources& to) const override;
+  void add_velocity(const BlockVector& x, Given given, Net& v) const override;
   void add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity& u, Given given, BlockVector& r) const override;
 
  private:

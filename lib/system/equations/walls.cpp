@@ -36,7 +36,6 @@ void DuctWall::add_residual(const BlockVector& x, const Sources& from, const Sur
 }
 
 void DuctWall::precondition(const BlockVector& r, BlockVector& x) const {
-  x(traction_) = r(traction_), x(drop_) = r(drop_);
   if (form_ == "block") return;
   Net on_wall = r(traction_);
   if (form_ == "block triangular") {

@@ -17,11 +17,14 @@ namespace tanktread::coupling {
 /// Sources of flow at one shape, by control values of all particles. Absent parts (nets without rows) count as zero and cost nothing.
 struct Sources {
   Net load;                                   ///< f of the single layers, force per area
+  Net work;                                   ///< virtual work of further loads, like dE/dx: a force F on a control point has the row -F.
+                                              ///< Equation::add_loads_of_work adds these loads to `load`
   Net density;                                ///< v: the double layers have the density (1 - lambda) v, or -w on rigid bodies (viscosity_contrast)
   std::optional<FluidWalls::Response> walls;  ///< tractions on walls and the pressure drop, and the flow of plates and posts
   bool ambient = false;                       ///< whether the ambient flow is included
 
   void add_load(Net part) { add(load, std::move(part)); }
+  void add_work(Net part) { add(work, std::move(part)); }
   void add_density(Net part) { add(density, std::move(part)); }
 
  private:

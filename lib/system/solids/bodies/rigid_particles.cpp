@@ -166,17 +166,36 @@ void RigidParticles::push(const Net& work) {
 RigidDrive RigidParticles::Body::given() const {
   RigidDrive all = rigid;
   all.motion.velocity -= cell_velocity;
-  for (Eigen::Index a = 0; a < pushed.rows(); ++a) {
-    const Vec3 here = pushed.row(a).transpose();
-    all.force += here;
-    all.torque += Vec3(turn * rest.row(a).transpose()).cross(here);
-  }
+  add_forces(pushed, all);
   return all;
 }
 
-void RigidParticles::add_load(Net& load) const {
+RigidDrive RigidParticles::Body::drive(const Net* work) const {
+  if (!work) return given();
+  RigidDrive only{.prescribed = rigid.prescribed};
+  add_forces(-block.rows(*work), only);
+  return only;
+}
+
+void RigidParticles::Body::add_forces(const Net& forces, RigidDrive& to) const {
+  for (Eigen::Index a = 0; a < forces.rows(); ++a) {
+    const Vec3 here = forces.row(a).transpose();
+    to.force += here;
+    to.torque += Vec3(turn * rest.row(a).transpose()).cross(here);
+  }
+}
+
+void RigidParticles::add_velocity(const Net& w, bool with_given, Net& v) const {
+  for (const Body& body : bodies_) {
+    if (!body.double_layer) continue;
+    if (!body.rigid.prescribed) body.block.rows(v) += body.field(body.mean(w));
+    else if (with_given) body.block.rows(v) += body.field(body.given().motion);
+  }
+}
+
+void RigidParticles::add_load(Net& load, const Net* work) const {
   for (const Body& body : bodies_)
-    if (const RigidDrive given = body.given(); body.double_layer && !given.prescribed)
+    if (const RigidDrive given = body.drive(work); body.double_layer && !given.prescribed)
       body.block.rows(load) -= body.field(body.with_integrals(given.force, given.torque));
 }
 
@@ -199,15 +218,10 @@ Net RigidParticles::Body::double_layer_correction(const Net& w) const {
   return as_net(sum) * turn.transpose();
 }
 
-void RigidParticles::add_load_correction(Net& v) const {
+void RigidParticles::add_load_correction(Net& v, const Net* work) const {
   for (const Body& body : bodies_)
-    if (const RigidDrive given = body.given(); body.double_layer && !given.prescribed)
+    if (const RigidDrive given = body.drive(work); body.double_layer && !given.prescribed)
       body.block.rows(v) += body.single_layer_correction(body.with_integrals(given.force, given.torque)) / body.viscosity;
-}
-
-void RigidParticles::subtract_prescribed(Net& v) const {
-  for (const Body& body : bodies_)
-    if (body.double_layer && body.rigid.prescribed) body.block.rows(v) -= body.field(body.given().motion);
 }
 
 void RigidParticles::complete(const Net& w, Net& v) const {

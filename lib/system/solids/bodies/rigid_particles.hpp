@@ -66,9 +66,13 @@ class RigidParticles {
   void push(const Net& work);
 
   // The next six functions skip bodies whose unknown is the traction instead of the double-layer density w (2.23).
-  void add_load(Net& load) const;            ///< adds the load df (2.23) of the bodies whose force and torque are given, in the rows of these bodies
-  void add_load_correction(Net& v) const;    ///< adds the correction (SelfCorrection) of the velocity -(1/mu) R^-1 A df of each body on itself
-  void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
+  // `work`: if set, the virtual work of loads (Sources::work), whose force and torque replace those given.
+  /// Adds the load df (2.23) of the bodies whose force and torque are given, in the rows of these bodies.
+  void add_load(Net& load, const Net* work = nullptr) const;
+  /// Adds the correction (SelfCorrection) of the velocity -(1/mu) R^-1 A df of each body on itself.
+  void add_load_correction(Net& v, const Net* work = nullptr) const;
+  /// Adds the velocity V of the bodies with the density w. If `with_given` is false, omits prescribed motions.
+  void add_velocity(const Net& w, bool with_given, Net& v) const;
   void complete(const Net& w, Net& v) const;  ///< completes the left-hand side v of (2.23), in the rows of bodies. First subtracts the density w and
                                               ///< adds the correction (SelfCorrection) of its double layer. If force and torque of the body are
                                               ///< given, then adds the rigid motion <w>; otherwise adds the correction of the single layer of the
@@ -137,6 +141,8 @@ class RigidParticles {
 
     const DoubleLayer& dual() const;  // throws std::logic_error if double_layer is not set
     RigidDrive given() const;
+    RigidDrive drive(const Net* work) const;  // given(), or the resultants of `work` (see add_load)
+    void add_forces(const Net& forces, RigidDrive& to) const;  // adds the resultants of forces on the control points
     RigidMotion mean(const Net& w) const;      // rigid motion <w> of (2.23): least-squares fit over the body. `w`: net of all particles
     RigidMotion with_integrals(const Vec3& force, const Vec3& torque) const;  // field a + b x r with this force and torque as its integrals
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body

@@ -47,12 +47,13 @@ std::vector<Particle> bodies_among(std::span<const Particle> particles) {
   return bodies;
 }
 
-/// Returns the indices 6 p + k of the unit motions k = 0 .. 5 of all bodies p whose motion is not prescribed.
-std::vector<int> free_motions(std::span<const RigidDrive> driven) {
+/// Returns the indices 6 p + k of the unit motions k = 0 .. 5 of all bodies p whose motion is not prescribed, and those of further unknowns up to n.
+std::vector<int> free_motions(std::span<const RigidDrive> driven, Eigen::Index n) {
   std::vector<int> free;
   for (std::size_t p = 0; p < driven.size(); ++p)
     for (int k = 0; k < 6; ++k)
       if (!driven[p].prescribed) free.push_back(static_cast<int>(6 * p) + k);
+  for (auto k = static_cast<int>(6 * driven.size()); k < n; ++k) free.push_back(k);
   return free;
 }
 
@@ -113,6 +114,24 @@ void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
   repeats_ = true;
 }
 
+/// Returns all unknowns: y of the particles and those of the added equations, which are zero if `added` is empty.
+BlockVector RigidTractions::with_added(const Net& y, const Eigen::VectorXd& added) const {
+  BlockVector all = around_->system->of(y);
+  all.numbers().tail(added.size()) = added;
+  return all;
+}
+
+Net RigidTractions::load(const Net& y, const Eigen::VectorXd& added) const {
+  return around_ ? around_->system->load(around_->system->projected(with_added(y, added))) : Net(-y);
+}
+
+/// Returns the residual of the added equations for the velocity v of the control points and their unknowns.
+Eigen::VectorXd RigidTractions::rows_of_added(const Net& v, const Eigen::VectorXd& added, Given given) const {
+  BlockVector r(around_->system->unknowns());
+  for (const Equation* one : around_->added) one->add_residual(with_added(Net::Zero(v.rows(), 3), added), {}, SurfaceVelocity(v), given, r);
+  return r.numbers().tail(n_added());
+}
+
 /// Returns the left-hand side of the system for the unknowns y.
 Net RigidTractions::product(const Net& y) {
   if (!around_) return caused(load(y));
@@ -152,6 +171,32 @@ Net RigidTractions::force_densities(const Net& y) const {
   return f;
 }
 
+/// Returns a vector of unknowns in which number k of the added equations is 1 and all others are 0.
+BlockVector RigidTractions::unit_of_added(Eigen::Index k) const { return with_added(Net::Zero(x_.rows(), 3), Eigen::VectorXd::Unit(n_added(), k)); }
+
+/// Adds the rows and columns of the added equations to the matrix of the forces and torques due to unit motions, and their rows to the forces and
+/// torques `at_rest`. `fields`: velocity of the bodies' control points in unit motions. `of_all`: unknowns of the unit motions, of the added
+/// unknowns and of the flow.
+void RigidTractions::add_equations(const Eigen::MatrixXd& fields, const Eigen::MatrixXd& of_all, Eigen::MatrixXd& resistance,
+                                   Eigen::VectorXd& at_rest) {
+  const Eigen::Index m = resistance.rows(), n = n_added(), of_bodies = m - n;
+  const auto velocity = [&](const Eigen::VectorXd& y, const Net& of_body) {
+    Net v = all_rigid() ? Net(Net::Zero(x_.rows(), 3)) : completed(y);
+    for (const Particle& body : particles_) body.block.rows(v) = body.block.rows(of_body);
+    return v;
+  };
+  for (Eigen::Index k = 0; k < m; ++k) {
+    const Eigen::VectorXd added = k < of_bodies ? Eigen::VectorXd::Zero(n).eval() : Eigen::VectorXd::Unit(n, k - of_bodies).eval();
+    resistance.col(k).tail(n) = rows_of_added(velocity(of_all.col(k), as_net(fields.col(k))), added, Given::omitted);
+    if (k < of_bodies) continue;
+    if (const Net work = around_->system->sources(unit_of_added(k - of_bodies), Given::omitted).work; work.size() > 0)
+      resistance.col(k).head(of_bodies) += fields.leftCols(of_bodies).transpose() * flat(work);
+  }
+  const BlockVector none(around_->system->unknowns());
+  const Net of_images = around_->system->velocity(none, Given::included);  // on a lattice, from the images in the cell to the particles
+  at_rest.tail(n) = rows_of_added(velocity(-of_all.col(m), Net::Zero(x_.rows(), 3)) + of_images, Eigen::VectorXd::Zero(n), Given::included);
+}
+
 /// Returns the unknowns y. If responds() is false, rows of deformable particles are completed by the velocity that the force densities cause there.
 Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
   Net y = as_net(unknowns);
@@ -181,10 +226,23 @@ Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd&
   return work;
 }
 
+/// Sets the right-hand sides of unit motions and of units of the added unknowns, and the velocities `fields` of control points in unit motions.
+void RigidTractions::set_units(Eigen::Ref<Eigen::MatrixXd> right, Eigen::MatrixXd& fields) {
+  for (std::size_t p = 0; p < particles_.size(); ++p) {
+    const auto column = static_cast<Eigen::Index>(6 * p);
+    set_unit_motions(sites_, particles_[p].block, centres_[p], right.middleCols<6>(column));
+    set_unit_motions(x_, particles_[p].block, centres_[p], fields.middleCols<6>(column));
+  }
+  const Eigen::Index of_bodies = right.cols() - n_added();
+  for (Eigen::Index k = 0; k < n_added(); ++k)
+    right.col(of_bodies + k) = -flat(Net(System::particles(around_->system->residual(unit_of_added(k), Given::omitted))));
+}
+
 const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const RigidDrive> driven,
                                                       const stokes::AmbientFlow& flow, std::optional<Surroundings> around) {
-  const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   set_shape(x, centres, std::move(around));
+  const Eigen::Index n = 3 * x.rows(), of_bodies = 6 * static_cast<Eigen::Index>(particles_.size());
+  const Eigen::Index m = of_bodies + n_added();  // motions, and the unknowns of added equations, which follow them
   const bool has_pressure = walls_.tube && all_rigid(), driven_by_pressure = flow.duct() && flow.amplitude() != 0;
   const bool apart = has_pressure && !driven_by_pressure;  // true if the density due to the flow of the duct (2.41) needs a separate solve
   // Indices of the columns that follow the columns of the unit motions: ambient flow, and flow of the duct (the same column unless `apart`).
@@ -192,12 +250,7 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, with_duct + 1), fields = Eigen::MatrixXd::Zero(n, m);
   // v_inf on bodies, minus the known velocity on other particles; its density is subtracted
   const Net empty = around_ ? Net(-System::particles(around_->system->right_hand_side())) : flow.velocities(sites_);
-  for (std::size_t p = 0; p < particles_.size(); ++p) {
-    const auto column = static_cast<Eigen::Index>(6 * p);
-    const spline::Block& block = particles_[p].block;
-    set_unit_motions(sites_, block, centres[p], velocities.middleCols<6>(column));
-    set_unit_motions(x, block, centres[p], fields.middleCols<6>(column));
-  }
+  set_units(velocities.leftCols(m), fields);
   velocities.col(with_flow) = flat(empty);
   if (apart) velocities.col(with_duct) = flat(walls_.tube->flow().velocities(sites_));
   const Eigen::MatrixXd of_all = densities(velocities), z = of_all.leftCols(m);
@@ -205,9 +258,11 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
   Eigen::MatrixXd work(n, m);  // the inner product of column k with a force density is the work of the density in unit motion k
   for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
-  const Eigen::MatrixXd resistance = work.transpose() * z;
-  const std::vector<int> free = free_motions(driven);
-  Eigen::VectorXd motion = motions(free, resistance, -work.transpose() * of_all.col(with_flow), driven);
+  Eigen::MatrixXd resistance = work.transpose() * z;
+  Eigen::VectorXd at_rest = -work.transpose() * of_all.col(with_flow);
+  if (m > of_bodies) add_equations(fields, of_all, resistance, at_rest);
+  const std::vector<int> free = free_motions(driven, m);
+  Eigen::VectorXd motion = motions(free, resistance, at_rest, driven);
   Eigen::VectorXd y = z * motion - of_all.col(with_flow);
   Net v = completed(y);
   const Net unknowns = v;
@@ -215,8 +270,10 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   for (const Particle& body : particles_) body.block.rows(v) = body.block.rows(as_net(moving));
   const Net between = flow.velocities(residual_.points().values * x);
   solution_ = {};
-  solution_.shape = x, solution_.residual = flat(residual_.integrated(x, load(unknowns), v, between));
-  const Eigen::VectorXd correction = corrections(unknowns, of_all, solution_.residual), change = freed(free, resistance, -correction.head(m));
+  solution_.shape = x, solution_.residual = flat(residual_.integrated(x, load(unknowns, motion.tail(m - of_bodies)), v, between));
+  Eigen::VectorXd correction = corrections(unknowns, of_all, solution_.residual);
+  correction.segment(of_bodies, m - of_bodies).setZero();  // (2.11) is about forces and torques
+  const Eigen::VectorXd change = freed(free, resistance, -correction.head(m));
   motion += change;
   y += z * change;
   if (has_pressure) {
@@ -231,6 +288,7 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
     }
   }
   solution_.unknowns = completed(y);
+  solution_.added = motion.tail(m - of_bodies);
   const Net f = force_densities(solution_.unknowns);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);

@@ -64,6 +64,7 @@ class RigidTractions {
   /// the force densities f in rows of bodies (BodyTractions), and the velocity v in rows of deformable particles.
   struct Surroundings {
     std::shared_ptr<const System> system;
+    std::vector<const Equation*> added;  ///< equations of the program in `system`; their unknowns are found together with the motions
     bool responds;  ///< true if the velocity on the bodies depends on y not only through the single layers of the bodies
   };
 
@@ -76,6 +77,7 @@ class RigidTractions {
     Net shape;
     std::vector<SolvedBody> bodies;  ///< in the order of the particles; the moments are not corrected for the collocation error, see moment()
     Net unknowns;                    ///< control values of f on bodies, and of v on deformable particles
+    Eigen::VectorXd added;           ///< unknowns of the added equations (Surroundings::added), as numbers of their blocks
     double pressure_correction = 0;  ///< collocation-error correction of the pressure drop (2.7)
     Eigen::VectorXd residual;        ///< int N_A (v - v_inf - (1/mu) A f) dGamma over the bodies, flattened: residual of (2.40) that (2.11) uses; 0
                                      ///< in the rows of deformable particles
@@ -133,7 +135,13 @@ class RigidTractions {
   Net product(const Net& y);
   Net force_densities(const Net& y) const;
   Net completed(const Eigen::VectorXd& y);
-  Net load(const Net& y) const { return around_ ? around_->system->load(around_->system->projected(around_->system->of(y))) : Net(-y); }
+  Net load(const Net& y, const Eigen::VectorXd& added = {}) const;
+  Eigen::Index n_added() const { return around_ ? around_->system->unknowns()->size() - x_.size() : 0; }
+  BlockVector with_added(const Net& y, const Eigen::VectorXd& added) const;
+  BlockVector unit_of_added(Eigen::Index k) const;
+  void set_units(Eigen::Ref<Eigen::MatrixXd> right, Eigen::MatrixXd& fields);
+  void add_equations(const Eigen::MatrixXd& fields, const Eigen::MatrixXd& of_all, Eigen::MatrixXd& resistance, Eigen::VectorXd& at_rest);
+  Eigen::VectorXd rows_of_added(const Net& v, const Eigen::VectorXd& added, Given given) const;
   Eigen::VectorXd corrections(const Net& y, const Eigen::MatrixXd& z, const Eigen::VectorXd& residual);
 
   std::vector<Particle> particles_;  // the bodies
