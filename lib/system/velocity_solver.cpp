@@ -39,13 +39,14 @@ VelocitySolver::VelocitySolver(const spline::Space& space, const Net& unstressed
       volumes_(space, resting, particles(), layout_, phases),
       layers_(space, unstressed, parameters_, layout_, targets_, phases),
       tube_(std::move(tube)),
-      solids_(parameters_.solids ? std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_) : nullptr),
+      solids_(parameters_.solids ? std::make_unique<SolidResponse>(*parameters_.solids, space_, membranes_.unstressed(), particles(), flow_)
+                                 : nullptr),
       walls_{tube_.get(), solids_.get()},
       bodies_{RigidParticles(particles(), resting, parameters_.viscosity, parameters_.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
       solving_{Krylov(parameters_.solvers.of(parameters_.solvers.velocity)), {}, {}} {
   assert(!tube_ || !targets_.projection());  // Tube computes its response only at collocation sites, not at the sites of a projection
-  walls_.set_particles(membranes_.unstressed(), particles());
+  if (tube_) tube_->set_particles(membranes_.unstressed(), particles());
   if (std::ranges::any_of(particles(), &Particle::by_traction))
     bodies_.tractions = std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, walls_, layout_.points(),
                                                          layout_.ranks());

@@ -84,7 +84,9 @@ void velocity_evaluation_in_a_tube(benchmark::State& state) {
                                             std::make_unique<coupling::Tube>(wall, *duct, capsule.space, parameters, phases), with);
     state.counters["tube ms"] = 1e3 * confined;
     coupling::Tube tube(wall, *duct, capsule.space, parameters, phases);
-    tube.particles().set_reference(capsule.unstressed), tube.particles().set_contrasts(1 - capsule.parameters.particles.front().viscosity_ratio);
+    const double ratio = capsule.parameters.particles.front().viscosity_ratio;
+    const coupling::Particle particle{.space = &capsule.space, .block = spline::whole(capsule.space), .viscosity_ratio = ratio};
+    tube.set_particles(capsule.unstressed, {&particle, 1});
     const Net f = capsule.x, on_wall = (tube.set_shape(capsule.x), tube.particle_on_wall(f));
     state.counters["shape ms"] = milliseconds([&] { tube.set_shape(capsule.x); });
     state.counters["load on wall ms"] = milliseconds([&] { tube.particle_on_wall(f); });

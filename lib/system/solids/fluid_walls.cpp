@@ -2,11 +2,6 @@
 
 namespace tanktread::coupling {
 
-void FluidWalls::set_particles(const Net& unstressed, std::span<const Particle> particles) const {
-  if (tube) tube->particles().set(unstressed, particles);
-  if (solids) solids->particles().set(unstressed, particles);
-}
-
 void FluidWalls::set_shape(const Net& x, const Targets& targets, std::optional<double> origin) const {
   if (tube) tube->set_shape(x, origin);
   if (solids) solids->set_shape(x, targets.values() * x, targets.own());
@@ -43,7 +38,9 @@ void FluidWalls::add_velocity_at(const Eigen::SparseMatrix<double>& values, cons
                                  Net& u) const {
   Net part(u.rows(), 3);
   if (tube) tube->velocity_at(values, x, response.tube, own, part), u(own, Eigen::all) += part(own, Eigen::all);
-  if (solids) solids->velocity_at(values * x, own, response.solids, part), u(own, Eigen::all) += part(own, Eigen::all);
+  if (!solids) return;
+  solids->scene().solids->velocity_at({.at = values * x, .own = {own.begin(), own.end()}}, response.solids, part);
+  u(own, Eigen::all) += part(own, Eigen::all);
 }
 
 stokes::Evaluations FluidWalls::evaluations() const {

@@ -24,6 +24,11 @@ namespace tube_test {
 using std::numbers::pi;
 constexpr double viscosity = 1.7;
 
+void set_particle(Tube& tube, const spline::Space& space, const Net& unstressed, double ratio) {
+  const Particle particle{.space = &space, .block = spline::whole(space), .viscosity_ratio = ratio};
+  tube.set_particles(unstressed, {&particle, 1});
+}
+
 /// A sphere of radius 0.5 off the axis of a tube of radius 1, both with coarse meshes.
 struct Fixture {
   spline::TMesh mesh = spline::cube(3);
@@ -53,7 +58,7 @@ struct Fixture {
     parameters.quadrature.tolerance = 1e-6;
     parameters.walls = std::make_shared<SharedWalls>();
     tube = std::make_unique<Tube>(surface::tube_wall(flow->outline(), options, 2 * pi), *flow, space, parameters, phases);
-    tube->particles().set_reference(x), tube->particles().set_contrasts(1 - ratio);
+    set_particle(*tube, space, x, ratio);
     tube->set_shape(x);
   }
 };
@@ -131,7 +136,7 @@ TEST(Tube, SupportsAnotherMeshOfTheParticle) {
   const Net x = surface::resting_shape(space, finer, s.shape);
   Tube other(s.tube->wall(), *s.flow, space, s.parameters, s.phases);
   EXPECT_EQ(&other.wall(), &s.tube->wall());  // the tubes share the assembled wall
-  other.particles().set_reference(x), other.particles().set_contrasts(1 - 5);
+  set_particle(other, space, x, 5);
   other.set_shape(x);
   const auto work = [](Tube& tube, const Net& net) {  // for a constant load and a rigid velocity; independent of the mesh
     const Net load = Eigen::RowVector3d(1, 0.5, 0).replicate(net.rows(), 1);

@@ -30,12 +30,18 @@ Tube::Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particl
 Tube::~Tube() = default;
 
 const surface::TubeWall& Tube::wall() const { return wall_->surface(); }
-ParticleSources& Tube::particles() { return particle_->sources; }
+
+void Tube::set_particles(const Net& unstressed, std::span<const Particle> particles) {
+  particle_->set_particles(unstressed, particles, *wall_);
+  latest_shape_ = {};
+}
+
 const Net& Tube::ambient() const { return particle_->ambient; }
 const std::optional<stokes::PeriodicCell>& Tube::cell() const { return wall_->cell(); }
 
 stokes::Evaluations Tube::kernel_evaluations() const {
-  stokes::Evaluations all = particle_->sources.evaluations();
+  stokes::Evaluations all;
+  if (particle_->layers) all += particle_->layers->evaluations();
   if (!particle_->parameters.walls) all += wall_->evaluations();
   return between_ ? all + between_->layer.evaluations() : all;
 }
@@ -45,6 +51,7 @@ double Tube::frame_origin(const Net& x) const { return fixed() ? 0 : particle_->
 void Tube::set_shape(const Net& x, std::optional<double> origin) {
   if (same(latest_shape_, x) && latest_origin_ == origin) return;
   const auto clock = phases_.time("wall");
+  if (!particle_->layers) throw std::logic_error("a tube needs its particles before their shape");
   latest_shape_ = {}, latest_origin_ = origin;  // no shape is set if one of the next calls throws
   if (!origin && !fixed()) origin = particle_->geometry.measures(x).centroid[0];
   if (!origin && cell()) origin = cell()->shift(x.colwise().mean().transpose() - (wall().start + wall().end) / 2 * Vec3::UnitX())[0];
@@ -59,7 +66,7 @@ double Tube::pressure_of(const Net& f, const Net& v) {
 /// Returns the contribution of v to dp (2.7), 0 if lambda = 1. In a channel, it is the pressure drop for which the disturbance caused by v has zero
 /// net flow rate. `on_wall`: velocity of this disturbance at the wall; if null, it is computed when needed.
 double Tube::pressure_of_velocity(const Net& v, const Net* on_wall) {
-  if (v.size() == 0 || !particle_->sources.has_double()) return 0;
+  if (v.size() == 0 || !particle_->has_double()) return 0;
   if (properties().parallel_flow) return dot(particle_->weights_of_velocity, v);
   if (!on_wall) {
     const Net caused = particle_on_wall({}, v);
@@ -67,7 +74,7 @@ double Tube::pressure_of_velocity(const Net& v, const Net* on_wall) {
   }
   const FlowWeights& weights = flow_weights();
   const double taken_away = wall_->iterates() ? dot(weights.of_traction, wall_->solve(*on_wall)) : dot(weights.of_velocity, *on_wall);
-  return (taken_away - dot(particle_->flow_of_strength(*wall_), particle_->sources.strength(v))) / weights.of_pressure;
+  return (taken_away - dot(particle_->flow_of_velocity(*wall_), v)) / weights.of_pressure;
 }
 
 double Tube::ambient_correction(const BetweenSites& between, const Net& at_places, const Net& f) const {
@@ -83,8 +90,8 @@ Net Tube::particle_on_wall(const Net& f, const Net& v) { return wall_->points().
 
 Net Tube::wall_on_particle(const Net& traction) {
   const auto& near = particle_->wall_on_sites;
-  return particle_->ranks.filled(particle_->sites().rows(), [&](Net& u) {
-    wall_->layer().apply(wall_->on_space(traction), particle_->sites(), particle_->own, u, near ? &*near : nullptr);
+  return particle_->ranks.filled(particle_->sites.rows(), [&](Net& u) {
+    wall_->layer().apply(wall_->on_space(traction), particle_->sites, particle_->own, u, near ? &*near : nullptr);
   }) / -viscosity();
 }
 
@@ -115,8 +122,8 @@ Tube::Response Tube::cause(const Net& f, const Net& v, double pressure_correctio
     found.load = f, found.particle_velocity = v;
     return found;
   }
-  found.velocity = Net::Zero(particle_->sites().rows(), 3), found.on_wall = Net::Zero(wall_->points().sites().rows(), 3);
-  if (v.size() > 0 && particle_->sources.has_double()) found.on_wall += particle_on_wall({}, v);
+  found.velocity = Net::Zero(particle_->sites.rows(), 3), found.on_wall = Net::Zero(wall_->points().sites().rows(), 3);
+  if (v.size() > 0 && particle_->has_double()) found.on_wall += particle_on_wall({}, v);
   found.pressure_drop += pressure_of_velocity(v, &found.on_wall);
   if (f.size() > 0) found.on_wall += particle_on_wall(f);
   return found;
@@ -156,7 +163,8 @@ void Tube::velocity_at(const Eigen::SparseMatrix<double>& points, const Net& x, 
   const Net by_pressure = cell() ? Net(pressure_driven_velocity(at)(rows, Eigen::all)) : pressure_driven_velocity(at(rows, Eigen::all));
   for (std::size_t k = 0; k < rows.size(); ++k)
     u.row(rows[k]) = (response.pressure_drop * by_pressure.row(static_cast<Eigen::Index>(k)) - u.row(rows[k])) / viscosity();
-  if (cell()) particle_->sources.add_velocity(response.load, response.particle_velocity, at, rows, u, {.first_image_row = 0});
+  const PointsOff images{.at = at, .own = {rows.begin(), rows.end()}, .first_image_row = 0};
+  if (cell()) particle_->layers->add(response.load, response.particle_velocity, images, u);
   if (const double slower = flow_rate_reduction(response.pressure_drop); slower != 0) {
     const Net ambient = flow_->velocities(points * x);
     for (const int i : rows) u.row(i) -= slower * ambient.row(i);
@@ -166,15 +174,13 @@ void Tube::velocity_at(const Eigen::SparseMatrix<double>& points, const Net& x, 
 void Tube::freeze() {
   const auto clock = phases_.time("assembly");
   if (wall_->iterates()) return;
-  const bool by_flow = !properties().parallel_flow && particle_->sources.has_double();
+  const bool by_flow = !properties().parallel_flow && particle_->has_double();
   particle_->freeze(*wall_, by_flow ? Net(flow_weights().of_velocity / flow_weights().of_pressure) : Net());
-  if (!by_flow) return;
-  const Net& through_inlet = particle_->flow_of_strength(*wall_);
-  particle_->frozen.weights_of_velocity -= particle_->sources.strength(through_inlet) / flow_weights().of_pressure;
+  if (by_flow) particle_->frozen.weights_of_velocity -= particle_->flow_of_velocity(*wall_) / flow_weights().of_pressure;
 }
 
 Net Tube::frozen_response(const Net& f, const Net& v) {
-  if (wall_->iterates()) return Net::Zero(particle_->sites().rows(), 3);
+  if (wall_->iterates()) return Net::Zero(particle_->sites.rows(), 3);
   const ParticleData::Frozen& frozen = particle_->frozen;
   const double pressure = dot(frozen.weights_of_load, f) + dot(frozen.weights_of_velocity, v);
   const auto add = [](double factor, const FrozenOperator& of, const Net& strength, Net& to) {
@@ -182,14 +188,14 @@ Net Tube::frozen_response(const Net& f, const Net& v) {
     of.apply(strength, part);
     to += factor * part;
   };
-  const bool has_velocity = v.size() > 0 && particle_->sources.has_double();
+  const bool has_velocity = v.size() > 0 && particle_->has_double();
   const auto add_layers = [&](const FrozenOperator& single, const FrozenOperator& dual, Net& u) {
     if (f.size() > 0) add(-1 / viscosity(), single, f, u);
-    if (has_velocity) add(1, dual, particle_->sources.strength(v), u);
+    if (has_velocity) add(1, dual, v, u);
   };
   const Net on_wall = wall_->points().ranks().filled(wall_->points().sites().rows(), [&](Net& u) { add_layers(frozen.single, frozen.dual, u); });
   const Net traction = solve_wall(on_wall) + pressure * wall_->traction_per_pressure_drop();
-  const Net u = particle_->ranks.filled(particle_->sites().rows(), [&](Net& own) {
+  const Net u = particle_->ranks.filled(particle_->sites.rows(), [&](Net& own) {
     add(-1 / viscosity(), frozen.wall, traction, own);
     if (frozen.images) add_layers(frozen.single_of_images, frozen.dual_of_images, own);
   });

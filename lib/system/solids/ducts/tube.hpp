@@ -19,7 +19,7 @@
 #include "surface/walls/tube_wall.hpp"
 #include "system/parallel/ranks.hpp"
 #include "system/solids/ducts/channel_flow.hpp"
-#include "system/solids/particle_sources.hpp"
+#include "system/particle.hpp"
 
 namespace tanktread::coupling {
 
@@ -96,8 +96,8 @@ class Tube {
 
   ~Tube();
 
-  /// Returns the particles as sources of flow. Their unstressed net, and their contrasts if they are not 0, must be set before set_shape().
-  ParticleSources& particles();
+  /// Sets the particles in the tube and their unstressed net. Required before set_shape().
+  void set_particles(const Net& unstressed, std::span<const Particle> particles);
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. Does nothing if the arguments equal the arguments of the
   /// latest call. `origin`: x1 coordinate of the origin of the frame of wall() if the wall is straight; by default the x1 coordinate of the

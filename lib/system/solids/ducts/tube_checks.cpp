@@ -54,7 +54,7 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   const double dp = response.pressure_drop, area = wall_->surface().outline.area(), flow = flow_rate_of(f, v, response);
   const FlowWeights& weights = flow_weights();
   double force = (cell() ? 0 : area * dp) - dot(weights.force, response.wall_traction);  // a periodic duct has no caps on which dp acts
-  const stokes::Layer& layer = particle_->sources.single_layer;
+  const stokes::Layer& layer = particle_->layers->single_layer;
   if (f.size() > 0) force -= layer.moments(layer.weights()).dot(f.col(0));
   const double force_of_pressure = area - dot(weights.force, wall_->traction_per_pressure_drop());
 
@@ -76,7 +76,7 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
   Net u = response.pressure_drop / mu * wall_->inlet().integral(at);
   wall_->layer().apply(wall_->on_space(response.wall_traction), at, all, part);
   u -= part / mu;
-  particle_->sources.add_velocity(f, v, at, all, u);
+  particle_->layers->add(f, v, {.at = at, .own = all}, u);
   return u.rowwise().norm().maxCoeff();
 }
 
@@ -98,7 +98,7 @@ double Tube::flow_rate_of(const Net& f, const Net& v, const Response& response) 
   const FlowWeights& weights = flow_weights();
   double flow = (response.pressure_drop * weights.own - dot(weights.of_traction, response.wall_traction)) / viscosity();
   if (f.size() > 0) {
-    stokes::Layer& layer = particle.sources.single_layer;
+    stokes::Layer& layer = particle.layers->single_layer;
     std::vector<double> value[3];
     layer.values(f, value);
     const auto& node = layer.nodes();
@@ -107,7 +107,7 @@ double Tube::flow_rate_of(const Net& f, const Net& v, const Response& response) 
       flow -= layer.weights()[k] * wall_->flow_of_forces(at).row(0).dot(Vec3(value[0][k], value[1][k], value[2][k])) / viscosity();
     }
   }
-  if (v.size() > 0 && particle.sources.has_double()) flow += dot(particle.flow_of_strength(*wall_), particle.sources.strength(v));
+  if (v.size() > 0 && particle.has_double()) flow += dot(particle.flow_of_velocity(*wall_), v);
   return flow;
 }
 
@@ -141,7 +141,7 @@ Tube::WallResidual Tube::wall_residual(const Net& f) {
     Net of_wall(at.rows(), 3);
     between_->layer.apply(wall_->on_space(response.wall_traction), own, of_wall);
     for (const int i : own) velocity.row(i) = (by_pressure.row(i) - of_wall.row(i)) / viscosity();
-    particle_->sources.add_velocity(f, {}, at, own, velocity);
+    particle_->layers->add(f, {}, {.at = at, .own = {own.begin(), own.end()}}, velocity);
   });
   return {wall_->from_space(Net(between_->weights * u)), flow_rate_of(f, {}, response)};
 }
@@ -180,7 +180,7 @@ double Tube::gap_to_channel_wall() const {
       surface::fundamental_elements(particle_->parameters.symmetry, static_cast<int>(particle_->space.elements.size()), points).element;
   const double radius = wall().radius(), nearest = surface::gap_to_wall(particle_->geometry.bezier(), particle_->shape, elements, wall_->boxes(),
                                                                         wall().period, 1e-5 * radius, radius);
-  return first_outside(particle_->sites(), indices(particle_->sites().rows())) < 0 ? nearest : -nearest;
+  return first_outside(particle_->sites, indices(particle_->sites.rows())) < 0 ? nearest : -nearest;
 }
 
 }  // namespace tanktread::coupling

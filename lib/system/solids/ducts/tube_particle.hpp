@@ -12,6 +12,7 @@
 #include "system/solids/ducts/tube.hpp"
 #include "system/solids/ducts/wall.hpp"
 #include "system/frozen/frozen_operator.hpp"
+#include "system/targets/layer_pair.hpp"
 #include "system/solvers/options.hpp"
 
 namespace tanktread::coupling {
@@ -21,6 +22,8 @@ namespace tanktread::coupling {
 /// freeze() sets. Calls are collective.
 struct Tube::ParticleData {
   ParticleData(const spline::Space& space, const TubeParameters& parameters, const Wall& wall, Phases& phases);
+
+  void set_particles(const Net& unstressed, std::span<const Particle> particles, const Wall& wall);
 
   /// Sets the shape. `x1`: position along x1 of the origin of the wall's frame. `pressure_drop`: pressure drop of the empty duct.
   void set_shape(const Net& x, double x1, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
@@ -38,30 +41,27 @@ struct Tube::ParticleData {
   };
   Cause cause(const Net& f, const Net& v);
 
-  /// Returns the weights w of the double-layer strength q = (1 - lambda) v: the double layer causes the flow rate w.q along the duct. Cached for the
-  /// current shape.
-  const Net& flow_of_strength(const Wall& wall);
+  /// Returns the weights w of the velocity v: its double layer causes the flow rate w.v along the duct. Cached for the current shape.
+  const Net& flow_of_velocity(const Wall& wall);
 
-  const Net& sites() const { return sources.sites(); }  ///< collocation points, in the wall's frame
+  bool has_double() const { return layers->double_layer.has_value(); }  ///< whether the velocity v has an effect
 
   const spline::Space& space;
   TubeParameters parameters;
   std::vector<int> own;  ///< rank-owned points
   Ranks ranks;
   surface::Geometry geometry;
-  ParticleSources sources;            ///< the particle as a source of flow, with its shape in the wall's frame
-  membrane::DirectSolver from_sites;  ///< factored collocation matrix R, to compute control values from values at the sites
+  Eigen::SparseMatrix<double> collocation;  ///< collocation matrix R
+  std::optional<LayerPair> layers;    ///< layers of the particle at points off it, with its shape in the wall's frame; set by set_particles()
+  membrane::DirectSolver from_sites;  ///< factors of R, to compute control values from values at the sites
   bool periodic;                      ///< whether the duct is periodic
 
-  Net shape;                                   ///< net of the particle in the frame of the wall
+  Net shape, sites;                            ///< net and collocation points of the particle in the frame of the wall
   double origin = 0;                           ///< x1 of the origin of the wall's frame, which is the particle's centroid in a straight open tube
   Net inlet;                                   ///< velocity c (2.5) per unit pressure drop, at the sites
   Net ambient, interpolated_ambient;           ///< duct flow v_inf at the sites, and its control values (in a channel only)
   Net weights_of_load, weights_of_velocity;    ///< weights of f and v in dp (2.7). Weights of v are set only in a straight tube, if lambda != 1
-  Net target_points;                           ///< targets of the wall; in a periodic duct also the particle's collocation points, in later rows
-  int n_on_wall = 0;                           ///< number of targets on the wall
-  std::vector<int> own_targets;                ///< rank-owned rows of `target_points`
-  SourceTargets prepared_targets;              ///< see ParticleSources::prepared
+  PointsOff targets;                           ///< targets of the wall; in a periodic duct also the particle's collocation points, in later rows
   std::optional<stokes::Layer::Near> wall_on_sites;  ///< corrections of the wall's layer at the particle's sites; set if lambda != 1
 
   /// Operators of the Jacobian: layers of the particle at the wall and, due to its images in a periodic duct, at its own sites; layer of the wall at
@@ -77,7 +77,7 @@ struct Tube::ParticleData {
   void weigh_pressure(const stokes::DuctFlow& flow, bool parallel);
   Net ambient_of(const stokes::DuctFlow& flow) const;
 
-  Net flow_of_strength_;
+  Net flow_of_velocity_;
 };
 
 /// Points of the wall between its collocation points, at which wall_residual() evaluates the velocity, and the single layer for these points.

@@ -181,10 +181,16 @@ PlatesAndPosts::Flow PlatesAndPosts::solve(const Net& u, const Vec3& force) cons
   return flow;
 }
 
-void PlatesAndPosts::velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept) {
-  assert(reaches(at(rows, Eigen::all)));
-  layer_->apply(on_space(flow.force), at, rows, u, kept);
-  for (const int i : rows) u.row(i) = u.row(i) / viscosity() + flow.drift.transpose();
+PointsOff PlatesAndPosts::prepared(Net at, std::vector<int> own) {
+  PointsOff points{.at = std::move(at), .own = std::move(own)};
+  points.near = layer_->near(points.at, points.own);
+  return points;
+}
+
+void PlatesAndPosts::velocity_at(const PointsOff& points, const Flow& flow, Net& u) {
+  assert(reaches(points.at(points.own, Eigen::all)));
+  layer_->apply(on_space(flow.force), points.at, points.own, u, points.near ? &*points.near : nullptr);
+  for (const int i : points.own) u.row(i) = u.row(i) / viscosity() + flow.drift.transpose();
 }
 
 Eigen::VectorXd PlatesAndPosts::moments(const std::function<double(const Vec3& x)>& function) const {
