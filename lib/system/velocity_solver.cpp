@@ -210,7 +210,7 @@ VelocitySolver::CellMove VelocitySolver::move_into_cell(Net& x, Net* v) const {
   CellMove move;
   if (!cell_) return move;
   const Vec3 middle = cell_origin(x);
-  if (tube_ && !tube_->fixed()) move.origin = middle[0];
+  if (tube_ && !tube_->properties().fixed) move.origin = middle[0];
   for (const Particle& particle : particles()) {
     auto rows = particle.block.rows(x);
     CellShift& shift = move.shifts.emplace_back(cell_->shift(rows.colwise().mean().transpose() - middle));
@@ -233,7 +233,7 @@ Net VelocitySolver::place(Net x, Net* v) {
 /// points, even if the particles are far apart.
 Vec3 VelocitySolver::cell_origin(const Net& x) const {
   if (!tube_) return Vec3::Zero();
-  if (tube_->fixed()) return (tube_->wall().start + tube_->wall().end) / 2 * Vec3::UnitX();
+  if (tube_->properties().fixed) return (tube_->wall().start + tube_->wall().end) / 2 * Vec3::UnitX();
   return x.col(0).mean() * Vec3::UnitX();
 }
 

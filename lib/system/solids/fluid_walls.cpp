@@ -1,5 +1,7 @@
 #include "system/solids/fluid_walls.hpp"
 
+#include "system/solids/ducts/duct.hpp"
+
 namespace tanktread::coupling {
 
 void FluidWalls::set_shape(const Net& x, const Targets& targets, std::optional<double> origin) const {
@@ -13,7 +15,7 @@ void FluidWalls::forget() const {
 }
 
 FluidWalls::Crossing FluidWalls::crossing(const Net& at, const RowShare& layout) const {
-  if (tube) return {tube->first_outside(at, layout.points()), "the wall of the duct"};
+  if (tube) return {tube->duct().wall().first_outside(at, layout.points()), "the wall of the duct"};
   return solids ? solids->scene().solids->crossing(at) : Crossing();
 }
 

@@ -2,12 +2,34 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "system/targets/collocation.hpp"
 
 namespace tanktread::coupling {
 
 using stokes::Layer;
+
+namespace {
+
+Net rows_of_nodes(const stokes::NodeVectors& columns) {
+  Net net(static_cast<Eigen::Index>(columns[0].size()), 3);
+  for (int c = 0; c < 3; ++c) net.col(c) = Eigen::Map<const Eigen::VectorXd>(columns[c].data(), net.rows());
+  return net;
+}
+
+/// Returns the integrals of each basis function times a field. `values`: the field at the nodes, times area and quadrature weight.
+Net moments(const Layer& layer, const Net& values) {
+  Net found;
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::VectorXd column = layer.moments({values.col(c).begin(), values.col(c).end()});
+    found.conservativeResize(column.size(), 3);
+    found.col(c) = column;
+  }
+  return found;
+}
+
+}  // namespace
 
 LayerPair::LayerPair(const spline::Space& space, const stokes::Sites& points, const Net& unstressed, std::span<const Particle> particles,
                      const quadrature::Options& quadrature, double viscosity, const stokes::Medium* medium)
@@ -76,6 +98,22 @@ void LayerPair::add(const Net& f, const Net& v, const PointsOff& points, Net& su
     layer.apply(density, nearby, points.at, points.own, u, points.near ? &*points.near : nullptr, points.first_image_row);
   };
   add_layers(f, v, points.own, apply, sum);
+}
+
+Net LayerPair::weights_of_load(const std::function<Net(const Net& x)>& field) const {
+  const auto& weights = single_layer.weights();
+  return moments(single_layer, Eigen::Map<const Eigen::VectorXd>(weights.data(), single_layer.n_nodes()).asDiagonal() *
+                                   field(rows_of_nodes(single_layer.nodes())));
+}
+
+Net LayerPair::weights_of_velocity(const std::function<Net(const Net& x, const Net& n)>& field) const {
+  return moments(*double_layer, field(rows_of_nodes(double_layer->nodes()), rows_of_nodes(double_layer->normals())));
+}
+
+Net LayerPair::at_nodes(const Net& field) {
+  std::vector<double> values[3];
+  single_layer.values(field, values);
+  return rows_of_nodes(values);
 }
 
 stokes::Evaluations LayerPair::evaluations() const {

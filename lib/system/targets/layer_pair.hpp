@@ -1,9 +1,9 @@
 #pragma once
 // Single and double layer of all particles at one set of points, on the particles or off them.
 
+#include <functional>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include <Eigen/SparseCore>
 
@@ -41,6 +41,14 @@ class LayerPair {
   /// points on the particles.
   void add(const Net& f, const Net& v, std::span<const int> own, Net& sum);
   void add(const Net& f, const Net& v, const PointsOff& points, Net& sum);
+
+  /// Returns weights w, one row per control point, for the current shape: the integral of f.a over the particles is w.f for any load f. `field(x)`
+  /// returns a at the points x.
+  Net weights_of_load(const std::function<Net(const Net& x)>& field) const;
+  /// Returns weights w, one row per control point, for the current shape: the integral of (1 - lambda) v.t over the particles is w.v for any velocity
+  /// v. `field(x, n)` returns t at the points x, as a linear function of the normals n, which are multiplied by areas.
+  Net weights_of_velocity(const std::function<Net(const Net& x, const Net& n)>& field) const;
+  Net at_nodes(const Net& field);  ///< returns a field, given by control values, at the points x of weights_of_load()
 
   stokes::Evaluations evaluations() const;  ///< kernel evaluations of this rank
 

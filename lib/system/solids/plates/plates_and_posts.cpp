@@ -119,12 +119,7 @@ PlatesAndPosts::Crossing PlatesAndPosts::crossing(const Net& at) const {
 Eigen::MatrixXd PlatesAndPosts::rows(stokes::Layer& on_itself, std::span<const int> sites) const {
   stokes::Rows<double> all;
   on_itself.assemble(sites, all);
-  Eigen::MatrixXd found(all.rows(), sites_.size());
-  for (Eigen::Index r = 0; r < all.rows(); ++r) {
-    const Net periodic = surface_.open_from_periodic.transpose() * Eigen::Map<const Net>(all.row(r).data(), surface_.space.n_points, 3);
-    found.row(r) = Eigen::Map<const Eigen::RowVectorXd>(periodic.data(), periodic.size());
-  }
-  return found;
+  return columns_of(surface_.open_from_periodic, all);
 }
 
 /// Factors the matrix of the equations (2.46) for the force density and the uniform velocity, for unit viscosity, on every rank. If all solids are

@@ -71,25 +71,25 @@ Vec3 SolidResponse::flow_integral(const PlatesAndPosts::Flow& flow, const Net& f
   if (scene_.planes.size() != 2) return coupling::solids_flow_integral(scene_, flow);
   const stokes::PlaneWall& wall = scene_.planes.front();
   const Vec3& n = wall.normal();
-  const auto height = [&](const std::vector<double> (&x)[3], std::size_t k) { return wall.height(Vec3(x[0][k], x[1][k], x[2][k])); };
   Vec3 sum = coupling::solids_flow_integral(scene_, flow);
-  const stokes::Layer& single = particles_.single_layer;
-  std::vector<double> weighted = single.weights();
-  for (std::size_t k = 0; k < weighted.size(); ++k) weighted[k] *= profile(scene_, height(single.nodes(), k)) / scene_.solids->viscosity();
-  if (f.size() > 0) sum -= f.transpose() * single.moments(weighted);
-  if (v.size() > 0 && particles_.double_layer) {  // stress of (2.49): sigma_i n = x_i n + slope (e_i (m.n) + m (e_i.n)), m: normal of the plates
-    const stokes::Layer& dual = *particles_.double_layer;
-    for (int i = 0; i < 3; ++i)
-      for (int c = 0; c < 3; ++c) {
-        std::vector<double> stress(dual.nodes()[0].size());
-        for (std::size_t k = 0; k < stress.size(); ++k) {
-          const Vec3 normal(dual.normals()[0][k], dual.normals()[1][k], dual.normals()[2][k]);
-          const double slope = distance(scene_) / 2 - height(dual.nodes(), k);
-          stress[k] = dual.nodes()[i][k] * normal[c] + slope * ((i == c ? n.dot(normal) : 0.) + n[c] * normal[i]);
-        }
-        sum[i] += dual.moments(stress).dot(v.col(c));
-      }
+  if (f.size() > 0) {
+    const Net weights = particles_.weights_of_load([&](const Net& x) {
+      Net all(x.rows(), 3);
+      for (Eigen::Index k = 0; k < x.rows(); ++k) all.row(k).setConstant(profile(scene_, wall.height(x.row(k).transpose())));
+      return all;
+    });
+    sum -= weights.cwiseProduct(f).colwise().sum().transpose() / scene_.solids->viscosity();
   }
+  for (int i = 0; i < 3 && v.size() > 0 && particles_.double_layer; ++i)
+    sum[i] += dot(particles_.weights_of_velocity([&](const Net& x, const Net& normals) {
+      Net stress(x.rows(), 3);  // (2.49): sigma_i n = x_i n + slope (e_i (m.n) + m (e_i.n)), m: normal of the plates
+      for (Eigen::Index k = 0; k < x.rows(); ++k) {
+        const Vec3 normal = normals.row(k).transpose();
+        const double slope = distance(scene_) / 2 - wall.height(x.row(k).transpose());
+        stress.row(k) = (x(k, i) * normal + slope * (n.dot(normal) * Vec3::Unit(i) + normal[i] * n)).transpose();
+      }
+      return stress;
+    }), v);
   return along(wall, sum);
 }
 
