@@ -14,6 +14,7 @@
 #include "surface/walls/channel.hpp"
 #include "system/parallel/ranks.hpp"
 #include "system/frozen/frozen_operator.hpp"
+#include "system/solids/ducts/wall.hpp"
 
 namespace tanktread {
 

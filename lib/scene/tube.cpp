@@ -12,6 +12,8 @@
 #include "surface/clearance.hpp"
 #include "surface/closest_points.hpp"
 #include "surface/geometry.hpp"
+#include "system/solids/ducts/channel_flow.hpp"
+#include "system/solids/ducts/duct.hpp"
 
 namespace tanktread {
 
@@ -80,7 +82,7 @@ void check_fits(const ParticleScene& particle_scene, const Body& body) {
 /// Adds the flow rate and the pressure drops of the empty duct to the row. They are 0 if `flow` is not a duct flow.
 TubeRow with_channel(const coupling::Tube& tube, const stokes::AmbientFlow& flow, TubeRow now) {
   const double amplitude = flow.duct() ? flow.amplitude() : 0;
-  now.flow_rate = tube.flow_rate(now.pressure_drop, amplitude);
+  now.flow_rate = tube.duct().flow_rate(now.pressure_drop, amplitude);
   now.channel_pressure_drop = amplitude * tube.flow().pressure_drop(tube.wall().length());
   now.channel_extra_pressure_drop = amplitude * tube.flow().extra_pressure_drop();
   return now;
@@ -229,8 +231,7 @@ void TubeRow::add_columns(const SharedOptions& shared, Columns& to) const {
 }
 
 TubeRow tube_row(const coupling::Tube& tube, const stokes::AmbientFlow& flow, coupling::Evaluation& e) {
-  const coupling::Tube::Checks checks = e.checks();
-  return with_channel(tube, flow, {.pressure_drop = e.response().pressure_drop, .gap = tube.gap(), .checks = checks});
+  return with_channel(tube, flow, {.pressure_drop = e.response().pressure_drop, .gap = tube.gap(), .checks = e.checks()});
 }
 
 TubeRow tube_row(coupling::Tube& tube, const stokes::AmbientFlow& flow, const Net& density, double pressure_drop) {

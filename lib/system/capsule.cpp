@@ -136,7 +136,7 @@ bool Capsule::evaluated_about(const Net& x, double distance) const {
   Net moved = x - latest_->x();
   const auto depends_on_x1 = [](const auto& load) { return !load->rigid_conditions().col(0).isZero(0); };
   const auto notices = [&](const Particle& one) { return std::ranges::any_of(one.loads, depends_on_x1); };
-  const bool moves_along = tube() && !tube()->fixed() && solver_.equations().empty();
+  const bool moves_along = tube() && !tube()->properties().fixed && solver_.equations().empty();
   if (moves_along && std::ranges::none_of(particles(), notices)) moved.col(0).array() -= moved.col(0).mean();
   return norm(moved) <= distance;
 }

@@ -49,14 +49,6 @@ double viscosity_contrast(const Particle& particle) {
   return 1 - particle.viscosity_ratio;
 }
 
-Eigen::VectorXd viscosity_contrasts_of_points(std::span<const Particle> particles) {
-  const spline::Block& last = particles.back().block;
-  Eigen::VectorXd result(last.first_point + last.n_points);
-  for (const Particle& particle : particles)
-    result.segment(particle.block.first_point, particle.block.n_points).setConstant(viscosity_contrast(particle));
-  return result;
-}
-
 std::vector<double> viscosity_contrasts(std::span<const Particle> particles) {
   std::vector<double> result;
   if (std::ranges::all_of(particles, [](const Particle& particle) { return viscosity_contrast(particle) == 0; })) return result;

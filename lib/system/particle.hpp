@@ -75,9 +75,6 @@ Net measured_net(std::span<const Particle> particles, const Net& unstressed, con
 /// density w (2.23), 0 if the unknown is the traction (2.40).
 double viscosity_contrast(const Particle& particle);
 
-/// Returns the viscosity contrast of each control point of all particles.
-Eigen::VectorXd viscosity_contrasts_of_points(std::span<const Particle> particles);
-
 /// Returns the viscosity contrast of each element of all particles; empty if all are 0.
 std::vector<double> viscosity_contrasts(std::span<const Particle> particles);
 

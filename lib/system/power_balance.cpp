@@ -6,6 +6,7 @@
 #include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 #include "surface/geometry.hpp"
+#include "system/solids/ducts/duct.hpp"
 #include "system/targets/collocation.hpp"
 #include "system/solids/bodies/rigid_residual.hpp"
 
@@ -92,7 +93,7 @@ double PowerBalance::flow_power(Evaluation& e, const Net& work, const Net& insid
   if (flow.duct()) {
     const Tube& tube = *capsule_.tube();
     const double drop = e.response().pressure_drop;
-    return tube.flow_rate(drop, flow.amplitude()) * drop;
+    return tube.duct().flow_rate(drop, flow.amplitude()) * drop;
   }
   if (SolidResponse* const solids = capsule_.solids(); solids && solids->scene().planes.size() != 1) {
     const Evaluation::SolidFlow found = e.solid_flow();

@@ -40,14 +40,15 @@ VelocitySolver::VelocitySolver(const spline::Space& space, const Net& unstressed
       volumes_(space, resting, particles(), layout_, phases),
       layers_(space, unstressed, parameters_, layout_, targets_, phases),
       tube_(std::move(tube)),
-      solids_(parameters_.solids ? std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_) : nullptr),
+      solids_(parameters_.solids ? std::make_unique<SolidResponse>(*parameters_.solids, space_, membranes_.unstressed(), particles(), flow_)
+                                 : nullptr),
       walls_{tube_.get(), solids_.get()},
       solving_{Krylov(parameters_.solvers.of(parameters_.solvers.velocity)), {}, {},
                UserEquations(parameters_.equations, {particles(), resting_, parameters_.viscosity})},
       bodies_{RigidParticles(particles(), resting, parameters_.viscosity, parameters_.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)) {
   assert(!tube_ || !targets_.projection());  // Tube computes its response only at collocation sites, not at the sites of a projection
-  walls_.set_particles(membranes_.unstressed(), particles());
+  if (tube_) tube_->set_particles(membranes_.unstressed(), particles());
   if (std::ranges::any_of(particles(), &Particle::by_traction))
     bodies_.tractions = std::make_unique<RigidTractions>(space, membranes_.unstressed(), resting, parameters_, walls_, layout_.points(),
                                                          layout_.ranks());
@@ -219,7 +220,7 @@ VelocitySolver::CellMove VelocitySolver::move_into_cell(Net& x, Net* v) const {
   CellMove move;
   if (!cell_) return move;
   const Vec3 middle = cell_origin(x);
-  if (tube_ && !tube_->fixed()) move.origin = middle[0];
+  if (tube_ && !tube_->properties().fixed) move.origin = middle[0];
   for (const Particle& particle : particles()) {
     auto rows = particle.block.rows(x);
     CellShift& shift = move.shifts.emplace_back(cell_->shift(rows.colwise().mean().transpose() - middle));
@@ -242,7 +243,7 @@ Net VelocitySolver::place(Net x, Net* v) {
 /// points, even if the particles are far apart.
 Vec3 VelocitySolver::cell_origin(const Net& x) const {
   if (!tube_) return Vec3::Zero();
-  if (tube_->fixed()) return (tube_->wall().start + tube_->wall().end) / 2 * Vec3::UnitX();
+  if (tube_->properties().fixed) return (tube_->wall().start + tube_->wall().end) / 2 * Vec3::UnitX();
   return x.col(0).mean() * Vec3::UnitX();
 }
 

@@ -29,7 +29,7 @@ class LayersAtTargets : public LayersAt {
   Net ambient() override {
     const stokes::AmbientFlow& flow = solver_.flow();
     const Tube* const tube = solver_.walls().tube;
-    return tube && flow.duct() ? Net(flow.amplitude() * tube->ambient()) : flow.velocities(solver_.targets().values() * x_);
+    return tube && flow.duct() ? Net(flow.amplitude() * tube->in_flow().ambient) : flow.velocities(solver_.targets().values() * x_);
   }
   Net ambient_control_values() override {
     const bool at_sites = std::ranges::any_of(solver_.particles(), &Particle::by_traction);  // rows that need the velocity at the sites

@@ -12,6 +12,7 @@
 #include "surface/shapes.hpp"
 #include "surface/walls/tube_wall.hpp"
 #include "system/capsule.hpp"
+#include "system/solids/ducts/duct.hpp"
 #include "tests/benchmark/clock.hpp"
 
 namespace {
@@ -84,13 +85,17 @@ void velocity_evaluation_in_a_tube(benchmark::State& state) {
                                             std::make_unique<coupling::Tube>(wall, *duct, capsule.space, parameters, phases), with);
     state.counters["tube ms"] = 1e3 * confined;
     coupling::Tube tube(wall, *duct, capsule.space, parameters, phases);
-    tube.particles().set_reference(capsule.unstressed), tube.particles().set_contrasts(1 - capsule.parameters.particles.front().viscosity_ratio);
-    const Net f = capsule.x, on_wall = (tube.set_shape(capsule.x), tube.particle_on_wall(f));
+    const double ratio = capsule.parameters.particles.front().viscosity_ratio;
+    const coupling::Particle particle{.space = &capsule.space, .block = spline::whole(capsule.space), .viscosity_ratio = ratio};
+    tube.set_particles(capsule.unstressed, {&particle, 1});
+    tube.set_shape(capsule.x);
+    const Net f = capsule.x;
+    coupling::Tube::Response response = tube.respond(f);
     state.counters["shape ms"] = milliseconds([&] { tube.set_shape(capsule.x); });
-    state.counters["load on wall ms"] = milliseconds([&] { tube.particle_on_wall(f); });
-    state.counters["velocity on wall ms"] = milliseconds([&] { tube.particle_on_wall({}, f); });
-    state.counters["wall solve ms"] = milliseconds([&] { tube.solve_wall(on_wall); });
-    state.counters["wall on particle ms"] = milliseconds([&] { tube.wall_on_particle(on_wall); });
+    state.counters["load on wall ms"] = milliseconds([&] { tube.cause(f, {}); });
+    state.counters["velocity on wall ms"] = milliseconds([&] { tube.cause({}, f); });
+    state.counters["wall solve ms"] = milliseconds([&] { tube.duct().traction(response.on_wall, 0); });
+    state.counters["wall on particle ms"] = milliseconds([&] { tube.add_answer(response); });
     state.counters["tube / free"] = confined / free;
     state.counters["iterations"] = static_cast<double>(with);
     state.counters["iterations, free"] = static_cast<double>(without);

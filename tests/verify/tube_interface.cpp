@@ -27,7 +27,8 @@ Interface interface(const Sphere& sphere, const Duct& duct, double ratio) {
   coupling::TubeParameters parameters;
   parameters.quadrature.tolerance = 1e-7;
   coupling::Tube tube(duct.wall, *duct.flow, sphere.space, parameters, phases);
-  tube.particles().set_reference(sphere.net), tube.particles().set_contrasts(1 - ratio);
+  const coupling::Particle particle{.space = &sphere.space, .block = spline::whole(sphere.space), .viscosity_ratio = ratio};
+  tube.set_particles(sphere.net, {&particle, 1});
   tube.set_shape(sphere.net);
 
   const Eigen::Index n = sphere.net.rows();

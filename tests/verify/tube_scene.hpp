@@ -89,10 +89,10 @@ struct RigidSphere {
     parameters.quadrature.tolerance = tolerance;
     solvers.tolerance = 1e-9;
     tube = std::make_unique<coupling::Tube>(duct.wall, *duct.flow, sphere.space, parameters, phases);
-    tube->particles().set_reference(sphere.net);
-    tractions = std::make_unique<coupling::RigidTractions>(
-        sphere.space, sphere.net, sphere.net, single_body(sphere.space, radius, 1.0, parameters.quadrature, solvers),
-        coupling::FluidWalls{tube.get()}, std::vector<int>(), ranks);
+    const coupling::CapsuleParameters single = single_body(sphere.space, radius, 1.0, parameters.quadrature, solvers);
+    tube->set_particles(sphere.net, single.particles);
+    tractions = std::make_unique<coupling::RigidTractions>(sphere.space, sphere.net, sphere.net, single, coupling::FluidWalls{tube.get()},
+                                                           std::vector<int>(), ranks);
     body = std::make_unique<coupling::FreeBodyInTube>(*tractions, sphere.net, sphere.centre, radius, flow, 1.0);
   }
 

@@ -46,7 +46,7 @@ void PrescribedRow::add_columns(const ParticleScene& particle_scene, Columns& to
 coupling::RigidTractions make_tractions(const ParticleScene& particle_scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
   const auto single = coupling::single_body(body.space, body.radius, particle_scene.flow.viscosity, particle_scene.quadrature, particle_scene.solvers,
                                             particle_scene.medium());
-  if (tube) tube->particles().set(body.rest, single.particles);
+  if (tube) tube->set_particles(body.rest, single.particles);
   return {body.space, body.rest, body.rest, single, {tube}, {}, ranks};
 }
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "system/solids/ducts/duct.hpp"
+
 namespace tanktread::coupling {
 
 void EliminatedWalls::answer(const BlockVector&, Given given, Sources& to) const {
@@ -31,19 +33,20 @@ void DuctWall::answer(const BlockVector& x, Given, Sources& to) const {
 
 void DuctWall::add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity&, Given, BlockVector& r) const {
   const Tube::Response& response = from.walls->tube;
-  r(traction_) += tube_.wall_on_wall(response.wall_traction) - response.pressure_drop * tube_.inlet_on_wall() - response.on_wall;
+  r(traction_) += tube_.duct().residual(response.wall_traction, response.pressure_drop, response.on_wall);
   r(drop_)(0, 0) += x(drop_)(0, 0) - response.caused_drop / unit_;
 }
 
 void DuctWall::precondition(const BlockVector& r, BlockVector& x) const {
   if (form_ == "block") return;
   Net on_wall = r(traction_);
+  double drop = 0;
   if (form_ == "block triangular") {
-    const Net y = System::particles(std::as_const(x));
-    x(drop_)(0, 0) += tube_.pressure_of({}, y) / unit_;
-    on_wall += x.value(drop_)(0, 0) * tube_.inlet_on_wall() + tube_.particle_on_wall({}, y);
+    const Tube::Response caused = tube_.cause({}, System::particles(std::as_const(x)));
+    x(drop_)(0, 0) += caused.pressure_drop / unit_;
+    on_wall += caused.on_wall, drop = x.value(drop_)(0, 0);
   }
-  x.set(traction_, tube_.solve_wall(on_wall));
+  x.set(traction_, tube_.duct().traction(on_wall, drop));
 }
 
 }  // namespace tanktread::coupling

@@ -40,7 +40,8 @@ FrozenLayers::FrozenLayers(const spline::Space& space, const Net& unstressed, co
     : unstressed_(unstressed), parameters_(parameters), layout_(layout), targets_(targets), mass_(mass), layers_(layers) {
   nodal_.share(layout.ranks().rank(), layout.ranks().size(), parameters.symmetry.fundamental());
   if (targets.projection())
-    at_sites_.emplace(space, space.collocation, unstressed, parameters.particles, parameters.quadrature, parameters.medium.get());
+    at_sites_.emplace(space, space.collocation, unstressed, parameters.particles, parameters.quadrature, parameters.viscosity,
+                      parameters.medium.get());
 }
 
 bool FrozenLayers::nodal() const {

@@ -1,11 +1,8 @@
 #include "system/solids/fluid_walls.hpp"
 
-namespace tanktread::coupling {
+#include "system/solids/ducts/duct.hpp"
 
-void FluidWalls::set_particles(const Net& unstressed, std::span<const Particle> particles) const {
-  if (tube) tube->particles().set(unstressed, particles);
-  if (solids) solids->particles().set(unstressed, particles);
-}
+namespace tanktread::coupling {
 
 void FluidWalls::set_shape(const Net& x, const Targets& targets, std::optional<double> origin) const {
   if (tube) tube->set_shape(x, origin);
@@ -18,7 +15,7 @@ void FluidWalls::forget() const {
 }
 
 FluidWalls::Crossing FluidWalls::crossing(const Net& at, const RowShare& layout) const {
-  if (tube) return {tube->first_outside(at, layout.points()), "the wall of the duct"};
+  if (tube) return {tube->duct().wall().first_outside(at, layout.points()), "the wall of the duct"};
   return solids ? solids->scene().solids->crossing(at) : Crossing();
 }
 
@@ -43,7 +40,9 @@ void FluidWalls::add_velocity_at(const Eigen::SparseMatrix<double>& values, cons
                                  Net& u) const {
   Net part(u.rows(), 3);
   if (tube) tube->velocity_at(values, x, response.tube, own, part), u(own, Eigen::all) += part(own, Eigen::all);
-  if (solids) solids->velocity_at(values * x, own, response.solids, part), u(own, Eigen::all) += part(own, Eigen::all);
+  if (!solids) return;
+  solids->scene().solids->velocity_at({.at = values * x, .own = {own.begin(), own.end()}}, response.solids, part);
+  u(own, Eigen::all) += part(own, Eigen::all);
 }
 
 stokes::Evaluations FluidWalls::evaluations() const {

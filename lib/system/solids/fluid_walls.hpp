@@ -21,9 +21,6 @@ struct FluidWalls {
 
   bool any() const { return tube || solids; }
 
-  /// Passes the unstressed net of the particles, and their viscosity ratios and measures of loads, to the boundaries. Required before set_shape().
-  void set_particles(const Net& unstressed, std::span<const Particle> particles) const;
-
   /// Sets the boundaries to the net x of the particles. `targets`: points at which velocities are evaluated. `origin`: see Tube::set_shape.
   /// Collective.
   void set_shape(const Net& x, const Targets& targets, std::optional<double> origin) const;

@@ -27,6 +27,20 @@ struct BetweenSites {
 BetweenSites between_sites(const spline::Space& space, const Net& surface);
 BetweenSites between_sites(const spline::Space& space, const Net& surface, std::span<const spline::Block> blocks);  ///< points on `blocks` only
 
+/// Returns the product of a matrix of three columns per control point and the matrix `map` of control values, for example from a periodic spline to
+/// one that is not periodic.
+template <class Rows>
+Rows columns_of(const Eigen::SparseMatrix<double>& map, const Rows& rows) {
+  using Real = typename Rows::Scalar;
+  using RealNet = Eigen::Matrix<Real, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  Rows product(rows.rows(), 3 * map.cols());
+  for (Eigen::Index r = 0; r < rows.rows(); ++r) {
+    const Net of_row = Eigen::Map<const RealNet>(rows.row(r).data(), map.rows(), 3).template cast<double>();
+    Eigen::Map<RealNet>(product.row(r).data(), map.cols(), 3) = Net(map.transpose() * of_row).template cast<Real>();
+  }
+  return product;
+}
+
 /// Returns R_iA = N_A(xi_i) at the collocation sites, shape (N, N): maps control values to values at the sites (4.2).
 Eigen::SparseMatrix<double> collocation_matrix(const spline::Space& space);
 

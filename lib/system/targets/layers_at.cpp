@@ -15,8 +15,8 @@ Net velocities(LayersAt& at, const Sources& sources, Net* control_values) {
 LayersBetween::LayersBetween(const spline::Space& space, const stokes::Sites& sites, const Eigen::SparseMatrix<double>& values,
                              const Net& unstressed, const CapsuleParameters& parameters, const quadrature::Options& quadrature,
                              const FluidWalls& walls, const Ranks& ranks)
-    : values_(values), viscosity_(parameters.viscosity), walls_(walls), ranks_(ranks),
-      layers_(space, sites, unstressed, parameters.particles, quadrature, parameters.medium.get()) {}
+    : values_(values), walls_(walls), ranks_(ranks),
+      layers_(space, sites, unstressed, parameters.particles, quadrature, parameters.viscosity, parameters.medium.get()) {}
 
 void LayersBetween::set_shape(const Net& x, Net ambient) {
   layers_.set_shape(x);
@@ -25,7 +25,7 @@ void LayersBetween::set_shape(const Net& x, Net ambient) {
 
 Net LayersBetween::of_particles(const Net& load, const Net& density) {
   return ranks_.divided<Net>(static_cast<int>(values_.rows()), 3,
-                             [&](std::span<const int> own, Net& u) { layers_.apply(load, density, viscosity_, own, u); });
+                             [&](std::span<const int> own, Net& u) { layers_.add(load, density, own, u); });
 }
 
 void LayersBetween::add_walls(const FluidWalls::Response& walls, Net& u) {

@@ -69,7 +69,6 @@ class LayersBetween : public LayersAt {
 
  private:
   const Eigen::SparseMatrix<double>& values_;
-  double viscosity_;
   const FluidWalls& walls_;
   const Ranks& ranks_;
   LayerPair layers_;

@@ -12,7 +12,8 @@ namespace tanktread::coupling {
 ParticleLayers::ParticleLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const RowShare& layout,
                                const Targets& targets, Phases& phases)
     : parameters_(parameters), layout_(layout), targets_(targets), phases_(phases),
-      pair_(space, targets.sites(), unstressed, parameters.particles, parameters.quadrature, parameters.medium.get()) {
+      pair_(space, targets.sites(), unstressed, parameters.particles, parameters.quadrature, parameters.viscosity,
+            parameters.medium.get()) {
   pair_.single_layer.set_symmetry(parameters.symmetry);
   const std::vector<int> everybody = targets.projection() ? indices(targets.sites().size()) : parameters.symmetry.fundamental();
   for (stokes::Layer* const layer : {&pair_.single_layer, double_layer()})

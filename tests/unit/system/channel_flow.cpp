@@ -142,7 +142,8 @@ struct InStraightChannel {
     options.channel.reset(), options.axial_elements = around;
     const stokes::DuctFlow flow(options, 1.7, 1.3);
     tube = std::make_unique<Tube>(surface::tube_wall(flow.outline(), options, 2 * pi), flow, space, parameters, phases);
-    for (Tube* one : {tube.get(), channel.get()}) one->particles().set_reference(x), one->particles().set_contrasts(1 - ratio), one->set_shape(x);
+    const Particle particle{.space = &space, .block = spline::whole(space), .viscosity_ratio = ratio};
+    for (Tube* one : {tube.get(), channel.get()}) one->set_particles(x, {&particle, 1}), one->set_shape(x);
   }
 };
 

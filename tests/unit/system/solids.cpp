@@ -44,8 +44,7 @@ TEST(PlatesAndPosts, MovingPlatesHaveUniformForces) {
   EXPECT_LT((flow.force.topRows(16).rowwise() - mean).cwiseAbs().maxCoeff(), 1e-5);
   Net at(2, 3), u(2, 3);
   at << 0.4, 0.1, 0.5, -0.9, 0.7, 1.0;
-  const int rows[] = {0, 1};
-  solids.velocity_at(at, rows, flow, u);
+  solids.velocity_at({.at = at, .own = {0, 1}}, flow, u);
   for (int i = 0; i < 2; ++i) EXPECT_LT((u.row(i).transpose() - (lower + (upper - lower) * at(i, 2) / d)).norm(), 1e-6);
 }
 
@@ -57,12 +56,11 @@ TEST(PlatesAndPosts, VelocitiesAtAPlateDoNotDependOnEarlierTargets) {
   Net u = Net::Zero(fresh.sites().rows(), 3);
   u.row(5) << 0.3, -0.1, 0.2;
   const PlatesAndPosts::Flow flow = fresh.solve(u, Vec3(1, 0.5, 0));
-  const int rows[] = {0};
   for (const double height : {0.5, 2.7}) {  // inside and outside of the initial range of targets; a period has the length 2
     const Net at = Vec3(0.4, 0.1, height).transpose(), far = Vec3(0.4, 0.1, 9).transpose();
     Net by_fresh(1, 3), by_used(1, 3);
     fresh.reach(at), used.reach(far), used.reach(at);
-    fresh.velocity_at(at, rows, flow, by_fresh), used.velocity_at(at, rows, flow, by_used);
+    fresh.velocity_at({.at = at, .own = {0}}, flow, by_fresh), used.velocity_at({.at = at, .own = {0}}, flow, by_used);
     EXPECT_EQ(by_fresh, by_used) << height;
   }
 }

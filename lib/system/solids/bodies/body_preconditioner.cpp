@@ -16,8 +16,9 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Rigi
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const Particle& particle = particles[p];
     if (!particle.rigid || particle.block.n_points > most_points) continue;
-    const auto alike = std::ranges::find_if(
-        factors_, [&](const Use& use) { return use.factors->prescribed == particle.rigid->prescribed && bodies.alike(use.particle, p); });
+    const auto alike = std::ranges::find_if(factors_, [&](const Use& use) {
+      return use.factors->prescribed == particle.rigid->prescribed && bodies.double_layer(use.particle).alike(bodies.double_layer(p));
+    });
     factors_.push_back(
         {p, particle.block, alike == factors_.end() ? inverted(particle, bodies, p, particle.block.rows(rest), quadrature) : alike->factors});
   }
@@ -40,13 +41,14 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature);
   layer.set_shape(own);
   const Vec3 centre = bodies.rest_centre(p);
+  const BodyDensity& body = bodies.double_layer(p);
   for (int k = 0; k < 6; ++k) {
     Net field = rigid_velocity(own, unit_motion(k), centre), at_sites = factors->sites * field;
     if (factors->prescribed) {
       layer.apply(field / particle.radius, all, at_sites);
-      at_sites += factors->sites * bodies.self_correction(p, k) / particle.radius;
+      at_sites += factors->sites * body.of_load(unit_motion(k)) / particle.radius;
     }
-    matrix += flat(at_sites) * bodies.mean_functional(p, k).transpose();
+    matrix += flat(at_sites) * body.mean_functional(k).transpose();
   }
   stop_together([&] { factors->inverse = DenseFactors(matrix).inverse(); });
   return factors;

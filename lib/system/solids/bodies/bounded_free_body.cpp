@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include "system/solids/ducts/duct.hpp"
+
 namespace tanktread::coupling {
 
 const BoundedFreeBody::Solution& BoundedFreeBody::solution(const State& position) const {
@@ -39,8 +41,8 @@ BoundedFreeBody::Solution FreeBodyInTube::solve(const State& position) const {
   const Net x = surface(position);
   if (!body_.inside(x)) return outside_fluid(x);
   const Solution found = in_body_axes(position, 0);
-  if (body_.tube()->flow_rate_reduction(1) == 0) return found;
-  return in_body_axes(position, body_.tube()->flow_rate_reduction(pressure_correction(position, found)));
+  if (body_.tube()->duct().flow_rate_reduction(1) == 0) return found;
+  return in_body_axes(position, body_.tube()->duct().flow_rate_reduction(pressure_correction(position, found)));
 }
 
 /// Returns the correction (2.41) of the pressure drop due to the body for collocation errors: the integral of the residual velocity times the density
@@ -53,7 +55,7 @@ double FreeBodyInTube::pressure_correction(const State& position, const Solution
   const Net& f = found.density;
   const bool carried = flow_.duct() && flow_.amplitude() != 0 && driven_.force.isZero(0) && driven_.torque.isZero(0);
   const Net z = carried ? Net(-f) : density_at_rest(position, tube.flow().velocities(moved(body_.sites(), position)));
-  const double amplitude = (carried ? flow_.amplitude() - found.slower : 1) - tube.flow_rate_reduction(tube.pressure_of(z));
+  const double amplitude = (carried ? flow_.amplitude() - found.slower : 1) - tube.duct().flow_rate_reduction(tube.pressure_of(z));
   return body_.pressure_correction_of(x, f, rigid_velocity(x, found.motion, centre_of(position)), flow_, found.slower, z / amplitude);
 }
 

@@ -1,38 +1,18 @@
 #pragma once
 // Rigid bodies among capsules and drops.
 
-#include <array>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "base/types.hpp"
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "system/particle.hpp"
 #include "system/rigid_motion.hpp"
+#include "system/solids/bodies/body_density.hpp"
 
 namespace tanktread::coupling {
-
-/// Correction of the collocation error of the velocity u that a single or double layer on a body induces on the body itself, for unit viscosity. It
-/// is the control net of u by least-squares projection minus the control net of u by collocation, M^-1 int N_A u dGamma - R^-1 u (M: mass matrix, R:
-/// collocation matrix). At its collocation sites, a spline surface of n elements per side lies farther out than between them, by about 1/n^4 radii.
-/// The velocity of a double layer and the velocity gradient of a single layer jump across a surface. Therefore the velocity at the sites has a
-/// systematic error. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4, and
-/// its stresslet in a straining flow has a similar error.
-struct SelfCorrection {
-  std::array<Net, 6> loads;  ///< corrections of A f for the loads f = e_k and f = e_k x r, k = 0, 1, 2 (r: from the centre of volume)
-  Eigen::MatrixXd density;   ///< matrix, shape (3 N, 3 N): maps the density w to the correction of the double layer of w; empty if N > `most_points`
-
-  /// Largest number of control points for which the matrix `density` is stored, which takes 72 bytes per pair of control points. The matrix is stored
-  /// in double precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
-  static constexpr int most_points = 2000;
-
-  SelfCorrection(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
-};
 
 /// The limit lambda -> infinity (rigid bodies) of equation (2.22) for particles of viscosity ratio lambda. In this limit v = V + w/(lambda - 1) on
 /// the body, V = U + Omega x r, and
@@ -103,35 +83,16 @@ class RigidParticles {
   // The members below throw std::logic_error if the unknown of the body is the traction.
   Mat3 load_moment(std::size_t p) const;  ///< int df r dGamma
 
-  /// Returns whether the bodies p and q have equal shapes and orientations at rest.
-  bool alike(std::size_t p, std::size_t q) const { return body(p).dual().self_correction == body(q).dual().self_correction; }
-
-  /// Returns the correction (SelfCorrection) of the velocity that the unit load k of body p induces on the body itself, in the axes of the body at
-  /// rest.
-  const Net& self_correction(std::size_t p, int k) const { return body(p).dual().self_correction->loads[static_cast<std::size_t>(k)]; }
-
-  /// Component k of the mean rigid motion <w> (velocity, then angular velocity) is a linear function of the body's rows of w. Returns its
-  /// coefficients, three per row, for the body in its position at rest.
-  Eigen::VectorXd mean_functional(std::size_t p, int k) const;
+  const BodyDensity& double_layer(std::size_t p) const { return body(p).dual(); }  ///< returns the body at rest
 
  private:
-  using Motions = Eigen::Matrix<double, 6, 1>;
-  /// Integrals over a body at rest whose unknown is the double-layer density w (2.23), and the correction of its layers.
-  struct DoubleLayer {
-    std::shared_ptr<const SelfCorrection> self_correction;  // shared by equal bodies
-    Eigen::VectorXd weight;                                 // int N_A dGamma
-    Net moment;                                             // int N_A r dGamma
-    Eigen::Matrix<double, 6, 6> inertia;  // entry (j, k): integral of u_j.u_k over the surface, with the velocity field u_k of unit motion k
-    Mat3 second;                          // int r r dGamma
-    Vec3 first;                           // int r dGamma
-  };
   struct Body {
     spline::Block block;
     RigidDrive rigid;
     Net pushed;  // rows of this body in the argument of push(); no rows if there are no such forces
     double radius = 0, viscosity = 0;
     Net rest;             // control net in the reference orientation, relative to the centre of volume
-    std::optional<DoubleLayer> double_layer;  // set if the unknown is the density w
+    std::optional<BodyDensity> double_layer;  // set if the unknown is the density w
     Vec3 rest_centre, centre;
     Vec3 cell_velocity = Vec3::Zero();  // velocity of the body minus the velocity of its image in the cell
     Mat3 turn = Mat3::Identity();
@@ -139,16 +100,14 @@ class RigidParticles {
     RigidMotion motion;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 
-    const DoubleLayer& dual() const;  // throws std::logic_error if double_layer is not set
+    const BodyDensity& dual() const;  // throws std::logic_error if double_layer is not set
     RigidDrive given() const;
     RigidDrive drive(const Net* work) const;  // given(), or the resultants of `work` (see add_load)
     void add_forces(const Net& forces, RigidDrive& to) const;  // adds the resultants of forces on the control points
-    RigidMotion mean(const Net& w) const;      // rigid motion <w> of (2.23): least-squares fit over the body. `w`: net of all particles
-    RigidMotion with_integrals(const Vec3& force, const Vec3& torque) const;  // field a + b x r with this force and torque as its integrals
-    Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
-    Net single_layer_correction(const RigidMotion& load) const;         // SelfCorrection of the single layer R^-1 A f of the load f = a + b x r
-    Net double_layer_correction(const Net& w) const;                    // SelfCorrection of the double layer R^-1 H w with density w; `w`: net of
-                                                                        // all particles
+    RigidMotion turned(const RigidMotion& at_rest) const;  // from the axes of the body at rest to the axes of space
+    RigidMotion mean(const Net& w) const { return turned(dual().mean(block.rows(w) * turn)); }  // <w> of (2.23). `w`: net of all particles
+    RigidMotion load(const Net* work = nullptr) const;     // field a + b x r whose integrals are the force and torque of drive(), in axes at rest
+    Net field(const RigidMotion& of) const;                // values of the rigid motion `of` at the control points of the body
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 

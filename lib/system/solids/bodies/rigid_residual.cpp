@@ -38,4 +38,25 @@ Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net f
   return between_.weights * (between_.values * v - u);
 }
 
+double RigidResidual::ambient_correction(const Net& of_duct, const Net& f) const {
+  const Tube& tube = *walls_.tube;
+  if (tube.properties().parallel_flow) return 0;
+  return -dot(between_.weights * (of_duct - between_.values * tube.in_flow().control_values), f) / tube.flow().flow_rate();
+}
+
+double RigidResidual::pressure_correction(const Net& of_duct, const Net& f, double work) const {
+  return ambient_correction(of_duct, f) - work / walls_.tube->flow().flow_rate();
+}
+
+const WallResidual& RigidResidual::on_wall(const Net& f) {
+  if (!on_wall_) on_wall_.emplace(*walls_.tube);
+  on_wall_->set_load(f);
+  return *on_wall_;
+}
+
+stokes::Evaluations RigidResidual::evaluations() const {
+  const stokes::Evaluations sum = layers_.evaluations();
+  return on_wall_ ? sum + on_wall_->evaluations() : sum;
+}
+
 }  // namespace tanktread::coupling

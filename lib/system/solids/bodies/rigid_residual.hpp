@@ -1,6 +1,7 @@
 #pragma once
 // Residual of the velocity on rigid bodies between the collocation sites.
 
+#include <optional>
 #include <span>
 
 #include "base/types.hpp"
@@ -12,6 +13,7 @@
 #include "system/targets/layers_at.hpp"
 #include "system/parallel/ranks.hpp"
 #include "system/solids/fluid_walls.hpp"
+#include "system/solids/ducts/wall_residual.hpp"
 
 namespace tanktread::coupling {
 
@@ -29,13 +31,25 @@ class RigidResidual {
   /// Gauss points. `flow`: v_inf at the Gauss points. `load`, `v`: load and velocity of all particles, whose net is x.
   Net integrated(const Net& x, const Net& load, const Net& v, Net flow);
 
+  /// Returns the correction (2.41) of Tube::pressure_of(f) for collocation errors. `of_duct`: flow of the empty duct at the Gauss points, with
+  /// amplitude 1. `work`: integral over the bodies of the density z due to this flow times the residual velocity of f. In a channel, also corrects
+  /// for the interpolation error of the flow.
+  double pressure_correction(const Net& of_duct, const Net& f, double work) const;
+
+  /// Returns the part of pressure_correction() for the interpolation error of the flow.
+  double ambient_correction(const Net& of_duct, const Net& f) const;
+
+  /// Returns the residual on the wall of the tube due to the load f (2.42).
+  const WallResidual& on_wall(const Net& f);
+
   const BetweenSites& points() const { return between_; }
-  stokes::Evaluations evaluations() const { return layers_.evaluations(); }
+  stokes::Evaluations evaluations() const;
 
  private:
   const FluidWalls& walls_;
   BetweenSites between_;  // Gauss points on the bodies
   LayersBetween layers_;  // layers of all particles and walls at the Gauss points
+  std::optional<WallResidual> on_wall_;  // set up at the first call of on_wall()
 };
 
 }  // namespace tanktread::coupling

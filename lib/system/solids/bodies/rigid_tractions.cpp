@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "system/solids/bodies/rigid_body.hpp"
+#include "system/solids/ducts/duct.hpp"
 
 namespace tanktread::coupling {
 
@@ -221,8 +222,8 @@ void RigidTractions::set_shape(const Net& x, std::span<const Vec3> centres, std:
 Eigen::VectorXd RigidTractions::corrections(const Net& y, const Eigen::MatrixXd& z, const Eigen::VectorXd& residual) {
   Eigen::VectorXd work = z.transpose() * residual;
   if (!walls_.tube || !walls_.tube->properties().corrects_walls || !all_rigid()) return work;
-  const Tube::WallResidual on_wall = walls_.tube->wall_residual(load(y));
-  for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(on_wall, walls_.tube->respond(load(as_net(z.col(k)))));
+  const WallResidual& on_wall = residual_.on_wall(load(y));
+  for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += on_wall.work(walls_.tube->respond(load(as_net(z.col(k)))));
   return work;
 }
 
@@ -279,9 +280,9 @@ const RigidTractions::Solution& RigidTractions::solve(const Net& x, std::span<co
   if (has_pressure) {
     const double unit = apart ? 1 : flow.amplitude();
     const Net f = as_net(y), of_duct = apart ? walls_.tube->flow().velocities(residual_.points().values * x) : Net(between / unit);
-    solution_.pressure_correction = walls_.tube->pressure_correction(residual_.points(), of_duct, f, correction[with_duct] / unit);
+    solution_.pressure_correction = residual_.pressure_correction(of_duct, f, correction[with_duct] / unit);
     // If the pressure drop of the duct is prescribed, the error of its flow between the collocation points changes the flow rate, too.
-    if (const double slower = walls_.tube->flow_rate_reduction(walls_.tube->ambient_correction(residual_.points(), of_duct, f)); slower != 0) {
+    if (const double slower = walls_.tube->duct().flow_rate_reduction(residual_.ambient_correction(of_duct, f)); slower != 0) {
       const Eigen::VectorXd less = slower / unit * of_all.col(with_duct), slowed = freed(free, resistance, -work.transpose() * less);
       motion += slowed;
       y += z * slowed + less;
@@ -303,7 +304,7 @@ double RigidTractions::pressure_correction_of(const Net& x, const Net& f, const 
                                               const Net& z) {
   const Net places = residual_.points().values * x, of_duct = walls_.tube->flow().velocities(places);
   const Eigen::VectorXd residual = flat(residual_.integrated(x, load(f), v, flow.velocities(places) - slower * of_duct));
-  return walls_.tube->pressure_correction(residual_.points(), of_duct, f, corrections(f, flat(z), residual)[0]);
+  return residual_.pressure_correction(of_duct, f, corrections(f, flat(z), residual)[0]);
 }
 
 Net RigidTractions::density(const Net& velocities) { return as_net(densities(flat(velocities))); }

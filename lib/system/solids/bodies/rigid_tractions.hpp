@@ -52,7 +52,7 @@ CapsuleParameters single_body(const spline::Space& space, double radius, double 
 class RigidTractions {
  public:
   /// `space`: common space of all particles. `unstressed`, `rest`: control nets of all particles, unstressed and at rest. `parameters`: see
-  /// single_body() for a body without other particles. `walls`: must know the unstressed particles (FluidWalls::set_particles). `own`: collocation
+  /// single_body() for a body without other particles. `walls`: must know the unstressed particles (Tube::set_particles). `own`: collocation
   /// points whose rows this rank computes. References, except `parameters`, and the walls must outlive this object.
   RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, const CapsuleParameters& parameters, const FluidWalls& walls,
                  const std::vector<int>& own, const Ranks& ranks);

@@ -15,17 +15,17 @@
 #include "spline/space.hpp"
 #include "stokes/flow/duct_flow.hpp"
 #include "stokes/kernels/kernels.hpp"
+#include "stokes/medium/lattice.hpp"
 #include "surface/symmetry.hpp"
 #include "surface/walls/tube_wall.hpp"
-#include "system/parallel/ranks.hpp"
-#include "system/solids/ducts/channel_flow.hpp"
-#include "system/solids/particle_sources.hpp"
+#include "system/particle.hpp"
 
 namespace tanktread::coupling {
 
-class Wall;
+class ChannelFlow;
+class Duct;
+class LayerPair;
 struct SharedWalls;
-struct BetweenSites;
 
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
@@ -77,14 +77,15 @@ struct TubeParameters {
 /// If an enumerator is added to DuctKind, the compiler names the switches that omit it; surface::properties() is one of them. A new kind of duct
 /// also needs decisions in places that are not switches:
 ///
-///   frame of the wall      uses of fixed() and DuctProperties::fixed, because a wall that is not fixed moves along x1 with the centroid
-///   flow v_inf             uses of DuctProperties::parallel_flow; pressure_correction(), pressure_driven_velocity()
-///   wall                   Wall::is_for(), flow_of_forces() and flow_of_double_layer()
-///   one pressure drop      cause(), frozen_response(), flow_rate(), flow_rate_reduction(), work(); DuctWall (its unknown);
-///                          PowerBalance::flow_power(); the pressure correction of RigidTractions; FreeBodyInTube::pressure_drop()
-///   checks                 checks(), cap_velocity()
-///   system                 the single inlet in Wall and FlowWeights
-///   scene                  TubeRow in scene/tube.cpp; films() in scene/particles/gaps.cpp
+///   frame of the wall      uses of DuctProperties::fixed, because a wall that is not fixed moves along x1 with the centroid; adapt_mesh() in
+///                          scene/particles/coupled_particles.cpp
+///   flow v_inf             uses of DuctProperties::parallel_flow; Duct::velocity_per_pressure_drop()
+///   wall                   Wall::is_for(); FlowRate
+///   one pressure drop      cause(), frozen_response(); Duct; WallResidual; DuctWall (its unknown); PowerBalance::flow_power(); the pressure
+///                          correction of RigidResidual and RigidTractions; FreeBodyInTube::pressure_drop()
+///   checks                 checks(), cap_velocity(), points_of_caps()
+///   system                 the single inlet in Wall and FlowRate
+///   scene                  TubeRow in scene/tube.cpp; films() in scene/particles/gaps.cpp measures distances from the one wall
 ///   record                 channel.h5 in record/results.cpp
 class Tube {
  public:
@@ -96,17 +97,14 @@ class Tube {
 
   ~Tube();
 
-  /// Returns the particles as sources of flow. Their unstressed net, and their contrasts if they are not 0, must be set before set_shape().
-  ParticleSources& particles();
+  /// Sets the particles in the tube and their unstressed net. Required before set_shape().
+  void set_particles(const Net& unstressed, std::span<const Particle> particles);
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. Does nothing if the arguments equal the arguments of the
   /// latest call. `origin`: x1 coordinate of the origin of the frame of wall() if the wall is straight; by default the x1 coordinate of the
   /// particle's centroid. In a periodic channel, by default the x1 coordinate of the period that contains the particles.
   void set_shape(const Net& x, std::optional<double> origin = {});
   void forget() { latest_shape_ = {}; }  ///< requires set_shape() before the next response, also if the shape does not change
-
-  /// Returns the lattice of a periodic duct; not set for other ducts.
-  const std::optional<stokes::PeriodicCell>& cell() const;
 
   /// Response (2.5) of the tube to the particle: the disturbance due to the wall and the pressure drop.
   struct Response {
@@ -142,23 +140,16 @@ class Tube {
   /// u. This is accurate enough, because the contribution of u is small and smooth.
   Net frozen_response(const Net& f, const Net& v = {});
 
-  /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
-  Net particle_on_wall(const Net& f, const Net& v = {});    ///< -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dGamma
-  Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
-  Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
-
-  const Net& ambient() const;                           ///< v_inf (2.7) at the particle's collocation points, with amplitude 1
-  Net inlet_on_wall() const;                            ///< c on the wall
-  double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
-
-  /// Returns the correction (2.41) of pressure_of(f) for collocation errors. v_inf is the flow of the empty duct, of amplitude 1. `work`: integral
-  /// over the particle of the density z due to v_inf times the residual velocity of f. In a channel, also corrects for the interpolation error of
-  /// v_inf. `between`: Gauss points for this error. `at_places`: exact values of v_inf at these Gauss points.
-  double pressure_correction(const BetweenSites& between, const Net& at_places, const Net& f, double work) const;
-
-  /// Returns the part of pressure_correction() for the interpolation error of v_inf.
-  double ambient_correction(const BetweenSites& between, const Net& at_places, const Net& f) const;
-  Net solve_wall(const Net& rhs);  ///< returns the wall traction f^D that solves (1/mu) G_W f^D = rhs
+  /// The flow v_inf of the empty duct at the particle's collocation points, with amplitude 1, and the weights of the particle's load f and velocity v
+  /// in dp (2.7).
+  struct InFlow {
+    Net ambient;            ///< v_inf
+    Net control_values;     ///< control values of v_inf by interpolation; set only if the flow is not parallel (DuctProperties::parallel_flow)
+    Net per_pressure_drop;  ///< velocity c (2.5)
+    Net weights_of_load, weights_of_velocity;  ///< weights of f and v in dp. Weights of v are set only if lambda != 1 and the flow is parallel
+  };
+  const InFlow& in_flow() const;
+  double pressure_of(const Net& f) const;  ///< returns dp (2.7) due to the load f
 
   /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
   struct Checks {
@@ -170,24 +161,8 @@ class Tube {
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
-  /// Discretisation error of the response to a load f. `velocity`: int N_A u dGamma over the wall, with u the velocity at Gauss points between the
-  /// collocation points. `flow`: flow rate of the disturbance through the inlet. Both vanish for the exact response.
-  struct WallResidual {
-    Net velocity;
-    double flow = 0;
-  };
-  WallResidual wall_residual(const Net& f);
-
-  /// Returns the inner product of f^D and residual.velocity, minus dp times residual.flow: the contribution of the wall and the inlet to the
-  /// collocation-error correction (2.42). `residual`: discretisation error of the response to one load. `of`: response (f^D, dp) to another load.
-  double work(const WallResidual& residual, const Response& of) const;
-
-  /// Returns the flow rate of the duct flow: Q times its current factor `amplitude`. If the pressure drop of the duct flow is prescribed, returns the
-  /// flow rate that remains when the particle causes the additional pressure drop dp = `pressure_drop` (2.7): Q (amplitude - dp/dp_0).
-  double flow_rate(double pressure_drop, double amplitude) const { return flow_->flow_rate() * (amplitude - flow_rate_reduction(pressure_drop)); }
-
-  /// Returns the fraction dp/dp_0 by which particles reduce the flow rate if the pressure drop of the duct is prescribed, otherwise 0.
-  double flow_rate_reduction(double pressure_drop) const;
+  /// Returns the flow rate of the disturbance through the inlet, due to f, v and their response.
+  double disturbed_flow_rate(const Net& f, const Net& v, const Response& response);
 
   /// Returns the smallest distance between the particle and the wall; negative if they intersect.
   double gap() const;
@@ -195,50 +170,27 @@ class Tube {
   /// Returns x1 of the origin of the frame of `wall()` for the particle's net x. The frame moves with the particle in a straight tube.
   double frame_origin(const Net& x) const;
 
-  /// Returns whether the wall is fixed in the laboratory frame (a channel), so that results depend on the position along the channel.
-  bool fixed() const { return properties().fixed; }
-  surface::DuctProperties properties() const { return surface::properties(wall().kind); }
-
-  /// Returns the first of the points `rows` of x that is not inside the duct or, in a channel, not between its ends; -1 if there is none.
-  Eigen::Index first_outside(const Net& x, std::span<const int> rows) const;
-
+  Duct& duct() const { return *duct_; }  ///< returns the duct without particles
+  LayerPair& particles();                ///< returns the layers of the particle at points off it, in the frame of the wall
   const surface::TubeWall& wall() const;
-  const stokes::DuctFlow& flow() const { return *flow_; }
+  const stokes::DuctFlow& flow() const;
+  const std::optional<stokes::PeriodicCell>& cell() const;  ///< lattice of a periodic duct; not set for other ducts
+  surface::DuctProperties properties() const { return surface::properties(wall().kind); }
   /// Returns the number of kernel evaluations, including the assembly of the wall unless TubeParameters::walls counts it.
   stokes::Evaluations kernel_evaluations() const;
 
  private:
   struct ParticleData;
-  struct BetweenSitesOfWall;
-  /// Weights with which wall traction, wall velocity and pressure drop contribute to the flow rate through the inlet and to the axial force. They do
-  /// not depend on the particle.
-  struct FlowWeights {
-    Net of_traction;       ///< weights of the wall traction in mu times the flow rate
-    Net force;             ///< weights of the wall traction in the axial force
-    Net of_velocity;       ///< weights w for a velocity u on the wall: w.u is the flow rate due to the wall traction that cancels u. No rows if the
-                           ///< equation of the wall is solved by iteration
-    double own = 0;          ///< flow rate of the velocity field mu c, with c of (2.5)
-    double of_pressure = 0;  ///< flow rate per unit pressure drop, due to c and the wall traction that c causes
-  };
-  double viscosity() const;
-  double flow_rate_of(const Net& f, const Net& v, const Response& response);
-  double cap_velocity(const Net& f, const Net& v, const Response& response);
   double gap_to_channel_wall() const;
-  double empty_pressure_drop() const;
-  Net pressure_driven_velocity(const Net& at) const;
-  Net on_particle(const Net& own) const;
-  double pressure_of_velocity(const Net& v, const Net* on_wall = nullptr);
-  const FlowWeights& flow_weights();
+  double cap_velocity(const Net& f, const Net& v, const Response& response);
+  void add_caused(const Net& f, const Net& v, Response& to);
+  double pressure_of_velocity(const Net& v, const Net& on_wall);
 
-  std::shared_ptr<const stokes::DuctFlow> flow_;
   Phases& phases_;
-  std::shared_ptr<Wall> wall_;
-  double inner_radius_ = 0;  // straight tubes: radius of the largest circle about the centroid that fits in the cross-section
+  std::unique_ptr<Duct> duct_;
   std::unique_ptr<ParticleData> particle_;
   Net latest_shape_;                      // arguments of the latest call of set_shape(); no rows if this call threw an exception
   std::optional<double> latest_origin_;
-  std::unique_ptr<BetweenSitesOfWall> between_;  // points of the wall at which wall_residual() evaluates the velocity; set up at its first call
-  std::optional<FlowWeights> flow_weights_;  // set at the first call of flow_weights()
 };
 
 }  // namespace tanktread::coupling

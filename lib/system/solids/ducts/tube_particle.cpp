@@ -1,152 +1,120 @@
 #include "system/solids/ducts/tube_particle.hpp"
 
 #include <span>
+#include <utility>
 #include <vector>
+
+#include "system/targets/collocation.hpp"
 
 namespace tanktread::coupling {
 
-using stokes::Layer;
-
-namespace {
-
-Net as_net(const std::vector<double> (&columns)[3]) {
-  Net net(static_cast<Eigen::Index>(columns[0].size()), 3);
-  for (int c = 0; c < 3; ++c) net.col(c) = Eigen::Map<const Eigen::VectorXd>(columns[c].data(), net.rows());
-  return net;
-}
-
-void set_columns(const Net& net, std::vector<double> (&columns)[3]) {
-  for (int c = 0; c < 3; ++c) {
-    columns[c].resize(static_cast<std::size_t>(net.rows()));
-    Eigen::Map<Eigen::VectorXd>(columns[c].data(), net.rows()) = net.col(c);
-  }
-}
-
-}  // namespace
-
-Tube::ParticleData::ParticleData(const spline::Space& particle, const TubeParameters& how, const Wall& wall, Phases& phases)
+Tube::ParticleData::ParticleData(const spline::Space& particle, const TubeParameters& how, Duct& around, Phases& phases)
     : space(particle),
       parameters(how),
+      duct(around),
       geometry(particle),
-      sources(particle, how.viscosity, how.quadrature, wall.cell() ? &*wall.cell() : nullptr,
-              wall.cell() ? stokes::Repetition{.assembled = true, .target_range = wall.range()} : stokes::Repetition()),
-      from_sites(how.direct),
-      periodic(wall.cell()) {
-  own = ranks.divide_points(space, parameters.symmetry.order() > 1 ? parameters.symmetry : surface::Symmetry(space.n_points));
-  from_sites.factor(sources.collocation());
+      collocation(collocation_matrix(particle)),
+      from_sites(how.direct) {
+  sites.own = ranks.divide_points(space, parameters.symmetry.order() > 1 ? parameters.symmetry : surface::Symmetry(space.n_points));
+  from_sites.factor(collocation);
   ranks.measure(phases);
 }
 
-void Tube::ParticleData::set_shape(const Net& x, double x1, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop) {
+void Tube::ParticleData::set_particles(const Net& unstressed, std::span<const Particle> particles) {
+  layers.emplace(space, stokes::Sites(), unstressed, particles, parameters.quadrature, parameters.viscosity);
+  const Wall& wall = duct.wall();
+  if (wall.cell()) layers->repeat(*wall.cell(), {.assembled = true, .target_range = wall.range()});
+}
+
+void Tube::ParticleData::set_shape(const Net& x, double x1) {
+  Wall& wall = duct.wall();
   origin = x1;
   shape = x;
   shape.col(0).array() -= origin;
-  sources.set_shape(shape);
-  flow_of_strength_.resize(0, 3);
-  target_points = wall.points().targets();
-  own_targets = wall.points().own_targets();
-  n_on_wall = static_cast<int>(target_points.rows());
-  if (periodic) {
-    target_points.conservativeResize(n_on_wall + sites().rows(), 3);
-    target_points.bottomRows(sites().rows()) = sites();
-    for (const int i : own) own_targets.push_back(n_on_wall + i);
+  layers->set_shape(shape);
+  flow_of_velocity_.resize(0, 3);
+  sites.at = collocation * shape;
+  sites.near.reset();
+  if (has_double()) sites.near = wall.layer().near(sites.at, sites.own);
+  Net points = wall.points().targets();
+  std::vector<int> own = wall.points().own_targets();
+  const auto n_on_wall = static_cast<int>(points.rows());
+  if (wall.cell()) {
+    points.conservativeResize(n_on_wall + sites.at.rows(), 3);
+    points.bottomRows(sites.at.rows()) = sites.at;
+    for (const int i : sites.own) own.push_back(n_on_wall + i);
   }
-  prepared_targets = sources.prepared(target_points, own_targets, n_on_wall);
-  wall_on_sites.reset();
-  if (sources.has_double()) wall_on_sites = wall.layer().near(sites(), own);
-  if (!periodic) inlet = wall.inlet().integral(sites()) / parameters.viscosity;
-  weigh_pressure(flow, surface::properties(wall.surface().kind).parallel_flow);
-  if (periodic) inlet = ambient / pressure_drop;
+  targets = layers->prepared(std::move(points), std::move(own), n_on_wall);
+  weigh_pressure();
 }
 
 Tube::ParticleData::Cause Tube::ParticleData::cause(const Net& f, const Net& v) {
-  Net u = Net::Zero(target_points.rows(), 3);
-  sources.add_velocity(f, v, target_points, own_targets, u, prepared_targets);
-  return {u.topRows(n_on_wall), u.bottomRows(u.rows() - n_on_wall)};
+  Net u = Net::Zero(targets.at.rows(), 3);
+  layers->add(f, v, targets, u);
+  return {u.topRows(targets.first_image_row), u.bottomRows(u.rows() - targets.first_image_row)};
 }
 
-const Net& Tube::ParticleData::flow_of_strength(const Wall& wall) {
-  if (flow_of_strength_.size() > 0) return flow_of_strength_;
-  Layer& layer = *sources.double_layer;
-  const auto &node = layer.nodes(), &normal = layer.normals();
-  std::vector<double> flow[3];
-  for (auto& component : flow) component.assign(node[0].size(), 0.);
-  for (std::size_t k = 0; k < node[0].size(); ++k) {
-    const Vec3 one = wall.flow_of_double_layer(Vec3(node[0][k], node[1][k], node[2][k]), Vec3(normal[0][k], normal[1][k], normal[2][k]));
-    for (int c = 0; c < 3; ++c) flow[c][k] = one[c];
-  }
-  flow_of_strength_.resize(sites().rows(), 3);
-  for (int c = 0; c < 3; ++c) flow_of_strength_.col(c) = layer.moments(flow[c]);
-  return flow_of_strength_;
+const Net& Tube::ParticleData::flow_of_velocity() {
+  if (flow_of_velocity_.size() == 0) flow_of_velocity_ = duct.disturbed_flow_rate().weights_of_velocity(*layers);
+  return flow_of_velocity_;
 }
 
-/// Computes the weights with which the control values of the load f and of the velocity v enter the pressure drop (2.7). `parallel`: see
-/// DuctProperties::parallel_flow. If it is true, the flow rate of the disturbance is 0 for every load. Otherwise only the weights of f are computed.
-void Tube::ParticleData::weigh_pressure(const stokes::DuctFlow& flow, bool parallel) {
-  ambient = ambient_of(flow);
-  Layer& layer = sources.single_layer;
-  const auto n = static_cast<std::size_t>(layer.n_nodes());
-  std::vector<double> flow_at[3], weighted(n);
-  if (parallel) {
-    set_columns(flow.velocities(as_net(layer.nodes())), flow_at);
-  } else {
-    interpolated_ambient = from_sites.solve(ambient);
-    layer.values(interpolated_ambient, flow_at);
-  }
-  weights_of_load = Net::Zero(sites().rows(), 3), weights_of_velocity.resize(0, 3);
-  for (int c = 0; c < (parallel ? 1 : 3); ++c) {
-    for (std::size_t k = 0; k < n; ++k) weighted[k] = layer.weights()[k] * flow_at[c][k];
-    weights_of_load.col(c) = layer.moments(weighted) / flow.flow_rate();
-  }
-  if (!sources.has_double() || !parallel) return;
-  set_columns(flow.tractions(as_net(sources.double_layer->nodes()), as_net(sources.double_layer->normals())), flow_at);
-  weights_of_velocity.resize(sites().rows(), 3);
-  for (int c = 0; c < 3; ++c)
-    weights_of_velocity.col(c) = sources.contrasts().cwiseProduct(sources.double_layer->moments(flow_at[c])) / -flow.flow_rate();
+/// Computes the flow of the empty duct at the sites, and the weights with which the control values of the load f and of the velocity v enter the
+/// pressure drop (2.7). If the flow is parallel, the flow rate of the disturbance is 0 for every load. Otherwise only the weights of f are computed.
+void Tube::ParticleData::weigh_pressure() {
+  const stokes::DuctFlow& flow = duct.flow();
+  in_flow.ambient = ambient();
+  // in a periodic duct equal to the function called here, but symmetric and without another evaluation of the flow
+  in_flow.per_pressure_drop = duct.wall().cell() ? Net(in_flow.ambient / duct.pressure_drop()) : duct.velocity_per_pressure_drop(sites.at);
+  if (!parallel()) in_flow.control_values = from_sites.solve(in_flow.ambient);
+  const auto ambient_at = [&](const Net& x) { return parallel() ? flow.velocities(x) : layers->at_nodes(in_flow.control_values); };
+  in_flow.weights_of_load = layers->weights_of_load(ambient_at) / flow.flow_rate();
+  in_flow.weights_of_velocity.resize(0, 3);
+  if (!has_double() || !parallel()) return;
+  const auto traction = [&](const Net& x, const Net& n) { return flow.tractions(x, n); };
+  in_flow.weights_of_velocity = layers->weights_of_velocity(traction) / -flow.flow_rate();
 }
 
 /// Returns the duct flow at the sites. In a symmetric scene the flow is evaluated at the fundamental points only and completed by symmetry.
-Net Tube::ParticleData::ambient_of(const stokes::DuctFlow& flow) const {
+Net Tube::ParticleData::ambient() const {
   const surface::Symmetry& symmetry = parameters.symmetry;
-  if (symmetry.order() == 1) return flow.velocities(sites());
+  if (symmetry.order() == 1) return duct.flow().velocities(sites.at);
   const std::vector<int>& rows = symmetry.fundamental();
-  Net all = Net::Zero(sites().rows(), 3);
-  all(rows, Eigen::all) = flow.velocities(sites()(rows, Eigen::all));
+  Net all = Net::Zero(sites.at.rows(), 3);
+  all(rows, Eigen::all) = duct.flow().velocities(sites.at(rows, Eigen::all));
   symmetry.complete(all);
   return all;
 }
 
-void Tube::ParticleData::freeze(Wall& wall, const Net& pressure_of_wall) {
+/// If the flow is not parallel, also computes the weights of the particle's velocity v in dp: the product of the double layer and the weights of a
+/// velocity on the wall. For accuracy, the rows of the double layer are rounded only afterwards.
+void Tube::ParticleData::freeze() {
   using Targets = std::span<const int>;
+  Wall& wall = duct.wall();
+  const WallPoints& points = wall.points();
   const double length = wall.surface().radius();
-  const auto on_wall = [&](Layer& layer) {
-    return [&](Targets targets, stokes::Rows<float>& rows) {
-      const WallPoints& points = wall.points();
-      points.collocate<float>(targets, [&](Targets at, stokes::Rows<float>& some) { layer.assemble(points.targets(), at, some); }, rows);
-    };
-  };
-  frozen.single.assemble(wall.points().own(), space.n_points, on_wall(sources.single_layer), length);
+  const bool by_flow = !parallel() && has_double();
+  const Net of_wall = by_flow ? Net(duct.disturbed_flow_rate().weights_of_wall_velocity()) : Net();
   const Net weights = ranks.assembled<Net>(space.n_points, 3, [&](Net& sums) {
-    if (!sources.has_double()) return;
-    frozen.dual.assemble(wall.points().own(), space.n_points, [&](Targets targets, stokes::Rows<float>& rows) {
-      on_wall(*sources.double_layer)(targets, rows);
+    frozen.on_wall.assemble(points.own(), space.n_points, *layers, length, [&](stokes::Layer& layer, Targets own, stokes::Rows<float>& rows) {
+      points.collocate<float>(own, [&](Targets at, stokes::Rows<float>& some) { layer.assemble(points.targets(), at, some); }, rows);
+      if (!by_flow || &layer == &layers->single_layer) return;
       Eigen::Map<Eigen::RowVectorXd> sum(sums.data(), sums.size());
-      for (std::size_t k = 0; k < targets.size() && pressure_of_wall.size() > 0; ++k)
-        for (int c = 0; c < 3; ++c) sum += pressure_of_wall(targets[k], c) * rows.row(static_cast<Eigen::Index>(3 * k) + c).cast<double>();
+      for (std::size_t k = 0; k < own.size(); ++k)
+        for (int c = 0; c < 3; ++c) sum += of_wall(own[k], c) * rows.row(static_cast<Eigen::Index>(3 * k) + c).cast<double>();
     });
   });
-  const auto of_images = [&](Layer& layer) {
-    return [&](Targets targets, stokes::Rows<float>& rows) { layer.assemble_images(sites(), targets, rows); };
-  };
-  frozen.images = periodic && space.n_points < SolverOptions::nodes_worth_a_tree;
-  if (frozen.images) frozen.single_of_images.assemble(own, space.n_points, of_images(sources.single_layer), length);
-  if (frozen.images && sources.has_double()) frozen.dual_of_images.assemble(own, space.n_points, of_images(*sources.double_layer));
-  frozen.wall.assemble(own, static_cast<int>(wall.points().sites().rows()), [&](Targets targets, stokes::Rows<float>& rows) {
-    wall.layer().assemble(sites(), targets, rows);
+  frozen.images = wall.cell() && space.n_points < SolverOptions::nodes_worth_a_tree;
+  if (frozen.images)
+    frozen.of_images.assemble(sites.own, space.n_points, *layers, length, [&](stokes::Layer& layer, Targets some, stokes::Rows<float>& rows) {
+      layer.assemble_images(sites.at, some, rows);
+    });
+  frozen.wall.assemble(sites.own, static_cast<int>(points.sites().rows()), [&](Targets some, stokes::Rows<float>& rows) {
+    wall.layer().assemble(sites.at, some, rows);
     wall.from_space(rows);
   }, length);
-  frozen.inlet = inlet, frozen.ambient = ambient, frozen.weights_of_load = weights_of_load, frozen.weights_of_velocity = weights_of_velocity;
-  if (pressure_of_wall.size() > 0) frozen.weights_of_velocity = sources.contrasts().asDiagonal() * weights;
+  frozen.in_flow = in_flow;
+  if (by_flow) frozen.in_flow.weights_of_velocity = (weights - flow_of_velocity()) / duct.disturbed_flow_rate().per_pressure_drop();
 }
 
 }  // namespace tanktread::coupling

@@ -4,12 +4,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "quadrature/gauss.hpp"
-#include "spline/basis.hpp"
 #include "surface/geometry.hpp"
 #include "system/parallel/stop_together.hpp"
 #include "system/solids/ducts/channel_flow.hpp"
 #include "system/solids/ducts/congruence.hpp"
+#include "system/targets/collocation.hpp"
+#include "system/targets/points_off.hpp"
 
 namespace tanktread::coupling {
 
@@ -31,6 +31,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
       symmetry_(symmetry.order() > 1 ? symmetry : surface::Symmetry(static_cast<int>(wall.sites.size()))),
       quadrature_(quadrature),
       solver_(solver),
+      inner_radius_(wall.outline.distance(wall.outline.centroid())),
       points_(surface_, symmetry_, phases),
       cell_(lattice(wall)),
       layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature) {
@@ -65,7 +66,7 @@ bool Wall::is_for(const surface::TubeWall& wall, const quadrature::Options& quad
 /// Computes no_flux_. The outer product of its two vectors is added to A, because A is singular: a uniform pressure produces no velocity. The product
 /// is scaled so that it maps a uniform pressure to about the velocity that A produces for a tangential traction of equal size.
 void Wall::find_null_vector() {
-  no_flux_.flux_vector = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
+  no_flux_.flux_vector = from_space(wall_integrals(surface_, [](const surface::Point& at) -> Vec3 { return at.n; }));
   no_flux_.null_vector.resize(n_sites(), 3);
   for (Eigen::Index i = 0; i < no_flux_.null_vector.rows(); ++i)
     no_flux_.null_vector.row(i) = surface::point(surface_.space, surface_.net, surface_.sites[static_cast<std::size_t>(i)].front()).n.transpose();
@@ -74,13 +75,7 @@ void Wall::find_null_vector() {
 
 template <class Real>
 void Wall::from_space(stokes::Rows<Real>& rows) const {
-  if (!cell_) return;
-  using RealNet = Eigen::Matrix<Real, Eigen::Dynamic, 3, Eigen::RowMajor>;
-  const stokes::Rows<Real> on_space = std::exchange(rows, stokes::Rows<Real>(rows.rows(), 3 * n_sites()));
-  for (Eigen::Index r = 0; r < rows.rows(); ++r) {
-    const Net of_row = Eigen::Map<const RealNet>(on_space.row(r).data(), surface_.space.n_points, 3).template cast<double>();
-    Eigen::Map<RealNet>(rows.row(r).data(), n_sites(), 3) = from_space(of_row).template cast<Real>();
-  }
+  if (cell_) rows = columns_of(surface_.open_from_periodic, rows);
 }
 template void Wall::from_space(stokes::Rows<float>& rows) const;
 
@@ -154,23 +149,17 @@ Net Wall::solve(const Net& rhs) const {
 }
 
 Net Wall::iterated(const Net& rhs) const {
-  const Eigen::VectorXd b = fundamental(rhs);
-  const auto through = [&](const std::function<void(const Net&, Net&)>& map) {
-    return [this, map, n = b.size()](const double* in, double* out) {
-      Net given = fundamental_net(Eigen::Map<const Eigen::VectorXd>(in, n)), found = given;
-      symmetry_.complete(given);
-      map(given, found);
-      Eigen::Map<Eigen::VectorXd>(out, n) = fundamental(found);
-    };
+  const auto precondition = [this](const Net& u) {
+    Net f = Net::Zero(n_sites(), 3);
+    patches_of_rows_->apply(u, f);
+    return symmetry_.completed(std::move(f));
   };
-  const LinearSystem system{one_block("wall traction", b.size()),
-                            through([this](const Net& f, Net& u) { u = apply(f); }),
-                            through([this](const Net& u, Net& f) { patches_of_rows_->apply(u, f); })};
+  const LinearSystem system{one_block("wall traction", rhs.size()), on_nets(n_sites(), [this](const Net& f) { return apply(f); }),
+                            on_nets(n_sites(), precondition)};
+  const Net b = symmetry_.completed(rhs);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
-  require_convergence(krylov_->solve(system, b, x, solver_.tolerance), "the wall", solver_.tolerance);
-  Net f = fundamental_net(x);
-  symmetry_.complete(f);
-  return f;
+  require_convergence(krylov_->solve(system, flat(b), x, solver_.tolerance), "the wall", solver_.tolerance);
+  return as_net(x);
 }
 
 Net Wall::solve_transposed(const Net& weights) const {
@@ -182,65 +171,21 @@ Net Wall::solve_transposed(const Net& weights) const {
   return folded;
 }
 
-/// Returns the components of a net at fundamental points as a vector, without the components that symmetry makes zero.
-Eigen::VectorXd Wall::fundamental(const Net& net) const {
-  std::vector<double> numbers;
-  for (const int a : symmetry_.fundamental())
-    for (int c = 0; c < 3; ++c)
-      if (symmetry_.signs()(a, c) != 0) numbers.push_back(net(a, c));
-  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+void Wall::velocity(const Net& f, const PointsOff& points, Net& u) {
+  layer_.apply(on_space(f), points.at, points.own, u, points.near ? &*points.near : nullptr);
 }
 
-/// Returns the net whose components at fundamental points are `numbers` (inverse of `fundamental`). Rows of image points are zero.
-Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
-  Net net = Net::Zero(n_sites(), 3);
-  Eigen::Index n = 0;
-  for (const int a : symmetry_.fundamental())
-    for (int c = 0; c < 3; ++c)
-      if (symmetry_.signs()(a, c) != 0) net(a, c) = numbers[n++];
-  return net;
-}
-
-/// Returns int N_A field dGamma over the wall for every control point A. Along the wall, the map s = 3 q^2 - 2 q^3 moves the Gauss points q towards
-/// both ends of each element, because the inlet integral (2.13) is steep at the rim of the inlet.
-Net Wall::weights(const std::function<Vec3(const surface::Point&)>& field) const {
-  constexpr int along = 16, around = 6;
-  const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);
-  const spline::Space& space = surface_.space;
-  Net sum = Net::Zero(space.n_points, 3);
-  for (std::size_t e = 0; e < space.elements.size(); ++e)
-    for (int i = 0; i < along; ++i)
-      for (int j = 0; j < around; ++j) {
-        const double q = in_s.nodes[i];
-        const spline::Site site{static_cast<int>(e), q * q * (3 - 2 * q), in_t.nodes[j]};
-        const surface::Point at = surface::point(space, surface_.net, site);
-        const Vec3 value = in_s.weights[i] * 6 * q * (1 - q) * in_t.weights[j] * at.jacobian * field(at);
-        const Eigen::VectorXd basis = spline::basis(space.elements[e], site.s, site.t, 0).value;
-        for (std::size_t a = 0; a < space.elements[e].points.size(); ++a)
-          sum.row(space.elements[e].points[a]) += basis[static_cast<Eigen::Index>(a)] * value.transpose();
-      }
-  return sum;
-}
-
-Net Wall::flow_of_forces(const Net& at) const {
-  if (!cell_) return inlet_->integral(at);
-  Net flow = Net::Zero(at.rows(), 3);
-  flow.col(0) = -at.rightCols<2>().rowwise().squaredNorm() / (4 * surface_.period);
-  return flow;
-}
-
-Vec3 Wall::flow_of_double_layer(const Vec3& at, const Vec3& n) const {
-  if (!cell_) return inlet_->double_layer_flow(at, n);
-  const Vec3 across(0, at[1], at[2]);
-  return (at[0] * n - (n.dot(across) * Vec3::UnitX() + n[0] * across) / 2) / surface_.period;
-}
-
-Net Wall::flow_weights() const {
-  return from_space(weights([&](const surface::Point& at) -> Vec3 { return flow_of_forces(Net(at.x.transpose())).row(0).transpose(); }));
-}
-
-Net Wall::force_weights() const {
-  return from_space(weights([](const surface::Point&) -> Vec3 { return Vec3::UnitX(); }));
+Eigen::Index Wall::first_outside(const Net& x, std::span<const int> rows) const {
+  const auto first = std::ranges::find_if_not(rows, [&](int i) {
+    const Vec3 place = x.row(i).transpose();
+    switch (surface_.kind) {
+      case surface::DuctKind::straight_tube:
+        return (place.tail<2>() - surface_.outline.centroid()).norm() < inner_radius_ || surface_.outline.inside(place.tail<2>());
+      case surface::DuctKind::channel: return surface_.channel->inside(place);
+    }
+    throw std::logic_error("unknown DuctKind");
+  });
+  return first == rows.end() ? -1 : *first;
 }
 
 stokes::Evaluations Wall::evaluations() const {

@@ -15,7 +15,6 @@
 #include "stokes/flow/cap.hpp"
 #include "stokes/layer.hpp"
 #include "surface/closest_points.hpp"
-#include "surface/geometry.hpp"
 #include "surface/symmetry.hpp"
 #include "surface/walls/tube_wall.hpp"
 #include "system/solids/ducts/wall_factors.hpp"
@@ -41,6 +40,7 @@ struct WallSolver {
 };
 
 struct EmptyChannel;
+struct PointsOff;
 
 /// The single layer of the wall on itself, assembled and factored, and the inlet integral (2.13). The viscosity is not included. Nets are in the
 /// wall's frame. The ranks share the assembly, but each rank stores all factors: 72 bytes per pair of control points, divided by the number of
@@ -70,6 +70,13 @@ class Wall {
   const surface::Symmetry& symmetry() const { return symmetry_; }
   const WallPoints& points() const { return points_; }  ///< collocation points, and the points at which the velocity is evaluated
   stokes::Layer& layer() { return layer_; }             ///< single layer at points off the wall, for control values on the layer's space
+  const quadrature::Options& quadrature() const { return quadrature_; }
+
+  /// Computes the rows `points.own` of u, the velocity G_W f at points off the wall. Not collective.
+  void velocity(const Net& f, const PointsOff& points, Net& u);
+
+  /// Returns the first of the points `rows` of x that is not inside the duct or, in a channel, not between its ends; -1 if there is none.
+  Eigen::Index first_outside(const Net& x, std::span<const int> rows) const;
   const stokes::Cap& inlet() const { return assert(inlet_), *inlet_; }  ///< inlet of an open wall; not available for a periodic wall
 
   /// Returns the lattice of a periodic wall; not set for an open wall.
@@ -84,7 +91,7 @@ class Wall {
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
   template <class Real>
-  void from_space(stokes::Rows<Real>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
+  void from_space(stokes::Rows<Real>& rows) const;  ///< multiplies a matrix for control values on the space of layer() by on_space()
 
   /// Returns A f = points().collocated(u), where u is the velocity of the single layer at the targets x_i:
   /// u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dGamma f_B. In a periodic wall, A includes the condition int f.n dGamma = 0.
@@ -99,23 +106,6 @@ class Wall {
   /// Returns the wall traction A^-1 c (2.13) in the open, empty tube per unit pressure drop; 0 for a periodic wall.
   const Net& traction_per_pressure_drop() const { return traction_per_pressure_drop_; }
 
-  /// Returns weights int N_A c dGamma, one row per control point A, with c = flow_of_forces(x). Their inner product with a traction on the wall is mu
-  /// times the flow rate that the traction causes.
-  Net flow_weights() const;
-  /// Returns weights int N_A e1 dGamma, one row per control point A. Their inner product with a traction on the wall is its axial force.
-  Net force_weights() const;
-
-  /// Returns mu times the flow rate along the duct due to a unit force, one row per point of `at` and one column per direction of the force. If the
-  /// wall is open, this is the integral c (2.13) over the inlet. If the wall is periodic with the period L, this is -rho^2/(4 L) e1, where rho is the
-  /// distance from the axis x1 (2.44). In this case only the flow rate of several forces together is meaningful, and these forces must sum to 0.
-  Net flow_of_forces(const Net& at) const;
-
-  /// Returns the flow rate that a double layer of unit strength at the point `at` with normal n causes, one entry per component of the strength. If
-  /// the wall is open, this is the flow rate through the inlet. If it is periodic with the period L, this is (x1 n - ((n.rho) e1 + n1 rho)/2)/L,
-  /// where rho is the vector from the axis x1 to the point (2.45). In this case only the integral over a surface is meaningful, and the total flux of
-  /// the strength through this surface must be 0.
-  Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
-
   /// Returns the flow of the empty channel, which all systems that share this wall use. `make`: makes it at the first call.
   EmptyChannel& empty_channel(const std::function<EmptyChannel*()>& make);
 
@@ -126,18 +116,16 @@ class Wall {
 
  private:
   Eigen::Index n_sites() const { return points_.sites().rows(); }
-  Net weights(const std::function<Vec3(const surface::Point&)>& field) const;
   void assemble_rows(std::span<const int> targets, stokes::Rows<double>& rows);
   void factor(const surface::Symmetry& of_wall);
   Net iterated(const Net& rhs) const;
   void find_null_vector();
-  Eigen::VectorXd fundamental(const Net& net) const;
-  Net fundamental_net(const Eigen::VectorXd& numbers) const;
 
   surface::TubeWall surface_;
   surface::Symmetry symmetry_;
   quadrature::Options quadrature_;
   WallSolver solver_;
+  double inner_radius_;  // radius of the largest circle about the centroid that fits in the cross-section at the start
   std::optional<surface::Patches> patches_;
   std::optional<surface::ElementBoxes> boxes_;
   WallPoints points_;

@@ -2,7 +2,8 @@
 
 #include <map>
 
-#include "surface/geometry.hpp"
+#include "quadrature/gauss.hpp"
+#include "spline/basis.hpp"
 
 namespace tanktread::coupling {
 namespace {
@@ -18,6 +19,25 @@ Net positions(const surface::TubeWall& wall, const stokes::Sites& sites) {
   for (Eigen::Index i = 0; i < at.rows(); ++i)
     at.row(i) = surface::value(wall.space, wall.net, sites[static_cast<std::size_t>(i)].front()).transpose();
   return at;
+}
+
+Net wall_integrals(const surface::TubeWall& wall, const std::function<Vec3(const surface::Point&)>& field) {
+  constexpr int along = 16, around = 6;
+  const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);
+  const spline::Space& space = wall.space;
+  Net sum = Net::Zero(space.n_points, 3);
+  for (std::size_t e = 0; e < space.elements.size(); ++e)
+    for (int i = 0; i < along; ++i)
+      for (int j = 0; j < around; ++j) {
+        const double q = in_s.nodes[i];
+        const spline::Site site{static_cast<int>(e), q * q * (3 - 2 * q), in_t.nodes[j]};
+        const surface::Point at = surface::point(space, wall.net, site);
+        const Vec3 value = in_s.weights[i] * 6 * q * (1 - q) * in_t.weights[j] * at.jacobian * field(at);
+        const Eigen::VectorXd basis = spline::basis(space.elements[e], site.s, site.t, 0).value;
+        for (std::size_t a = 0; a < space.elements[e].points.size(); ++a)
+          sum.row(space.elements[e].points[a]) += basis[static_cast<Eigen::Index>(a)] * value.transpose();
+      }
+  return sum;
 }
 
 WallPoints::WallPoints(const surface::TubeWall& wall, const surface::Symmetry& symmetry, Phases* phases) : sites_(positions(wall, wall.sites)) {

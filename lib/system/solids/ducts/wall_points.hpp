@@ -8,6 +8,7 @@
 #include "base/timing.hpp"
 #include "base/types.hpp"
 #include "stokes/layer.hpp"
+#include "surface/geometry.hpp"
 #include "surface/symmetry.hpp"
 #include "surface/walls/tube_wall.hpp"
 #include "system/parallel/ranks.hpp"
@@ -16,6 +17,10 @@ namespace tanktread::coupling {
 
 /// Returns the positions of parametric points of a wall; of several sites for the same point, the first.
 Net positions(const surface::TubeWall& wall, const stokes::Sites& sites);
+
+/// Returns int N_A field dGamma over the wall for every control point A. Along the wall, the map s = 3 q^2 - 2 q^3 moves the Gauss points q towards
+/// both ends of each element, because the inlet integral (2.13) is steep at the rim of the inlet.
+Net wall_integrals(const surface::TubeWall& wall, const std::function<Vec3(const surface::Point&)>& field);
 
 /// Collocation points of a wall, and in a channel the midpoints of elements, with their division among the ranks.
 ///

@@ -119,12 +119,7 @@ PlatesAndPosts::Crossing PlatesAndPosts::crossing(const Net& at) const {
 Eigen::MatrixXd PlatesAndPosts::rows(stokes::Layer& on_itself, std::span<const int> sites) const {
   stokes::Rows<double> all;
   on_itself.assemble(sites, all);
-  Eigen::MatrixXd found(all.rows(), sites_.size());
-  for (Eigen::Index r = 0; r < all.rows(); ++r) {
-    const Net periodic = surface_.open_from_periodic.transpose() * Eigen::Map<const Net>(all.row(r).data(), surface_.space.n_points, 3);
-    found.row(r) = Eigen::Map<const Eigen::RowVectorXd>(periodic.data(), periodic.size());
-  }
-  return found;
+  return columns_of(surface_.open_from_periodic, all);
 }
 
 /// Factors the matrix of the equations (2.46) for the force density and the uniform velocity, for unit viscosity, on every rank. If all solids are
@@ -181,10 +176,16 @@ PlatesAndPosts::Flow PlatesAndPosts::solve(const Net& u, const Vec3& force) cons
   return flow;
 }
 
-void PlatesAndPosts::velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept) {
-  assert(reaches(at(rows, Eigen::all)));
-  layer_->apply(on_space(flow.force), at, rows, u, kept);
-  for (const int i : rows) u.row(i) = u.row(i) / viscosity() + flow.drift.transpose();
+PointsOff PlatesAndPosts::prepared(Net at, std::vector<int> own) {
+  PointsOff points{.at = std::move(at), .own = std::move(own)};
+  points.near = layer_->near(points.at, points.own);
+  return points;
+}
+
+void PlatesAndPosts::velocity_at(const PointsOff& points, const Flow& flow, Net& u) {
+  assert(reaches(points.at(points.own, Eigen::all)));
+  layer_->apply(on_space(flow.force), points.at, points.own, u, points.near ? &*points.near : nullptr);
+  for (const int i : points.own) u.row(i) = u.row(i) / viscosity() + flow.drift.transpose();
 }
 
 Eigen::VectorXd PlatesAndPosts::moments(const std::function<double(const Vec3& x)>& function) const {

@@ -18,6 +18,7 @@
 #include "surface/walls/solid_surface.hpp"
 #include "system/parallel/ranks.hpp"
 #include "system/solids/plates/plate_factors.hpp"
+#include "system/targets/points_off.hpp"
 
 namespace tanktread::coupling {
 
@@ -66,8 +67,8 @@ class PlatesAndPosts {
     Flow operator+(const Flow& other) const { return {force + other.force, drift + other.drift}; }
   };
 
-  /// Sets the range of heights above a plate in which `velocity_at` and `layer` are accurate, so that the range contains the solids and the points x.
-  /// Must be called before `velocity_at` and `layer`, again after another system that shares this object has called it. x must be equal on all ranks.
+  /// Sets the range of heights above a plate in which `velocity_at` is accurate, so that the range contains the solids and the points x. Must be
+  /// called before `prepared` and `velocity_at`, again after another system that shares this object has called it. x must be equal on all ranks.
   void reach(const Net& x);
 
   /// Point of a particle that is in a solid: its row, -1 if there is no such point, and the name of the solid.
@@ -82,9 +83,11 @@ class PlatesAndPosts {
   /// Returns the solution f, U of (2.46) for given right-hand sides: the velocity u at the collocation points, and the force F.
   Flow solve(const Net& u, const Vec3& force) const;
 
-  /// Computes the rows `rows` of u, the velocity at points `at` off the solids due to the solution `flow`. Not collective. `kept`: near-field
-  /// corrections from an earlier layer().near(at, rows); if null, they are computed here.
-  void velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept = nullptr);
+  /// Returns the points `at` off the solids, prepared so that several solutions cost less. `own`: rows to evaluate. Not collective.
+  PointsOff prepared(Net at, std::vector<int> own);
+
+  /// Computes the rows `points.own` of u, the velocity at these points due to the solution `flow`. Not collective.
+  void velocity_at(const PointsOff& points, const Flow& flow, Net& u);
 
   std::vector<Vec3> forces(const Net& f) const;  ///< returns the integral of the force density f over each solid
 
@@ -101,7 +104,6 @@ class PlatesAndPosts {
   const stokes::PeriodicCell& cell() const { return parameters_.cell; }
   double viscosity() const { return parameters_.viscosity; }
   const Ranks& ranks() const { return ranks_; }
-  stokes::Layer& layer() { return *layer_; }
   Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values of f on the layer's space, which is not periodic
   const surface::SolidSurface& surface() const { return surface_; }
   const std::array<Vec3, 2>& range() const { return range_; }  ///< lowest and highest coordinates of the solids, in the axes of the cell

@@ -31,20 +31,22 @@ Vec3 solids_flow_integral(const SolidScene& scene, const PlatesAndPosts::Flow& f
   return along(wall, flow.force.transpose() * weights) / scene.solids->viscosity();
 }
 
-SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow)
+SolidResponse::SolidResponse(const SolidScene& scene, const spline::Space& space, const Net& unstressed, std::span<const Particle> particles,
+                             const stokes::AmbientFlow& flow)
     : scene_(scene),
       flow_(flow),
-      particles_(space, scene.solids->viscosity(), scene.quadrature.for_response(), &scene.solids->cell(), {.target_range = scene.solids->range()}) {}
+      particles_(space, {}, unstressed, particles, scene.quadrature.for_response(), scene.solids->viscosity()) {
+  particles_.repeat(scene.solids->cell(), {.target_range = scene.solids->range()});
+}
 
 void SolidResponse::set_shape(const Net& x, const Net& at, std::span<const int> own) {
   PlatesAndPosts& solids = *scene_.solids;
   solids.reach(x);  // also for an unchanged x, because another system that shares the solids may have changed their range
-  if (same(shape_, x) && same(at_, at) && std::ranges::equal(own, own_)) return;
-  shape_ = {}, at_ = at;  // no shape is set if one of the next calls throws
-  own_.assign(own.begin(), own.end());
+  if (same(shape_, x) && same(on_particles_.at, at) && std::ranges::equal(own, on_particles_.own)) return;
+  shape_ = {};  // no shape is set if one of the next calls throws
   particles_.set_shape(x);
   areas_ = particles_.single_layer.moments(particles_.single_layer.weights());
-  solids_on_particles_ = solids.layer().near(at_, own_);
+  on_particles_ = solids.prepared(at, {own.begin(), own.end()});
   on_solids_ = particles_.prepared(solids.sites(), solids.own());
   shape_ = x;
 }
@@ -59,38 +61,35 @@ PlatesAndPosts::Flow SolidResponse::respond(const Net& f, const Net& v) {
   const PlatesAndPosts& solids = *scene_.solids;
   Vec3 force = Vec3::Zero();
   if (f.size() > 0) force = f.transpose() * areas_;
-  const Net u = solids.ranks().filled(solids.sites().rows(), [&](Net& all) {
-    particles_.add_velocity(f, v, solids.sites(), solids.own(), all, on_solids_);
-  });
+  const Net u = solids.ranks().filled(solids.sites().rows(), [&](Net& all) { particles_.add(f, v, on_solids_, all); });
   return solids.solve(-u, force);
 }
 
-void SolidResponse::velocities(const PlatesAndPosts::Flow& flow, Net& u) { scene_.solids->velocity_at(at_, own_, flow, u, &*solids_on_particles_); }
+void SolidResponse::velocities(const PlatesAndPosts::Flow& flow, Net& u) { scene_.solids->velocity_at(on_particles_, flow, u); }
 
 Vec3 SolidResponse::flow_integral(const PlatesAndPosts::Flow& flow, const Net& f, const Net& v) {
   if (scene_.planes.size() != 2) return coupling::solids_flow_integral(scene_, flow);
   const stokes::PlaneWall& wall = scene_.planes.front();
   const Vec3& n = wall.normal();
-  const auto height = [&](const std::vector<double> (&x)[3], std::size_t k) { return wall.height(Vec3(x[0][k], x[1][k], x[2][k])); };
   Vec3 sum = coupling::solids_flow_integral(scene_, flow);
-  const stokes::Layer& single = particles_.single_layer;
-  std::vector<double> weighted = single.weights();
-  for (std::size_t k = 0; k < weighted.size(); ++k) weighted[k] *= profile(scene_, height(single.nodes(), k)) / scene_.solids->viscosity();
-  if (f.size() > 0) sum -= f.transpose() * single.moments(weighted);
-  if (v.size() > 0 && particles_.has_double()) {  // stress of (2.49): sigma_i n = x_i n + slope (e_i (m.n) + m (e_i.n)), m: normal of the plates
-    const Net strength = particles_.strength(v);
-    const stokes::Layer& dual = *particles_.double_layer;
-    for (int i = 0; i < 3; ++i)
-      for (int c = 0; c < 3; ++c) {
-        std::vector<double> stress(dual.nodes()[0].size());
-        for (std::size_t k = 0; k < stress.size(); ++k) {
-          const Vec3 normal(dual.normals()[0][k], dual.normals()[1][k], dual.normals()[2][k]);
-          const double slope = distance(scene_) / 2 - height(dual.nodes(), k);
-          stress[k] = dual.nodes()[i][k] * normal[c] + slope * ((i == c ? n.dot(normal) : 0.) + n[c] * normal[i]);
-        }
-        sum[i] += dual.moments(stress).dot(strength.col(c));
-      }
+  if (f.size() > 0) {
+    const Net weights = particles_.weights_of_load([&](const Net& x) {
+      Net all(x.rows(), 3);
+      for (Eigen::Index k = 0; k < x.rows(); ++k) all.row(k).setConstant(profile(scene_, wall.height(x.row(k).transpose())));
+      return all;
+    });
+    sum -= weights.cwiseProduct(f).colwise().sum().transpose() / scene_.solids->viscosity();
   }
+  for (int i = 0; i < 3 && v.size() > 0 && particles_.double_layer; ++i)
+    sum[i] += dot(particles_.weights_of_velocity([&](const Net& x, const Net& normals) {
+      Net stress(x.rows(), 3);  // (2.49): sigma_i n = x_i n + slope (e_i (m.n) + m (e_i.n)), m: normal of the plates
+      for (Eigen::Index k = 0; k < x.rows(); ++k) {
+        const Vec3 normal = normals.row(k).transpose();
+        const double slope = distance(scene_) / 2 - wall.height(x.row(k).transpose());
+        stress.row(k) = (x(k, i) * normal + slope * (n.dot(normal) * Vec3::Unit(i) + normal[i] * n)).transpose();
+      }
+      return stress;
+    }), v);
   return along(wall, sum);
 }
 

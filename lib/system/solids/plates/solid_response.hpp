@@ -8,8 +8,8 @@
 #include "base/types.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "stokes/medium/plane_wall.hpp"
-#include "system/solids/particle_sources.hpp"
 #include "system/solids/plates/plates_and_posts.hpp"
+#include "system/targets/layer_pair.hpp"
 
 namespace tanktread::coupling {
 
@@ -39,10 +39,9 @@ Vec3 solids_flow_integral(const SolidScene& scene, const PlatesAndPosts::Flow& f
 /// calls except queries are collective.
 class SolidResponse {
  public:
-  /// `space`: common space of all particles. `flow`: ambient flow. References must outlive this object.
-  SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow);
-
-  ParticleSources& particles() { return particles_; }  ///< contrasts and unstressed net must be set before set_shape()
+  /// `space`: common space of all particles. `unstressed`: their unstressed net. `flow`: ambient flow. `space` and `flow` must outlive this object.
+  SolidResponse(const SolidScene& scene, const spline::Space& space, const Net& unstressed, std::span<const Particle> particles,
+                const stokes::AmbientFlow& flow);
 
   /// Sets the particles' control net; later calls use this shape. `at`: points on the particles at which `velocities` are needed. `own`: the rows
   /// that this rank computes.
@@ -55,13 +54,8 @@ class SolidResponse {
   /// Returns the part of the solution of (2.46) due to the load f and the velocity v of the particles. An empty net counts as zero.
   PlatesAndPosts::Flow respond(const Net& f, const Net& v);
 
-  /// Computes the rows `own` of the velocity u at the points `at`; both were passed to `set_shape`. Not collective.
+  /// Computes the rows `own` of the velocity u at the points `at` that were passed to `set_shape`. Not collective.
   void velocities(const PlatesAndPosts::Flow& flow, Net& u);
-
-  /// Computes rows of the velocity u at any points in the fluid. Not collective.
-  void velocity_at(const Net& at, std::span<const int> rows, const PlatesAndPosts::Flow& flow, Net& u) {
-    scene_.solids->velocity_at(at, rows, flow, u);
-  }
 
   /// Returns the integral over the cell of the velocity u due to the flow `flow` of the solids, the load f and the velocity v of the particles. With
   /// three periods the integral is the volume times U (2.46). In front of a single plate it is not defined, and zero is returned. Between two plates
@@ -80,11 +74,10 @@ class SolidResponse {
  private:
   SolidScene scene_;
   const stokes::AmbientFlow& flow_;
-  ParticleSources particles_;
-  Net shape_, at_;
-  std::vector<int> own_;
-  SourceTargets on_solids_;                                 // collocation points of the solids
-  std::optional<stokes::Layer::Near> solids_on_particles_;  // corrections of the layer of the solids at the points `at`, by near-singular quadrature
+  LayerPair particles_;
+  Net shape_;
+  PointsOff on_solids_;     // collocation points of the solids
+  PointsOff on_particles_;  // points on the particles that were passed to set_shape()
   Eigen::VectorXd areas_;  // integral of each basis function N_A over the area to which loads refer (current or unstressed)
   std::optional<PlatesAndPosts::Flow> empty_;
   Mat3 change_;  // value of AmbientFlow::change() for which empty_, the flow without particles, was computed
