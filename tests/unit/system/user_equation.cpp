@@ -15,7 +15,7 @@
 namespace tanktread::coupling {
 namespace {
 
-constexpr double of_residual = 1e-8;  // relative error of velocities: residuals of 1e-11, condition numbers of at most 1e3
+constexpr double of_velocity = 1e-8;  // relative error of velocities: residuals of 1e-11, condition numbers of at most 1e3
 
 /// A force of unknown size in a given direction on one control point, which does not move in this direction: W.v = 0, with the virtual work W q.
 struct Held : UserEquation {
@@ -63,12 +63,12 @@ TEST(UserEquation, ItsUnknownForceActsAsAGivenForceOfThisSizeAndHoldsThePoint) {
     Evaluation one = *held.evaluate(x);
     const double force = one.solution().value(one.solution().layout()->id("force", -1))(0, 0);
     EXPECT_GT(std::abs(dot(work, pushed.velocity(x))), 0.01) << ratio;  // the point moves if it is not held
-    EXPECT_LT(std::abs(dot(work, one.velocity())), of_residual) << ratio;
+    EXPECT_LT(std::abs(dot(work, one.velocity())), of_velocity) << ratio;
     pushed.set_forces(&Capsule::Forces::contacts, -force * work);
     Evaluation other = *pushed.evaluate(x);
-    EXPECT_LT((one.velocity() - other.velocity()).norm(), of_residual * other.velocity().norm()) << ratio;
-    EXPECT_LT((one.load() - other.load()).norm(), of_residual * other.load().norm()) << ratio;
-    EXPECT_LT((one.stresslet() - other.stresslet()).norm(), of_residual * other.stresslet().norm()) << ratio;
+    EXPECT_LT((one.velocity() - other.velocity()).norm(), of_velocity * other.velocity().norm()) << ratio;
+    EXPECT_LT((one.load() - other.load()).norm(), of_velocity * other.load().norm()) << ratio;
+    EXPECT_LT((one.stresslet() - other.stresslet()).norm(), of_velocity * other.stresslet().norm()) << ratio;
   }
 }
 
