@@ -100,7 +100,8 @@ void RigidParticles::add_load(Net& load, const Net* work) const {
 
 void RigidParticles::add_load_correction(Net& v, const Net* work) const {
   for (const Body& body : bodies_)
-    if (body.double_layer && !body.rigid.prescribed) body.block.rows(v) += body.dual().of_load(body.load(work)) * body.turn.transpose() / body.viscosity;
+    if (body.double_layer && !body.rigid.prescribed)
+      body.block.rows(v) += body.dual().of_load(body.load(work)) * body.turn.transpose() / body.viscosity;
 }
 
 void RigidParticles::complete(const Net& w, Net& v) const {
