@@ -178,8 +178,10 @@ PARTS = [
 
 
 def _series(results):
+    series = {}
     with h5py.File(pathlib.Path(results, "run.h5")) as file:
-        return {name: data[:] for name, data in file["series"].items()}
+        file["series"].visititems(lambda name, data: series.update({name: data[:]}) if isinstance(data, h5py.Dataset) else None)
+    return series
 
 
 def _adds_a_part(program, name, deck, setting, judge):
