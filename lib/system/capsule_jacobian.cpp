@@ -95,10 +95,7 @@ class FrozenEquation : public Equation {
   explicit FrozenEquation(std::shared_ptr<const Equation> exact) : exact_(std::move(exact)) {}
   void add_sources(const BlockVector& x, Given, Sources& to) const override { exact_->add_sources(x, Given::omitted, to); }
   void add_residual(const BlockVector& x, const Sources& from, const SurfaceVelocity& u, Given, BlockVector& r) const override {
-    constexpr double regular = 1e-8;  // if the equation acts on rigid bodies only, whose rows of J are 0, its unknowns have no other entries
     exact_->add_residual(x, from, u, Given::omitted, r);
-    const Eigen::Index n = x.numbers().size() - System::particles(x).size();
-    r.numbers().tail(n) += regular * x.numbers().tail(n);
   }
 
  private:
@@ -222,13 +219,15 @@ BlockVector CapsuleJacobian::product(const Net& v, const Eigen::VectorXd& added,
   const auto layers = std::make_shared<FrozenAtSites>(frozen_, parameters_.viscosity, std::move(moved), flow_at_sites_);
   for (const auto& one : added_.here) equations.push_back(std::make_unique<FrozenEquation>(one));
   const System system(unknowns_, std::move(equations), layers, [this](const Net& u) { return targets_.collocated(u); });
-  return system.residual(x, displaced ? Given::included : Given::omitted);
+  BlockVector r = system.residual(x, displaced ? Given::included : Given::omitted);
+  constexpr double regular = 1e-8;  // equations that act on rigid bodies only, whose rows of J are 0, have no other entries in these columns
+  r.numbers().tail(n_added()) += regular * x.numbers().tail(n_added());
+  return r;
 }
 
 /// Returns the rows of the particles, and those of the added equations times a weight. Without it, an iterative solver would neglect their few rows.
 CapsuleJacobian::RateChange CapsuleJacobian::parted(const BlockVector& r, double weight) const {
-  const auto particles = System::particles(r);
-  return {particles, {}, weight * r.numbers().tail(r.numbers().size() - particles.size())};
+  return {System::particles(r), {}, weight * r.numbers().tail(n_added())};
 }
 
 CapsuleJacobian::RateChange CapsuleJacobian::step_preconditioner(const Net& r, const Eigen::VectorXd& added) const {

@@ -78,6 +78,7 @@ class CapsuleJacobian {
   std::vector<Mat3> gradients_at(const Net& x) const;
   BlockVector product(const Net& v, const Eigen::VectorXd& added, const Net& dx, double shift, const Net& added_work);
   RateChange parted(const BlockVector& r, double weight) const;
+  Eigen::Index n_added() const { return unknowns_->size() - 3 * frozen_.n_points(); }  // number of unknowns of the added equations
   double row_weight() const { return std::sqrt(static_cast<double>(frozen_.n_points())); }
   Net without_pressure(Net work, const Net& db) const;
   Net fluid_velocity(const Net& rhs, double tolerance);

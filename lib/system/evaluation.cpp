@@ -64,11 +64,12 @@ const BlockVector& Evaluation::solution() {
 std::vector<double> Evaluation::values_of_added(std::size_t k) { return system_->solver().equations()[k].values(x_, solution()); }
 
 Mat3 Evaluation::stresslet_between_particles() {
+  solution();  // also computes the work of the added equations
   Mat3 moment = Mat3::Zero();
+  if (known_.added_work.size() == 0) return moment;
   for (const Particle& one : system_->particles())
-    if (solution(); known_.added_work.size() > 0)
-      moment += one.block.rows(known_.added_work).colwise().sum().transpose() *
-                surface::measures(*one.space, one.block.rows(x_)).centroid.transpose();
+    moment += one.block.rows(known_.added_work).colwise().sum().transpose() *
+              surface::measures(*one.space, one.block.rows(x_)).centroid.transpose();
   return coupling::stresslet(moment);
 }
 

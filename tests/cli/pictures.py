@@ -290,6 +290,7 @@ Tanktread:
     turned = numpy.interp(angle, other_angle + numpy.pi, other, period=2 * numpy.pi)
     # A section through nodes has more points, or fewer, by rounding: where the curve jumps from element to element, interpolation between them differs.
     close(numpy.quantile(abs(variation - turned), 0.9) / variation.max(), 0, 1e-9, "difference of two equal particles")
+    close(abs(variation - turned).max(), 0, abs(numpy.diff(other)).max(), "difference of two equal particles where they jump")
     check("two particles" in _command("encounter", _alone(), code=2), "an encounter of one")
 
 
